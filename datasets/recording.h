@@ -1,0 +1,62 @@
+// datasets: one push recording in SI units, whatever the files behind it looked like.
+// World: z up, x forward (the push direction), y left; metres, seconds, newtons, radians.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace pushid {
+
+// What a push's rows mean (DESIGN section 3, "push semantics").
+enum class PushKind {
+  kNet,                 // the whole generalized force on the pushed person while it lasts
+  kNetWithoutFriction,  // inverse dynamics with the ground friction taken out: net = push + friction
+  kExternal,            // a measured force, added to everything else
+};
+
+// Velocity of the pendulum at frame 0.
+enum class InitialVelocity {
+  kZero,       // at rest (the published pushes were computed so)
+  kEstimated,  // backward difference of frames 1 and 0
+  kFree,       // fitted
+};
+
+// A generalized force [fx N, fy N, ftheta N m, fphi N m]; row i drives the step from frame
+// start_frame + i to the next.
+struct Push {
+  int person = 0;
+  int start_frame = 0;
+  std::vector<Eigen::Vector4d> force;
+  std::string file;  // where it was read, for messages
+
+  int EndFrame() const { return start_frame + static_cast<int>(force.size()); }
+};
+
+struct RecordedPerson {
+  std::string subject_id;
+  double mass_kg = 0.0;
+  std::string file;  // the BVH, for messages
+  // Joint positions, one entry per frame, metres.
+  std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
+  // All joints, frame-major ([frame][joint]); empty unless asked for.
+  std::vector<std::vector<Eigen::Vector3d>> joints;
+};
+
+struct Recording {
+  std::string id;
+  std::string setting;
+  std::string magnitude;       // strength label, e.g. weak, medium, strong
+  std::string condition_code;  // free label of the protocol; may be empty
+  double fps = 0.0;
+  int pushed_person = 0;
+  PushKind push_kind = PushKind::kExternal;
+  InitialVelocity initial_velocity = InitialVelocity::kZero;
+  std::vector<RecordedPerson> people;
+  std::vector<Push> pushes;
+  std::string content_hash;  // of every file it was read from, for provenance
+
+  int num_frames() const { return people.empty() ? 0 : static_cast<int>(people[0].hip.size()); }
+};
+
+}  // namespace pushid

@@ -1,0 +1,43 @@
+// datasets: errors as values. A reader returns Result<T>: either the thing it read, or an Error that
+// says what is wrong, where, and what to do. User input never aborts the program.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace pushid {
+
+struct Error {
+  std::string message;  // what is wrong and what to do about it
+  std::string file;     // empty when no file is to blame
+  int line = 0;         // 1-based; 0 when the whole file is meant
+
+  // "push.csv:7: fx is 'abc', not a number; ..." - the one line that reaches the user.
+  std::string ToString() const {
+    if (file.empty()) return message;
+    return file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message;
+  }
+};
+
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : content_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+
+  bool ok() const { return std::holds_alternative<T>(content_); }
+  const T& value() const& { return std::get<T>(content_); }
+  T& value() & { return std::get<T>(content_); }
+  T&& value() && { return std::get<T>(std::move(content_)); }
+  const Error& error() const { return std::get<Error>(content_); }
+
+ private:
+  std::variant<T, Error> content_;
+};
+
+// The outcome of something that yields nothing but may fail: nullopt means done.
+using MaybeError = std::optional<Error>;
+
+}  // namespace pushid
