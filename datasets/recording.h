@@ -6,14 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace pushid {
+#include "models/push.h"  // PushKind
 
-// What a push's rows mean (DESIGN section 3, "push semantics").
-enum class PushKind {
-  kNet,                 // the whole generalized force on the pushed person while it lasts
-  kNetWithoutFriction,  // inverse dynamics with the ground friction taken out: net = push + friction
-  kExternal,            // a measured force, added to everything else
-};
+namespace pushid {
 
 // Velocity of the pendulum at frame 0.
 enum class InitialVelocity {

@@ -1,0 +1,47 @@
+// datasets: mapping a recording's skeletons to pendulums.
+#include "datasets/pendulum_recording.h"
+
+namespace pushid {
+
+PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
+  PendulumRecording result;
+  result.id = recording.id;
+  result.setting = recording.setting;
+  result.magnitude = recording.magnitude;
+  result.condition_code = recording.condition_code;
+  result.pushed_person = recording.pushed_person;
+  result.initial_velocity = recording.initial_velocity;
+  result.content_hash = recording.content_hash;
+  result.scene.dt = 1.0 / recording.fps;
+
+  for (const RecordedPerson& person : recording.people) {
+    std::vector<PendulumState<double>> states(person.hip.size());
+    std::vector<double> lengths(person.hip.size());
+    ScenePerson in_scene;
+    for (size_t t = 0; t < person.hip.size(); ++t) {
+      const MappedPose pose =
+          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t], mapping);
+      states[t].q = pose.q;
+      if (t > 0) states[t].qd = (pose.q - states[t - 1].q) * recording.fps;
+      lengths[t] = pose.rod_length;
+      if (t == 0) in_scene.body = {person.mass_kg, pose.rod_length, pose.cart_height};
+    }
+    in_scene.start.q = states[0].q;
+    if (recording.initial_velocity != InitialVelocity::kZero && states.size() > 1) {
+      in_scene.start.qd = states[1].qd;
+    }
+    states[0].qd = in_scene.start.qd;
+    result.subject_ids.push_back(person.subject_id);
+    result.scene.people.push_back(in_scene);
+    result.states.push_back(std::move(states));
+    result.rod_length.push_back(std::move(lengths));
+    result.hip.push_back(person.hip);
+  }
+  for (const Push& push : recording.pushes) {
+    result.scene.pushes.push_back(
+        MakeScenePush(push.person, push.start_frame, recording.push_kind, push.force));
+  }
+  return result;
+}
+
+}  // namespace pushid

@@ -1,0 +1,127 @@
+// models: the inverted pendulum on a cart (IPM) that stands for a person.
+//
+// q = [x, y, theta, phi]: cart position (m), angles about y and about x (rad); rod length l (m).
+//   M(q) qdd + C(q, qd) + G(q) = F_net,   semi-implicit Euler: qd += dt qdd, q += dt qd.
+// Point mass (hip): p = (x + l sin(theta), y - l cos(theta) sin(phi), h + l cos(theta) cos(phi)).
+// Source: Yue et al., CVPR 2024, supplement, with row 3 of C as the derivation gives it (s_th c_th,
+// printed as s_th c_ph). M is singular at cos(theta) = 0, hence the domain below.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+namespace pushid {
+
+template <typename T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <typename T>
+using Vector4 = Eigen::Matrix<T, 4, 1>;
+template <typename T>
+using Matrix4 = Eigen::Matrix<T, 4, 4>;
+
+inline constexpr double kGravity = 9.81;   // m/s^2
+inline constexpr double kMaxAngle = 1.4;   // rad: beyond it a rollout has left the model's domain
+inline constexpr double kFallAngle = 1.0;  // rad: beyond it a person is said to fall
+inline constexpr double kCartShare = 0.1;  // of the body's mass
+inline constexpr double kReferenceMass = 85;   // kg
+inline constexpr double kReferenceRod = 0.95;  // m
+
+// What does not change during a recording.
+struct Body {
+  double mass = kReferenceMass;       // kg
+  double rod_length = kReferenceRod;  // m
+  double cart_height = 0.0;           // m
+
+  double point_mass() const { return (1.0 - kCartShare) * mass; }
+};
+
+template <typename T>
+struct PendulumState {
+  Vector4<T> q = Vector4<T>::Zero();
+  Vector4<T> qd = Vector4<T>::Zero();
+};
+
+template <typename T>
+Matrix4<T> MassMatrix(const Body& body, const Vector4<T>& q) {
+  using std::cos, std::sin;
+  const double m = body.point_mass(), l = body.rod_length;
+  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  const T zero(0.0), total(body.mass);
+  Matrix4<T> mass;
+  mass << total, zero, m * l * c_th, zero,                     //
+      zero, total, m * l * s_th * s_ph, -m * l * c_th * c_ph,  //
+      m * l * c_th, m * l * s_th * s_ph, T(m * l * l), zero,   //
+      zero, -m * l * c_th * c_ph, zero, m * l * l * c_th * c_th;
+  return mass;
+}
+
+template <typename T>
+Vector4<T> Coriolis(const Body& body, const Vector4<T>& q, const Vector4<T>& qd) {
+  using std::cos, std::sin;
+  const double m = body.point_mass(), l = body.rod_length;
+  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  const T thd = qd[2], phd = qd[3];
+  return {-m * l * s_th * thd * thd,
+          m * l * (2.0 * s_th * c_ph * thd * phd + c_th * s_ph * (thd * thd + phd * phd)),
+          m * l * l * s_th * c_th * phd * phd, -2.0 * m * l * l * s_th * c_th * thd * phd};
+}
+
+template <typename T>
+Vector4<T> Gravity(const Body& body, const Vector4<T>& q) {
+  using std::cos, std::sin;
+  const double mgl = body.point_mass() * kGravity * body.rod_length;
+  return {T(0.0), T(0.0), -mgl * sin(q[2]) * cos(q[3]), -mgl * cos(q[2]) * sin(q[3])};
+}
+
+// Inverse of the mass matrix by its Schur complement: the cart block is diagonal, so 2 x 2 remains.
+template <typename T>
+Matrix4<T> InverseMassMatrix(const Body& body, const Vector4<T>& q) {
+  const Matrix4<T> mass = MassMatrix(body, q);
+  const double w = 1.0 / body.mass;
+  const T b02 = mass(0, 2), b12 = mass(1, 2), b13 = mass(1, 3);
+  const T s22 = mass(2, 2) - w * (b02 * b02 + b12 * b12);
+  const T s23 = -w * b12 * b13;
+  const T s33 = mass(3, 3) - w * b13 * b13;
+  const T det = s22 * s33 - s23 * s23;
+  const T i22 = s33 / det, i23 = -s23 / det, i33 = s22 / det;
+  // Upper right block: -(1/M) B S^-1.
+  const T i02 = -w * b02 * i22, i03 = -w * b02 * i23;
+  const T i12 = -w * (b12 * i22 + b13 * i23), i13 = -w * (b12 * i23 + b13 * i33);
+  const T i00 = w - w * b02 * i02, i01 = -w * b02 * i12;
+  const T i11 = w - w * (b12 * i12 + b13 * i13);
+  Matrix4<T> inverse;
+  inverse << i00, i01, i02, i03, i01, i11, i12, i13, i02, i12, i22, i23, i03, i13, i23, i33;
+  return inverse;
+}
+
+// qdd for a generalized force [N, N, N m, N m].
+template <typename T>
+Vector4<T> Acceleration(const Body& body, const PendulumState<T>& state, const Vector4<T>& force) {
+  const Vector4<T> right = force - Coriolis(body, state.q, state.qd) - Gravity(body, state.q);
+  return InverseMassMatrix(body, state.q) * right;
+}
+
+template <typename T>
+PendulumState<T> Step(const PendulumState<T>& state, const Vector4<T>& qdd, double dt) {
+  PendulumState<T> next;
+  next.qd = state.qd + dt * qdd;
+  next.q = state.q + dt * next.qd;
+  return next;
+}
+
+template <typename T>
+Vector3<T> HipPosition(const Body& body, const Vector4<T>& q) {
+  using std::cos, std::sin;
+  const double l = body.rod_length;
+  return {q[0] + l * sin(q[2]), q[1] - l * cos(q[2]) * sin(q[3]),
+          body.cart_height + l * cos(q[2]) * cos(q[3])};
+}
+
+// The generalized force whose acceleration is qdd: M qdd + C + G.
+template <typename T>
+Vector4<T> InverseDynamics(const Body& body, const PendulumState<T>& state, const Vector4<T>& qdd) {
+  return MassMatrix(body, state.q) * qdd + Coriolis(body, state.q, state.qd) +
+         Gravity(body, state.q);
+}
+
+}  // namespace pushid

@@ -1,0 +1,46 @@
+// models: the choices that turn the general equations into one particular model. Plain data.
+#pragma once
+
+namespace pushid {
+
+// What the balance error is measured from.
+enum class Posture {
+  kUpright,  // from the vertical (LDP)
+  kInitial   // from the person's posture at frame 0, with the torque that holds it
+};
+
+// How the gains, quoted for the reference person, carry over to another body.
+enum class GainScaling {
+  kNone,  // the same newtons for everybody
+  kMass,  // times M / 85 kg (LDP's data have one mass scale)
+  kBody   // forces times M / 85 kg, stiffness also times l / 0.95 m, angular damping times its
+          // square
+};
+
+enum class FrictionKind { kIsotropic, kAnisotropic };
+
+// What happens to the other forces while a push lasts.
+enum class PushUse {
+  kAsRecorded,  // what the recording's push kind says
+  kAdded        // the push is added to all other forces, whatever its kind
+};
+
+// What a `net` push, which covers only its first part, does after its last published frame.
+enum class PushTail { kNone, kExponential };
+
+// Kd_x and Kd_y multiply the cart's acceleration: an algebraic loop, hence off by default.
+enum class CartDerivative {
+  kNone,
+  kBackward  // (v_t - v_{t-1}) / dt, as LDP's code does
+};
+
+struct ModelOptions {
+  Posture posture = Posture::kInitial;
+  GainScaling gain_scaling = GainScaling::kBody;
+  FrictionKind friction = FrictionKind::kIsotropic;
+  PushUse push = PushUse::kAdded;
+  PushTail push_tail = PushTail::kExponential;
+  CartDerivative cart_derivative = CartDerivative::kNone;
+};
+
+}  // namespace pushid

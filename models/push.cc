@@ -1,0 +1,40 @@
+// models: derivatives of the push tail, and the demonstration push.
+#include "models/push.h"
+
+namespace pushid {
+
+void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
+                     Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
+  if (push.kind == PushKind::kExternal || push.force.empty() || frame < push.EndFrame()) return;
+  const double duration = static_cast<double>(push.force.size()) * dt;
+  const double tau = TailDecayTime(p, duration);
+  const double elapsed = (frame - push.EndFrame()) * dt;
+  const double decay = std::exp(-elapsed / tau);
+  // d decay / d tau = decay elapsed / tau^2; tau is proportional to tail_time.
+  const double by_time = decay * elapsed / (tau * p[kTailTime]);
+  const double by_exponent = decay * elapsed / tau * std::log(duration / kTailReferenceDuration);
+  for (int row = 0; row < 4; ++row) {
+    const Parameter amplitude = row < 2 ? kTailGain : kTailTorque;
+    (*by_parameter)(row, amplitude) += decay * push.mean[row];
+    (*by_parameter)(row, kTailTime) += p[amplitude] * push.mean[row] * by_time;
+    (*by_parameter)(row, kTailExponent) += p[amplitude] * push.mean[row] * by_exponent;
+  }
+}
+
+std::vector<Vector4<double>> HalfSinePush(const Body& body, double impulse, int frames, double dt) {
+  double sum = 0.0;
+  std::vector<double> shape;
+  for (int k = 0; k < frames; ++k) {
+    shape.push_back(std::sin(M_PI * (k + 0.5) / frames));
+    sum += shape.back() * dt;
+  }
+  std::vector<Vector4<double>> force;
+  const Vector4<double> upright = Vector4<double>::Zero();
+  for (double value : shape) {
+    force.push_back(
+        GeneralizedForce<double>(body, upright, {value * impulse / sum, 0.0, 0.0}, 1.0));
+  }
+  return force;
+}
+
+}  // namespace pushid

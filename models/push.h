@@ -1,0 +1,86 @@
+// models: pushes as generalized forces [N, N, N m, N m] on one person, frame by frame.
+//
+// A `net` push covers only the first part of the real one. Its tail goes on after the last row as
+//   F(k) = [g Fx, g Fy, r Ftheta, r Fphi] exp(-k dt / tau),  tau = t (n dt / 0.1 s)^e,
+// with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
+// t = tail_time, e = tail_exponent. An external push has no tail.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "models/ipm.h"
+#include "models/parameters.h"
+
+namespace pushid {
+
+// What a push's rows mean.
+enum class PushKind {
+  kNet,                 // the whole generalized force on the pushed person while it lasts
+  kNetWithoutFriction,  // inverse dynamics with the ground friction taken out: net = push +
+                        // friction
+  kExternal,            // a measured force, added to everything else
+};
+
+inline constexpr double kTailReferenceDuration = 0.1;  // s
+
+// One push in a scene; row i drives the step from frame start_frame + i to the next.
+struct ScenePush {
+  int person = 0;
+  int start_frame = 0;
+  PushKind kind = PushKind::kExternal;
+  std::vector<Vector4<double>> force;
+  Vector4<double> mean = Vector4<double>::Zero();  // of the rows; set by MakeScenePush
+
+  int EndFrame() const { return start_frame + static_cast<int>(force.size()); }
+  bool Active(int frame) const { return frame >= start_frame && frame < EndFrame(); }
+};
+
+inline ScenePush MakeScenePush(int person, int start_frame, PushKind kind,
+                               std::vector<Vector4<double>> force) {
+  ScenePush push{person, start_frame, kind, std::move(force)};
+  for (const Vector4<double>& row : push.force) push.mean += row;
+  if (!push.force.empty()) push.mean /= static_cast<double>(push.force.size());
+  return push;
+}
+
+// The tail's decay time in seconds.
+template <typename T>
+T TailDecayTime(const ParameterSet<T>& p, double push_duration) {
+  using std::exp;
+  return p[kTailTime] * exp(p[kTailExponent] * std::log(push_duration / kTailReferenceDuration));
+}
+
+// The tail's force at `frame`; zero before the push ends and for an external push.
+template <typename T>
+Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
+  using std::exp;
+  if (push.kind == PushKind::kExternal || push.force.empty() || frame < push.EndFrame()) {
+    return Vector4<T>::Zero();
+  }
+  const T tau = TailDecayTime(p, static_cast<double>(push.force.size()) * dt);
+  const T decay = exp(-(frame - push.EndFrame()) * dt / tau);
+  const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
+  return {gain * push.mean[0], gain * push.mean[1], torque * push.mean[2], torque * push.mean[3]};
+}
+
+// Adds the derivatives of TailForce to a 4 x kNumParameters matrix.
+void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
+                     Eigen::Matrix<double, 4, kNumParameters>* by_parameter);
+
+// A force f (N, world) at the fraction `height` of the rod, as a generalized force.
+template <typename T>
+Vector4<T> GeneralizedForce(const Body& body, const Vector4<T>& q, const Vector3<T>& f,
+                            double height) {
+  using std::cos, std::sin;
+  const double al = height * body.rod_length;
+  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  return {f[0], f[1], al * (f[0] * c_th + f[1] * s_th * s_ph - f[2] * s_th * c_ph),
+          al * (-f[1] * c_th * c_ph - f[2] * c_th * s_ph)};
+}
+
+// A half-sine of `frames` rows along +x at the hip of an upright person, of the named impulse (N
+// s).
+std::vector<Vector4<double>> HalfSinePush(const Body& body, double impulse, int frames, double dt);
+
+}  // namespace pushid

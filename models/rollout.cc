@@ -1,0 +1,40 @@
+// models: which forces act when; the parts of a rollout that do not depend on the scalar.
+#include "models/rollout.h"
+
+namespace pushid {
+
+ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame) {
+  ActiveForces active = ActiveForces::kAll;
+  if (use == PushUse::kAdded) return active;
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person != person || !push.Active(frame)) continue;
+    if (push.kind == PushKind::kNet) return ActiveForces::kPushOnly;
+    if (push.kind == PushKind::kNetWithoutFriction) active = ActiveForces::kPushAndFriction;
+  }
+  return active;
+}
+
+Vector4<double> PushForceAt(const Scene& scene, int person, int frame) {
+  Vector4<double> sum = Vector4<double>::Zero();
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person == person && push.Active(frame)) sum += push.force[frame - push.start_frame];
+  }
+  return sum;
+}
+
+std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options) {
+  std::vector<SelfForce> self;
+  self.reserve(scene.people.size());
+  for (const ScenePerson& person : scene.people) {
+    self.emplace_back(options, person.body, person.start.q, scene.dt);
+  }
+  return self;
+}
+
+std::vector<Vector4<double>> InitialVelocities(const Scene& scene) {
+  std::vector<Vector4<double>> velocities;
+  for (const ScenePerson& person : scene.people) velocities.push_back(person.start.qd);
+  return velocities;
+}
+
+}  // namespace pushid
