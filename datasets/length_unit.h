@@ -1,0 +1,25 @@
+// datasets: the unit of lengths in a file. Inside the program lengths are metres; other units live
+// only in readers and writers.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pushid {
+
+enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
+
+// Metres in one unit: 0.001, 0.01 or 1.
+double MetresPer(LengthUnit unit);
+
+// "mm", "cm" or "m", as manifests and --length_unit spell them.
+std::string Name(LengthUnit unit);
+
+// The inverse of Name; nullopt for any other text.
+std::optional<LengthUnit> LengthUnitFromName(std::string_view name);
+
+// `value` given in `from`, expressed in `to`; exact (no rounding at all) when the two are the same.
+double ConvertLength(double value, LengthUnit from, LengthUnit to);
+
+}  // namespace pushid
