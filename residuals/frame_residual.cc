@@ -1,0 +1,37 @@
+// residuals: derivative of one frame's residual.
+#include "residuals/frame_residual.h"
+
+namespace pushid {
+
+FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
+                                              const MeasuredFrame& measured,
+                                              const ResidualSigmas& sigmas,
+                                              Eigen::Matrix<double, kFrameResiduals, 8>* jacobian) {
+  const FrameVector<double> r = RawFrameResidual(body, state, measured, sigmas);
+  const double l = body.rod_length;
+  const double s_th = std::sin(state.q[2]), c_th = std::cos(state.q[2]);
+  const double s_ph = std::sin(state.q[3]), c_ph = std::cos(state.q[3]);
+  Eigen::Matrix<double, kFrameResiduals, 8>& j = *jacobian;
+  j.setZero();
+  j(0, 0) = j(1, 1) = 1.0 / sigmas.hip;
+  j(0, 2) = l * c_th / sigmas.hip;
+  j(1, 2) = l * s_th * s_ph / sigmas.hip;
+  j(1, 3) = -l * c_th * c_ph / sigmas.hip;
+  j(2, 2) = -l * s_th * c_ph / sigmas.hip;
+  j(2, 3) = -l * c_th * s_ph / sigmas.hip;
+  j(3, 4) = j(4, 5) = 1.0 / sigmas.velocity;
+  j(5, 2) = j(6, 3) = 1.0 / sigmas.angle;
+  j(7, 6) = j(8, 7) = 1.0 / sigmas.rate;
+  if (sigmas.robust <= 0.0) return r;
+
+  // d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c).
+  const double squared_scale = sigmas.robust * sigmas.robust;
+  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
+  const double w = std::sqrt(2.0 / (1.0 + c));
+  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
+  const Eigen::Matrix<double, 1, 8> along = r.transpose() * j;
+  j = w * j + (2.0 * slope) * r * along;
+  return w * r;
+}
+
+}  // namespace pushid

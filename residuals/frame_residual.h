@@ -1,0 +1,73 @@
+// residuals: what one frame of one person contributes, and its robust loss.
+//
+//   r = w [ (hip - hip_measured) / s_hip                    3
+//           (cart velocity - measured) / s_velocity         2
+//           (angles - measured) / s_angle                   2
+//           (angular rates - measured) / s_rate ]           2
+// Likelihood: independent errors with these standard deviations, heavier than normal in the tails.
+// w^2 = rho(|r|^2) / |r|^2 with the pseudo-Huber rho(s) = 2 d^2 (sqrt(1 + s / d^2) - 1), so that
+// sum r^2 / 2 is the robust cost of the frame. A Ceres LossFunction would act on the whole
+// recording, which is one residual block. Rejected: hip positions alone, which let velocities run
+// wild between frames; one scalar per frame, which stalls Gauss-Newton.
+#pragma once
+
+#include <cmath>
+
+#include "models/ipm.h"
+
+namespace pushid {
+
+inline constexpr int kFrameResiduals = 9;
+
+struct ResidualSigmas {
+  double hip = 0.10;      // m; raise it when the marker of the hip is poor
+  double velocity = 1.0;  // m/s, of the cart
+  double angle = 0.3;     // rad
+  double rate = 1.0;      // rad/s
+  double robust = 1.0;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
+};
+
+struct MeasuredFrame {
+  Vector3<double> hip;          // m
+  PendulumState<double> state;  // m, rad, m/s, rad/s
+};
+
+template <typename T>
+using FrameVector = Eigen::Matrix<T, kFrameResiduals, 1>;
+
+// r before the robust weight.
+template <typename T>
+FrameVector<T> RawFrameResidual(const Body& body, const PendulumState<T>& state,
+                                const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
+  FrameVector<T> r;
+  r.template head<3>() = (HipPosition(body, state.q) - measured.hip) / T(sigmas.hip);
+  for (int i = 0; i < 2; ++i) {
+    r[3 + i] = (state.qd[i] - measured.state.qd[i]) / sigmas.velocity;
+    r[5 + i] = (state.q[2 + i] - measured.state.q[2 + i]) / sigmas.angle;
+    r[7 + i] = (state.qd[2 + i] - measured.state.qd[2 + i]) / sigmas.rate;
+  }
+  return r;
+}
+
+// w of the header; 1 for plain least squares.
+template <typename T>
+T RobustWeight(const T& squared_norm, double robust) {
+  using std::sqrt;
+  if (robust <= 0.0) return T(1.0);
+  return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
+}
+
+template <typename T>
+FrameVector<T> FrameResidual(const Body& body, const PendulumState<T>& state,
+                             const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
+  const FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
+  return RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
+}
+
+// The analytic twin of FrameResidual: its value, and its derivative by [q, qd].
+FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
+                                              const MeasuredFrame& measured,
+                                              const ResidualSigmas& sigmas,
+                                              Eigen::Matrix<double, kFrameResiduals, 8>* jacobian);
+
+}  // namespace pushid

@@ -1,0 +1,42 @@
+// residuals: block sizes and columns of a recording.
+#include "residuals/parameter_map.h"
+
+#include <algorithm>
+
+namespace pushid {
+
+BlockLayout::BlockLayout(const ParameterMap& map,
+                         const std::vector<std::string>& subject_of_each_person, bool free_velocity)
+    : free_initial_velocity(free_velocity),
+      num_shared(map.num_shared()),
+      num_deviations(map.num_deviations) {
+  for (const std::string& subject : subject_of_each_person) {
+    const auto found = std::find(subjects.begin(), subjects.end(), subject);
+    subject_of_person.push_back(static_cast<int>(found - subjects.begin()));
+    if (found == subjects.end()) subjects.push_back(subject);
+  }
+}
+
+std::vector<int> BlockLayout::BlockSizes() const {
+  std::vector<int> sizes = {num_shared};
+  if (num_deviations > 0) sizes.insert(sizes.end(), subjects.size(), num_deviations);
+  if (free_initial_velocity) sizes.push_back(4 * num_people());
+  return sizes;
+}
+
+int BlockLayout::num_columns() const {
+  int columns = 0;
+  for (int size : BlockSizes()) columns += size;
+  return columns;
+}
+
+int BlockLayout::DeviationColumn(int person) const {
+  if (num_deviations == 0) return -1;
+  return num_shared + subject_of_person[person] * num_deviations;
+}
+
+int BlockLayout::VelocityColumn() const {
+  return free_initial_velocity ? num_columns() - 4 * num_people() : -1;
+}
+
+}  // namespace pushid

@@ -1,0 +1,141 @@
+// residuals: from the blocks that Ceres moves to the parameters of each person.
+//
+// Parameter blocks of one recording, in this order:
+//   0        shared values on the fitted scale, one entry per fitted parameter
+//   1 .. S   deviations of each distinct subject, one entry per pooled parameter (absent when none)
+//   last     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
+// A person's value is natural(shared + deviation); with no deviation, natural(shared). Adding on
+// the fitted scale makes a pooled positive parameter vary by factors and never change sign.
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "models/parameters.h"
+
+namespace pushid {
+
+// The scale on which a parameter is fitted.
+enum class Transform {
+  kIdentity,
+  kLog,   // positive parameters
+  kLogit  // unit interval
+};
+
+template <typename T>
+T ToNatural(Transform transform, const T& fitted) {
+  using std::exp;
+  switch (transform) {
+    case Transform::kLog:
+      return exp(fitted);
+    case Transform::kLogit:
+      return 1.0 / (1.0 + exp(-fitted));
+    case Transform::kIdentity:
+      break;
+  }
+  return fitted;
+}
+
+inline double ToFitted(Transform transform, double natural) {
+  if (transform == Transform::kLog) return std::log(natural);
+  if (transform == Transform::kLogit) return std::log(natural / (1.0 - natural));
+  return natural;
+}
+
+// d natural / d fitted, at a natural value.
+inline double TransformSlope(Transform transform, double natural) {
+  if (transform == Transform::kLog) return natural;
+  if (transform == Transform::kLogit) return natural * (1.0 - natural);
+  return 1.0;
+}
+
+struct FittedParameter {
+  Parameter parameter;
+  Transform transform;
+  int deviation = -1;  // index in a subject's block, -1 when not pooled
+};
+
+// d (a person's parameter) / d (a column of the recording's Jacobian).
+struct ColumnEntry {
+  int column;
+  Parameter parameter;
+  double derivative;
+};
+
+struct ParameterMap {
+  ParameterSet<double> values{};        // of the parameters that are not fitted
+  std::vector<FittedParameter> fitted;  // in the order of the shared block
+  int num_deviations = 0;               // length of a subject's block; 0: no such blocks
+
+  int num_shared() const { return static_cast<int>(fitted.size()); }
+
+  // deviation may be null.
+  template <typename T>
+  ParameterSet<T> Apply(const T* shared, const T* deviation) const {
+    ParameterSet<T> set;
+    for (int i = 0; i < kNumParameters; ++i) set[i] = T(values[i]);
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      T value = shared[i];
+      if (deviation != nullptr && fitted[i].deviation >= 0) value += deviation[fitted[i].deviation];
+      set[fitted[i].parameter] = ToNatural(fitted[i].transform, value);
+    }
+    return set;
+  }
+
+  // Entries of one person whose shared block starts at column 0 and whose subject's block starts at
+  // `deviation_column` (negative: none).
+  std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column) const {
+    std::vector<ColumnEntry> entries;
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      const FittedParameter& f = fitted[i];
+      const double slope = TransformSlope(f.transform, set[f.parameter]);
+      entries.push_back({static_cast<int>(i), f.parameter, slope});
+      if (deviation_column >= 0 && f.deviation >= 0) {
+        entries.push_back({deviation_column + f.deviation, f.parameter, slope});
+      }
+    }
+    return entries;
+  }
+};
+
+// How one recording's people hang on its parameter blocks.
+struct BlockLayout {
+  std::vector<std::string> subjects;  // distinct, in order of first appearance
+  std::vector<int> subject_of_person;
+  bool free_initial_velocity = false;
+  int num_shared = 0;
+  int num_deviations = 0;
+
+  BlockLayout() = default;
+  BlockLayout(const ParameterMap& map, const std::vector<std::string>& subject_of_each_person,
+              bool free_velocity);
+
+  int num_people() const { return static_cast<int>(subject_of_person.size()); }
+  std::vector<int> BlockSizes() const;
+  int num_columns() const;
+  // First column of a person's deviations; negative when there are none.
+  int DeviationColumn(int person) const;
+  int VelocityColumn() const;  // negative when the initial velocities are not fitted
+
+  // The parameters and initial velocities of every person, for any scalar.
+  template <typename T>
+  std::vector<ParameterSet<T>> Parameters(const ParameterMap& map, T const* const* blocks) const {
+    std::vector<ParameterSet<T>> sets;
+    for (int subject : subject_of_person) {
+      sets.push_back(map.Apply<T>(blocks[0], num_deviations > 0 ? blocks[1 + subject] : nullptr));
+    }
+    return sets;
+  }
+  // nullptr when the initial velocities are not fitted.
+  template <typename T>
+  const T* VelocityBlock(T const* const* blocks) const {
+    return free_initial_velocity ? blocks[num_blocks() - 1] : nullptr;
+  }
+  int num_blocks() const {
+    return 1 + (num_deviations > 0 ? static_cast<int>(subjects.size()) : 0) +
+           (free_initial_velocity ? 1 : 0);
+  }
+};
+
+}  // namespace pushid

@@ -1,0 +1,63 @@
+// residuals: a rollout together with its derivatives, carried forward step by step.
+//
+// With s = [q, qd] of a person and S = ds/d(columns), M a = F - C - G gives
+//   da = M^-1 (dF/ds - d(M a + C + G)/ds at fixed a) S + M^-1 dF/dp dp/d(columns)
+//   S_qd <- S_qd + dt da,   S_q <- S_q + dt S_qd
+// Only d(M a + C + G) needs automatic differentiation, over the four states it depends on; a whole
+// Jet rollout costs as many sweeps as there are columns (measured in tests/benchmarks).
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/rollout.h"
+#include "residuals/parameter_map.h"
+
+namespace pushid {
+
+// What a rollout is run with: one entry per person.
+struct SensitivityInputs {
+  std::vector<ParameterSet<double>> parameters;
+  std::vector<Vector4<double>> initial_velocity;
+  std::vector<std::vector<ColumnEntry>> entries;
+  int num_columns = 0;
+  int velocity_column = -1;  // first of 4 * people columns; negative when not fitted
+};
+
+// d [q, qd] / d columns at every frame and person.
+class RolloutSensitivities {
+ public:
+  using Block = Eigen::Matrix<double, 8, Eigen::Dynamic>;
+  void Resize(int num_frames, int num_people, int num_columns) {
+    num_people_ = num_people;
+    num_columns_ = num_columns;
+    storage_.resize(8, static_cast<Eigen::Index>(num_frames) * num_people * num_columns);
+  }
+  auto At(int frame, int person) {
+    return storage_.middleCols(Offset(frame, person), num_columns_);
+  }
+  auto At(int frame, int person) const {
+    return storage_.middleCols(Offset(frame, person), num_columns_);
+  }
+
+ private:
+  Eigen::Index Offset(int frame, int person) const {
+    return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
+  }
+  int num_people_ = 0, num_columns_ = 0;
+  Block storage_;
+};
+
+// Derivatives of NetForceAt: the analytic twin.
+void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
+                      const ParameterSet<double>& p, int person, int frame,
+                      const PendulumState<double>& state, const Vector4<double>& previous,
+                      SelfForce::Jacobian* jacobian);
+
+// Same path as Rollout<double>, to the last bit.
+RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
+                                       const SensitivityInputs& inputs, int num_frames,
+                                       RolloutPath<double>* path,
+                                       RolloutSensitivities* sensitivities);
+
+}  // namespace pushid
