@@ -1,5 +1,5 @@
-// datasets: errors as values. A reader returns Result<T>: either the thing it read, or an Error that
-// says what is wrong, where, and what to do. User input never aborts the program.
+// datasets: errors as values. A reader returns Result<T>: either the thing it read, or an Error
+// that says what is wrong, where, and what to do. User input never aborts the program.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,15 @@ struct Error {
   std::string message;  // what is wrong and what to do about it
   std::string file;     // empty when no file is to blame
   int line = 0;         // 1-based; 0 when the whole file is meant
+  int column = 0;       // 1-based; 0 when the whole line is meant
 
   // "push.csv:7: fx is 'abc', not a number; ..." - the one line that reaches the user.
   std::string ToString() const {
     if (file.empty()) return message;
-    return file + (line > 0 ? ":" + std::to_string(line) : "") + ": " + message;
+    std::string where = file;
+    if (line > 0) where += ":" + std::to_string(line);
+    if (line > 0 && column > 0) where += ":" + std::to_string(column);
+    return where + ": " + message;
   }
 };
 
