@@ -34,6 +34,9 @@ enum class BvhChannel { kXposition, kYposition, kZposition, kXrotation, kYrotati
 inline bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXrotation; }
 inline int AxisOf(BvhChannel channel) { return static_cast<int>(channel) % 3; }  // 0 x, 1 y, 2 z
 
+// "Xposition" ... "Zrotation", as files spell them.
+const char* Name(BvhChannel channel);
+
 // The usual channels: Zrotation Yrotation Xrotation, for a root after Xposition Yposition
 // Zposition.
 std::vector<BvhChannel> DefaultBvhChannels(bool with_position);
@@ -100,8 +103,13 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path,
 
 // Writes `motion` with its lengths in `unit` (normally motion.length_unit), atomically. Numbers are
 // the shortest that read back to the same double. An inconsistent motion (wrong number of values,
-// a parent after its child, NaN, no frames, frame time out of range) is an Error.
+// joints not depth first, NaN, no frames, frame time out of range) is an Error. A leaf without an
+// end site gets one at its own place, which other programs insist on.
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit);
+
+// "there is no joint 'Hip'; it has Hips, Spine, ..." for whoever looks joints up by name.
+Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
+                        const std::string& name);
 
 // Frame times accepted in files: 1 to 10000 frames per second.
 constexpr double kMinFramesPerSecond = 1.0;

@@ -11,6 +11,7 @@
 #include <ceres/cost_function.h>
 
 #include "datasets/pendulum_recording.h"
+#include "models/options.h"
 #include "models/savitzky_golay.h"
 #include "residuals/parameter_map.h"
 
