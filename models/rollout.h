@@ -53,15 +53,16 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
                        const PendulumState<T>& state, const Vector4<T>& qd_previous) {
   NetForce<T> force;
   force.push = PushForceAt(scene, person, frame).template cast<T>();
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  if (active == ActiveForces::kPushOnly) return force;
+  force.friction = self.Friction(p, state.qd);
+  if (active == ActiveForces::kPushAndFriction) return force;
+  // Only here: a push that is the whole force includes the tail of an earlier one.
   if (options.push_tail == PushTail::kExponential) {
     for (const ScenePush& push : scene.pushes) {
       if (push.person == person) force.tail += TailForce(push, p, frame, scene.dt);
     }
   }
-  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
-  if (active == ActiveForces::kPushOnly) return force;
-  force.friction = self.Friction(p, state.qd);
-  if (active == ActiveForces::kPushAndFriction) return force;
   force.balance = self.Balance(p, state, qd_previous);
   force.linear = self.Linear(p, state);
   return force;

@@ -27,7 +27,8 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
                       const ParameterSet<double>& p, int person, int frame,
                       const PendulumState<double>& state, const Vector4<double>& previous,
                       SelfForce::Jacobian* jacobian) {
-  switch (ForcesAt(scene, options.push, person, frame)) {
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  switch (active) {
     case ActiveForces::kAll:
       self.TotalJacobian(p, state, previous, jacobian);
       break;
@@ -40,7 +41,7 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
       jacobian->by_parameter.setZero();
       break;
   }
-  if (options.push_tail == PushTail::kNone) return;
+  if (options.push_tail == PushTail::kNone || active != ActiveForces::kAll) return;
   for (const ScenePush& push : scene.pushes) {
     if (push.person == person) {
       AddTailJacobian(push, p, frame, scene.dt, &jacobian->by_parameter);
