@@ -1,0 +1,128 @@
+// Pushes: the tail and its hand-derived Jacobian, generalized forces, the demonstration push.
+#include "models/push.h"
+
+#include <ceres/jet.h>
+
+#include "models/scene.h"
+#include "tests/models/model_samples.h"
+
+namespace pushid {
+namespace {
+
+using Jet = ceres::Jet<double, kNumParameters>;
+using TailJacobian = Eigen::Matrix<double, 4, kNumParameters>;
+constexpr double kDt = 1.0 / 60.0;
+
+ScenePush RandomPush(Random* random, int rows, PushKind kind, int start_frame = 3) {
+  std::vector<Vector4<double>> force;
+  for (int i = 0; i < rows; ++i) force.push_back(RandomVector(random, 400.0));
+  return MakeScenePush(0, start_frame, kind, force);
+}
+
+TEST(PushTail, FollowsItsFormula) {
+  Random random(1);
+  const ScenePush push = RandomPush(&random, 6, PushKind::kNet);
+  ParameterSet<double> p = RandomParameters(&random);
+  p[kTailTime] = 0.2;
+  ASSERT_EQ(push.EndFrame(), 9);
+  EXPECT_EQ(TailForce(push, p, 8, kDt), Vector4<double>(Vector4<double>::Zero()));
+  Vector4<double> mean = Vector4<double>::Zero();
+  for (const Vector4<double>& row : push.force) mean += row / 6.0;
+  const Vector4<double> gain(p[kTailGain], p[kTailGain], p[kTailTorque], p[kTailTorque]);
+  // A push of six frames lasts the reference duration, whatever the exponent.
+  EXPECT_NEAR(TailDecayTime(p, 6 * kDt), 0.2, 1e-15);
+  EXPECT_NEAR(TailDecayTime(p, 12 * kDt), 0.2 * std::pow(2.0, p[kTailExponent]), 1e-14);
+  for (int k : {0, 1, 12}) {
+    const Vector4<double> expected = gain.cwiseProduct(mean) * std::exp(-k * kDt / 0.2);
+    ExpectClose(TailForce(push, p, 9 + k, kDt), expected, 1e-13, 1.0);
+  }
+}
+
+TEST(PushTail, ExternalAndEmptyPushesHaveNone) {
+  Random random(2);
+  const ParameterSet<double> p = RandomParameters(&random);
+  for (const ScenePush& push :
+       {RandomPush(&random, 6, PushKind::kExternal), RandomPush(&random, 0, PushKind::kNet)}) {
+    TailJacobian jacobian = TailJacobian::Zero();
+    AddTailJacobian(push, p, 20, kDt, &jacobian);
+    EXPECT_EQ(jacobian, TailJacobian(TailJacobian::Zero()));
+    EXPECT_EQ(TailForce(push, p, 20, kDt), Vector4<double>(Vector4<double>::Zero()));
+  }
+}
+
+TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
+  Random random(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const int rows = 1 + trial % 13;
+    const PushKind kind = trial % 2 ? PushKind::kNet : PushKind::kNetWithoutFriction;
+    const ScenePush push = RandomPush(&random, rows, kind);
+    ParameterSet<double> p = RandomParameters(&random);
+    p[kTailTime] = random.Uniform(0.05, 0.5);
+    ParameterSet<Jet> jets;
+    for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i], i);
+    for (int frame : {0, push.EndFrame() - 1, push.EndFrame(), push.EndFrame() + 17}) {
+      const Vector4<Jet> force = TailForce(push, jets, frame, kDt);
+      TailJacobian expected;
+      for (int i = 0; i < 4; ++i) expected.row(i) = force[i].v.transpose();
+      // The Jacobian is added to what is there.
+      TailJacobian jacobian = TailJacobian::Constant(7.0);
+      AddTailJacobian(push, p, frame, kDt, &jacobian);
+      ExpectClose((jacobian - TailJacobian::Constant(7.0)).eval(), expected, 1e-12, 7.0);
+    }
+  }
+}
+
+// Virtual work: Q . dq = f . d(point of contact), with the point at the fraction `height` of the
+// rod.
+TEST(GeneralizedForce, DoesTheWorkOfTheForceAtItsPoint) {
+  Random random(4);
+  for (int trial = 0; trial < 50; ++trial) {
+    const Body body = RandomBody(&random);
+    const Vector4<double> q = RandomState(&random).q;
+    const Vector3<double> force = RandomVector(&random, 300.0).head<3>();
+    const double height = random.Uniform(0.0, 1.3);
+    const Body lever{body.mass, height * body.rod_length, body.cart_height};
+    const Vector4<double> generalized = GeneralizedForce(body, q, force, height);
+    constexpr double kStep = 1e-6;
+    for (int i = 0; i < 4; ++i) {
+      const Vector4<double> step = kStep * Vector4<double>::Unit(i);
+      const Vector3<double> moved = HipPosition<double>(lever, q + step);
+      const double work = force.dot(moved - HipPosition<double>(lever, q - step)) / (2 * kStep);
+      EXPECT_NEAR(generalized[i], work, 1e-6) << "coordinate " << i;
+    }
+  }
+}
+
+TEST(HalfSinePush, HasExactlyTheNamedImpulse) {
+  const Body body{80.0, 0.95, 0.0};
+  for (int frames : {1, 2, 12, 37}) {
+    for (double dt : {1.0 / 60.0, 1.0 / 100.0}) {
+      const std::vector<Vector4<double>> push = HalfSinePush(body, 25.0, frames, dt);
+      ASSERT_EQ(push.size(), static_cast<size_t>(frames));
+      Vector4<double> impulse = Vector4<double>::Zero();
+      for (size_t k = 0; k < push.size(); ++k) {
+        impulse += dt * push[k];
+        EXPECT_GT(push[k][0], 0.0);
+        EXPECT_NEAR(push[k][0], push[push.size() - 1 - k][0], 1e-9);  // symmetric in time
+      }
+      ExpectClose(impulse, Vector4<double>(25.0, 0.0, 25.0 * 0.95, 0.0), 1e-13);
+    }
+  }
+}
+
+TEST(Scene, ScaledPushesScaleTheTailToo) {
+  Random random(5);
+  Scene scene = DemonstrationScene(80.0, 25.0);
+  scene.pushes.push_back(RandomPush(&random, 5, PushKind::kNet));
+  const Scene scaled = ScalePushes(scene, 1.4);
+  const ParameterSet<double> p = RandomParameters(&random);
+  EXPECT_EQ(scene.LastPushEnd(), 12);
+  for (int i : {0, 1}) {
+    ExpectClose(scaled.pushes[i].force[2], (1.4 * scene.pushes[i].force[2]).eval(), 1e-14);
+    ExpectClose(TailForce(scaled.pushes[i], p, 30, kDt),
+                (1.4 * TailForce(scene.pushes[i], p, 30, kDt)).eval(), 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace pushid
