@@ -1,0 +1,211 @@
+// ident: building the problem.
+#include "ident/fit_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "residuals/equation_error_residual.h"
+#include "residuals/prior_residual.h"
+#include "residuals/rest_residual.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kDemonstrationMass = 80.0;                     // kg
+constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s
+constexpr int kFramesPastTheEnd = 40;
+constexpr double kStrongerPush = 1.4;
+
+}  // namespace
+
+std::vector<double> FitPoint::Flat() const {
+  std::vector<double> flat = shared;
+  for (const auto& [name, values] : subject) flat.insert(flat.end(), values.begin(), values.end());
+  for (const auto& [index, values] : velocity)
+    flat.insert(flat.end(), values.begin(), values.end());
+  return flat;
+}
+
+void FitPoint::SetFlat(const std::vector<double>& flat) {
+  auto next = flat.begin();
+  auto take = [&next](std::vector<double>* values) {
+    std::copy_n(next, values->size(), values->begin());
+    next += static_cast<std::ptrdiff_t>(values->size());
+  };
+  take(&shared);
+  for (auto& [name, values] : subject) take(&values);
+  for (auto& [index, values] : velocity) take(&values);
+}
+
+FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options)
+    : recordings_(recordings), options_(options), map_(options.table.Map()) {}
+
+FitPoint FitProblem::NominalPoint() const {
+  FitPoint point;
+  for (const FittedParameter& f : map_.fitted) {
+    point.shared.push_back(ToFitted(f.transform, options_.table[f.parameter].nominal));
+  }
+  for (size_t i = 0; i < recordings_.size(); ++i) {
+    const PendulumRecording& recording = recordings_[i];
+    if (map_.num_deviations > 0) {
+      for (const std::string& id : recording.subject_ids) {
+        point.subject[id].assign(map_.num_deviations, 0.0);
+      }
+    }
+    if (recording.initial_velocity != InitialVelocity::kFree) continue;
+    std::vector<double>& velocity = point.velocity[static_cast<int>(i)];
+    for (const ScenePerson& person : recording.scene.people) {
+      velocity.insert(velocity.end(), person.start.qd.data(), person.start.qd.data() + 4);
+    }
+  }
+  return point;
+}
+
+ParameterSet<double> FitProblem::Parameters(const FitPoint& point,
+                                            const std::string& subject) const {
+  const auto found = point.subject.find(subject);
+  return map_.Apply<double>(point.shared.data(),
+                            found == point.subject.end() ? nullptr : found->second.data());
+}
+
+std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
+  std::vector<FailedRollout> failures;
+  FitPoint copy = point;
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    const auto problem =
+        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
+    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
+    const SensitivityInputs inputs =
+        RolloutInputs(recordings_[i].scene, map_, problem->layout, blocks.data());
+    RolloutPath<double> path;
+    const RolloutStatus status = Rollout(recordings_[i].scene, options_.model, inputs.parameters,
+                                         inputs.initial_velocity, problem->horizon, &path);
+    if (!status.ok) failures.push_back({i, status});
+  }
+  return failures;
+}
+
+std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
+  std::vector<double*> blocks = {point->shared.data()};
+  const BlockLayout layout(map_, recordings_[recording].subject_ids, false);
+  if (map_.num_deviations > 0) {
+    for (const std::string& id : layout.subjects) blocks.push_back(point->subject[id].data());
+  }
+  const auto velocity = point->velocity.find(recording);
+  if (velocity != point->velocity.end()) blocks.push_back(velocity->second.data());
+  return blocks;
+}
+
+double FitProblem::Weight(int recording, int horizon) const {
+  if (options_.recording_weight == RecordingWeight::kFrame) return 1.0;
+  // The mean over recordings of the number of frames keeps the cost's size that of plain frames.
+  double total = 0.0;
+  auto frames = [horizon](const PendulumRecording& r) {
+    return std::max(1, (horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames()) - 1);
+  };
+  for (const PendulumRecording& r : recordings_) total += frames(r);
+  return std::sqrt(total /
+                   (static_cast<double>(recordings_.size()) * frames(recordings_[recording])));
+}
+
+void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
+  built->problem = std::make_unique<ceres::Problem>();
+  auto add = [built](std::vector<double>* values) {
+    built->problem->AddParameterBlock(values->data(), static_cast<int>(values->size()));
+    built->parameter_blocks.push_back(values->data());
+  };
+  add(&point->shared);
+  for (auto& [name, values] : point->subject) add(&values);
+  for (auto& [index, values] : point->velocity) add(&values);
+  for (size_t i = 0; i < map_.fitted.size(); ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    const int index = static_cast<int>(i);
+    built->problem->SetParameterLowerBound(point->shared.data(), index,
+                                           ToFitted(spec.transform, spec.lower));
+    built->problem->SetParameterUpperBound(point->shared.data(), index,
+                                           ToFitted(spec.transform, spec.upper));
+  }
+}
+
+void FitProblem::AddPriors(FitPoint* point, Built* built) const {
+  const int size = static_cast<int>(point->shared.size());
+  for (int i = 0; i < size; ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    if (!spec.prior) continue;
+    const double sigma = spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean);
+    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.prior->mean), sigma);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), -1});
+  }
+  for (auto& [name, values] : point->subject) {
+    for (const FittedParameter& f : map_.fitted) {
+      if (f.deviation < 0) continue;
+      // On an identity scale the deviation is in units of the parameter's typical size.
+      const double unit =
+          f.transform == Transform::kIdentity ? options_.table[f.parameter].scale : 1.0;
+      auto* prior =
+          new PriorResidual(map_.num_deviations, f.deviation, 0.0, options_.pooling_sigma * unit);
+      built->blocks.push_back(
+          {built->problem->AddResidualBlock(prior, nullptr, values.data()), -1});
+    }
+  }
+}
+
+void FitProblem::AddRest(FitPoint* point, Built* built) const {
+  auto add = [built](RestProblem rest, const std::vector<double*>& blocks) {
+    auto* residual = new RestResidual(std::move(rest));
+    built->blocks.push_back({built->problem->AddResidualBlock(residual, nullptr, blocks), -1});
+  };
+  if (options_.settling_weight > 0.0) {
+    for (double impulse : kDemonstrationImpulses) {
+      add(SettlingProblem(kDemonstrationMass, impulse, options_.model, map_, options_.sigmas,
+                          options_.settling_weight),
+          {point->shared.data()});
+    }
+  }
+  if (options_.stability_weight > 0.0) {
+    for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+      for (double factor : {1.0, kStrongerPush}) {
+        add(StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
+                             options_.sigmas, options_.stability_weight),
+            RecordingBlocks(point, i));
+      }
+    }
+  }
+}
+
+FitProblem::Built FitProblem::Build(FitPoint* point, int horizon) const {
+  Built built;
+  AddParameterBlocks(point, &built);
+  built.shortened = Failures(*point, horizon);
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    int frames = horizon;
+    for (const FailedRollout& failed : built.shortened) {
+      if (failed.recording == i) frames = failed.status.frame;
+    }
+    if (frames == 1) continue;  // fails in its very first step: nothing left to compare
+    auto* residual = new RolloutResidual(MakeRolloutProblem(
+        recordings_[i], options_.model, map_, options_.sigmas, Weight(i, horizon), frames));
+    built.blocks.push_back(
+        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+  }
+  AddPriors(point, &built);
+  // The demonstrations are long rollouts: they join once the horizon is as long.
+  if (horizon == 0) AddRest(point, &built);
+  return built;
+}
+
+FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
+  Built built;
+  AddParameterBlocks(point, &built);
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    auto* residual = new EquationErrorResidual(recordings_[i], options_.model, map_);
+    built.blocks.push_back(
+        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+  }
+  AddPriors(point, &built);
+  return built;
+}
+
+}  // namespace pushid

@@ -1,0 +1,81 @@
+// ident: the nonlinear least-squares problem of a fit: its parameter blocks and its residual
+// blocks.
+#pragma once
+
+#include <ceres/problem.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/pendulum_recording.h"
+#include "ident/fit_options.h"
+#include "residuals/rollout_residual.h"
+
+namespace pushid {
+
+// A point in the space of the fit.
+struct FitPoint {
+  std::vector<double> shared;  // fitted scale
+  std::map<std::string, std::vector<double>>
+      subject;                                  // deviations, fitted scale; empty if not pooled
+  std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
+
+  // All entries in one row: shared, subjects in order of name, velocities in order of recording.
+  std::vector<double> Flat() const;
+  void SetFlat(const std::vector<double>& flat);
+};
+
+// A rollout that left the model's domain, by recording.
+struct FailedRollout {
+  int recording;
+  RolloutStatus status;
+};
+
+class FitProblem {
+ public:
+  // recordings and options must outlive the problem.
+  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options);
+
+  const ParameterMap& map() const { return map_; }
+  const std::vector<PendulumRecording>& recordings() const { return recordings_; }
+  const FitOptions& options() const { return options_; }
+
+  // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them.
+  FitPoint NominalPoint() const;
+
+  // The parameters of a subject (any name, even one that was not fitted) at a point.
+  ParameterSet<double> Parameters(const FitPoint& point, const std::string& subject) const;
+
+  // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
+  std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
+
+  // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
+  // to the frames before their failure; `shortened` names them.
+  struct Built {
+    std::unique_ptr<ceres::Problem> problem;
+    // One cluster per recording: the blocks whose scores belong together; cluster -1 of priors,
+    // settling and stability blocks, which are not data.
+    std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
+    std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
+    std::vector<FailedRollout> shortened;
+  };
+  Built Build(FitPoint* point, int horizon) const;
+
+  // The same blocks with equation-error residuals instead of rollouts.
+  Built BuildEquationError(FitPoint* point) const;
+
+ private:
+  std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
+  double Weight(int recording, int horizon) const;
+  void AddParameterBlocks(FitPoint* point, Built* built) const;
+  void AddPriors(FitPoint* point, Built* built) const;
+  void AddRest(FitPoint* point, Built* built) const;
+
+  const std::vector<PendulumRecording>& recordings_;
+  const FitOptions& options_;
+  ParameterMap map_;
+};
+
+}  // namespace pushid

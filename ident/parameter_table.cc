@@ -1,0 +1,144 @@
+// ident: the parameters' facts and the two presets.
+#include "ident/parameter_table.h"
+
+#include "models/ipm.h"
+
+namespace pushid {
+namespace {
+
+ParameterSpec Spec(Parameter id, const char* unit, double nominal, double lower, double upper,
+                   double scale, Transform transform, const char* meaning) {
+  ParameterSpec spec;
+  spec.id = id;
+  spec.name = kParameterNames[id];
+  spec.unit = unit;
+  spec.nominal = nominal;
+  spec.lower = lower;
+  spec.upper = upper;
+  spec.scale = scale;
+  spec.transform = transform;
+  spec.meaning = meaning;
+  return spec;
+}
+
+// Everything fixed at a value that makes its term vanish, or at LDP's value.
+ParameterTable BaseTable() {
+  const Transform plain = Transform::kIdentity, log = Transform::kLog;
+  ParameterTable table;
+  auto add = [&table](ParameterSpec spec) { table.specs.push_back(std::move(spec)); };
+  // Friction and cart gains may turn negative: the data must be able to say so.
+  add(Spec(kMu, "N s/m", 100, -2000, 2000, 100, plain, "ground friction"));
+  add(Spec(kMuY, "N s/m", 100, -2000, 2000, 100, plain, "ground friction along y"));
+  add(Spec(kKpX, "N s/m", 0, -2000, 2000, 100, plain, "balance gain on the cart's velocity, x"));
+  add(Spec(kKpY, "N s/m", 0, -2000, 2000, 100, plain, "balance gain on the cart's velocity, y"));
+  add(Spec(kKpTheta, "N m/rad", 1500, 1, 1e5, 1500, log, "balance stiffness about y"));
+  add(Spec(kKpPhi, "N m/rad", 1500, 1, 1e5, 1500, log, "balance stiffness about x"));
+  add(Spec(kKdX, "kg", 0, -500, 500, 10, plain, "balance gain on the cart's acceleration, x"));
+  add(Spec(kKdY, "kg", 0, -500, 500, 10, plain, "balance gain on the cart's acceleration, y"));
+  add(Spec(kKdTheta, "N m s/rad", 70, 1e-3, 1e4, 70, log, "balance damping about y"));
+  add(Spec(kKdPhi, "N m s/rad", 70, 1e-3, 1e4, 70, log, "balance damping about x"));
+  add(Spec(kAx, "m/s^2/rad", 0, -200, 200, 10, plain, "cart force from the lean, x"));
+  add(Spec(kAy, "m/s^2/rad", 0, -200, 200, 10, plain, "cart force from the lean, y"));
+  add(Spec(kBx, "m/s/rad", 0, -50, 50, 2, plain, "cart force from the lean's rate, x"));
+  add(Spec(kBy, "m/s/rad", 0, -50, 50, 2, plain, "cart force from the lean's rate, y"));
+  add(Spec(kTx, "m/s", 0, -50, 50, 2, plain, "torque from the cart's velocity, x"));
+  add(Spec(kTy, "m/s", 0, -50, 50, 2, plain, "torque from the cart's velocity, y"));
+  add(Spec(kCq, "1/m", 0, -20, 20, 0.5, plain, "quadratic damping of the cart"));
+  add(Spec(kDq, "1/rad", 0, -50, 50, 1, plain, "quadratic damping of the angles"));
+  add(Spec(kTailGain, "1", 1, 1e-3, 50, 1, log, "tail force over the push's mean force"));
+  add(Spec(kTailTorque, "1", 0.3, -50, 50, 0.3, plain, "tail torque over the push's mean torque"));
+  add(Spec(kTailTime, "s", 0.2, 0.005, 5, 0.2, log, "tail's decay time after a push of 0.1 s"));
+  add(Spec(kTailExponent, "1", 1, -5, 5, 1, plain, "growth of that time with the push's duration"));
+  return table;
+}
+
+// The reference person's m g l and m l^2: stiffness and damping per unit of K and D in DESIGN.
+constexpr double kPointMass = (1.0 - kCartShare) * kReferenceMass;
+constexpr double kStiffnessUnit = kPointMass * kGravity * kReferenceRod;     // N m/rad
+constexpr double kDampingUnit = kPointMass * kReferenceRod * kReferenceRod;  // N m s/rad
+
+Preset TailPreset() {
+  Preset preset;
+  preset.name = "tail";
+  preset.table = BaseTable();
+  ParameterTable& table = preset.table;
+  table[kMu].nominal = 1.2 * kReferenceMass;
+  table[kMuY].nominal = 1.2 * kReferenceMass;
+  table[kKpTheta].nominal = 2.1 * kStiffnessUnit;
+  table[kKpPhi].nominal = 2.1 * kStiffnessUnit;
+  table[kKdTheta].nominal = kDampingUnit;
+  table[kKdPhi].nominal = kDampingUnit;
+  for (Parameter id : {kMu, kKpTheta, kAx, kTailGain, kTailTorque, kTailTime, kTailExponent}) {
+    table[id].free = true;
+  }
+  preset.model.friction = FrictionKind::kAnisotropic;
+  preset.settling_weight = 10.0;
+  return preset;
+}
+
+Preset LdpPreset() {
+  Preset preset;
+  preset.name = "ldp";
+  preset.table = BaseTable();
+  ParameterTable& table = preset.table;
+  table[kKpX].nominal = table[kKpY].nominal = 30;
+  // Kd 200 per frame at 60 Hz.
+  table[kKdTheta].nominal = table[kKdPhi].nominal = 200.0 / 60.0;
+  for (Parameter id : {kMu, kMuY, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) table[id].free = true;
+  preset.model.posture = Posture::kUpright;
+  preset.model.gain_scaling = GainScaling::kMass;
+  preset.model.friction = FrictionKind::kAnisotropic;
+  preset.model.push = PushUse::kAsRecorded;
+  preset.model.push_tail = PushTail::kNone;
+  return preset;
+}
+
+}  // namespace
+
+const ParameterSpec* ParameterTable::Find(const std::string& name) const {
+  for (const ParameterSpec& spec : specs) {
+    if (spec.name == name) return &spec;
+  }
+  return nullptr;
+}
+
+ParameterSpec* ParameterTable::Find(const std::string& name) {
+  return const_cast<ParameterSpec*>(static_cast<const ParameterTable*>(this)->Find(name));
+}
+
+std::vector<Parameter> ParameterTable::Free() const {
+  std::vector<Parameter> free;
+  for (const ParameterSpec& spec : specs) {
+    if (spec.free) free.push_back(spec.id);
+  }
+  return free;
+}
+
+ParameterSet<double> ParameterTable::Values() const {
+  ParameterSet<double> values{};
+  for (const ParameterSpec& spec : specs) values[spec.id] = spec.nominal;
+  return values;
+}
+
+ParameterMap ParameterTable::Map() const {
+  ParameterMap map;
+  map.values = Values();
+  for (Parameter id : Free()) {
+    const int deviation = specs[id].pooled ? map.num_deviations++ : -1;
+    map.fitted.push_back({id, specs[id].transform, deviation});
+  }
+  return map;
+}
+
+Result<Preset> MakePreset(const std::string& name) {
+  if (name == "tail") return TailPreset();
+  if (name == "ldp") return LdpPreset();
+  return Error{"--preset is '" + name + "'; it must be tail or ldp"};
+}
+
+void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
+  if (kind != SelfForceKind::kLinear) return;
+  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) (*table)[id].free = true;
+}
+
+}  // namespace pushid

@@ -1,0 +1,84 @@
+// ident: the one table of parameters: name, unit, nominal value, bounds, scale, free or fixed,
+// prior. Flags edit it; the solver, the report and the result JSON read it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/result.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "residuals/parameter_map.h"
+
+namespace pushid {
+
+struct Prior {
+  double mean;   // in the parameter's unit
+  double sigma;  // in the parameter's unit; on a log scale it becomes sigma / mean
+};
+
+struct ParameterSpec {
+  Parameter id{};
+  std::string name;
+  std::string unit;
+  double nominal = 0.0;  // start of a fit, value when fixed
+  double lower = 0.0, upper = 0.0;
+  double scale = 1.0;  // a typical size, for scaling null directions and judging "weak"
+  Transform transform = Transform::kIdentity;
+  bool free = false;
+  bool pooled = false;  // may deviate by subject
+  std::optional<Prior> prior;
+  std::string meaning;  // one line for people
+};
+
+// Which self-force terms are fitted beyond balance, friction and the preset's own.
+enum class SelfForceKind {
+  kNone,
+  kLinear  // cross terms and quadratic damping
+};
+
+struct ParameterTable {
+  std::vector<ParameterSpec> specs;  // indexed by Parameter
+
+  ParameterSpec& operator[](Parameter id) { return specs[id]; }
+  const ParameterSpec& operator[](Parameter id) const { return specs[id]; }
+  // nullptr when there is none of that name.
+  ParameterSpec* Find(const std::string& name);
+  const ParameterSpec* Find(const std::string& name) const;
+  std::vector<Parameter> Free() const;
+  ParameterSet<double> Values() const;  // nominal values
+  ParameterMap Map() const;             // fitted = free, in table order
+};
+
+// Settings of the two single-person models (DESIGN section 3).
+//   tail: push tail, posture-relative recovery, one cross term; seven free parameters
+//   ldp:  plain PD balance and friction from upright; six free parameters
+struct Preset {
+  std::string name;
+  ModelOptions model;
+  ParameterTable table;
+  double settling_weight = 0.0;
+};
+Result<Preset> MakePreset(const std::string& name);
+
+// Frees the terms of a self force, where the model's options let them act.
+void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
+
+// The flags --fix, --free, --prior, --set and --pool: comma-separated
+//   fix:   name or name=value      free: name or name=start value
+//   prior: name:mean:sigma         set:  name=value (also of a fixed one)
+//   pool:  names
+struct TableEdits {
+  std::string fix, free, prior, set, pool;
+};
+MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
+
+// name=value pairs, for --set in what-ifs.
+struct NamedValue {
+  std::string name;
+  double value;
+};
+Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag);
+
+}  // namespace pushid
