@@ -11,7 +11,7 @@ namespace pushid {
 
 struct Error {
   std::string message;  // what is wrong and what to do about it
-  std::string file;     // empty when no file is to blame
+  std::string file{};   // empty when no file is to blame
   int line = 0;         // 1-based; 0 when the whole file is meant
   int column = 0;       // 1-based; 0 when the whole line is meant
 
