@@ -1,0 +1,118 @@
+// datasets: the manifest written, with everything that was in it before.
+#include <filesystem>
+
+#include "datasets/json_file.h"
+#include "datasets/manifest.h"
+#include "datasets/recording_names.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Sets an optional key: written when it says something or was there already and still may; removed
+// when it was emptied.
+template <typename T>
+void SetUnless(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default) {
+    (*object)[key] = value;
+  } else {
+    object->erase(key);
+  }
+}
+
+// The same for keys whose default value may as well be spelled out.
+template <typename T>
+void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default || object->contains(key)) (*object)[key] = value;
+}
+
+Json JointJson(const JointReference& joint) {
+  return joint.name.empty() ? Json(joint.index) : Json(joint.name);
+}
+
+// What was under `key` when it is a list of `size` objects, so that their other keys stay;
+// otherwise a list of that many empty ones.
+Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
+  Json list = object.contains(key) ? object.at(key) : Json();
+  bool usable = list.is_array() && list.size() == size;
+  if (usable) {
+    for (const Json& item : list) usable = usable && item.is_object();
+  }
+  return usable ? list : Json(size, Json::object());
+}
+
+Json JointsJson(const JointMapping& joints, const Json& object) {
+  Json json = object.contains("joints") ? object.at("joints") : Json::object();
+  const auto set = [&json](const char* key, const std::optional<JointReference>& joint) {
+    SetUnless(!joint.has_value(), key, joint ? JointJson(*joint) : Json(), &json);
+  };
+  set("hip", joints.hip);
+  set("left_ankle", joints.left_ankle);
+  set("right_ankle", joints.right_ankle);
+  return json;
+}
+
+Json RecordingJson(const ManifestRecording& recording) {
+  Json json = recording.json.is_object() ? recording.json : Json::object();
+  json["id"] = recording.id;
+  json["setting"] = recording.setting;
+  json["fps"] = recording.fps == static_cast<int>(recording.fps)
+                    ? Json(static_cast<int>(recording.fps))
+                    : Json(recording.fps);
+  Json subjects = ObjectsUnder(json, "subjects", recording.subjects.size());
+  for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
+    subjects[i]["id"] = recording.subjects[i].id;
+    subjects[i]["mass_kg"] = recording.subjects[i].mass_kg;
+  }
+  json["subjects"] = subjects;
+  json["pushed_person"] = recording.pushed_person;
+  json["bvh"] = recording.bvh;
+  SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
+  json["push_kind"] = Name(recording.push_kind);
+  json["magnitude"] = recording.magnitude;
+  SetOrKeep(recording.condition_code.empty(), "condition_code", recording.condition_code, &json);
+  const Json joints = JointsJson(recording.joints, json);
+  SetUnless(joints.empty(), "joints", joints, &json);
+  SetOrKeep(recording.up == "z", "up", recording.up, &json);
+  SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
+  SetUnless(!recording.length_unit, "length_unit",
+            recording.length_unit ? Name(*recording.length_unit) : "", &json);
+  Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
+  for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
+    pushes[i]["person"] = recording.pushes[i].person;
+    pushes[i]["csv"] = recording.pushes[i].csv;
+    pushes[i]["start_frame"] = recording.pushes[i].start_frame;
+  }
+  SetOrKeep(recording.pushes.empty(), "pushes", pushes, &json);
+  SetOrKeep(recording.initial_velocity == InitialVelocity::kZero, "initial_velocity",
+            Name(recording.initial_velocity), &json);
+  SetUnless(!recording.frames, "frames", recording.frames.value_or(0), &json);
+  return json;
+}
+
+}  // namespace
+
+MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
+  Json json = manifest.json.is_object() ? manifest.json : Json::object();
+  if (manifest.length_unit) {
+    const std::string name = Name(*manifest.length_unit);
+    const bool in_units =
+        json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
+    if (in_units) json["units"]["bvh_length"] = name;
+    if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
+  }
+  Json recordings = Json::array();
+  for (const ManifestRecording& recording : manifest.recordings) {
+    recordings.push_back(RecordingJson(recording));
+  }
+  json["recordings"] = recordings;
+  return WriteJson(path, json, 1);
+}
+
+std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
+  // operator/ takes an absolute right-hand side as it is.
+  return (std::filesystem::path(manifest_path).parent_path() / file).string();
+}
+
+}  // namespace pushid

@@ -1,0 +1,109 @@
+// ident: null directions in words.
+#include "ident/null_directions.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+
+namespace pushid {
+namespace {
+
+constexpr double kTouched = 1e-4;
+
+std::string JoinNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string Format(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// Sums and differences of two touched shared parameters of one unit that the null space leaves
+// alone; at most as many as are independent.
+std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoint& point,
+                                         const std::vector<int>& touched,
+                                         const Eigen::MatrixXd& null_space,
+                                         const Uncertainty& uncertainty) {
+  const auto& fitted = problem.map().fitted;
+  const ParameterTable& table = problem.options().table;
+  const size_t wanted = touched.size() > static_cast<size_t>(null_space.cols())
+                            ? touched.size() - null_space.cols()
+                            : 0;
+  std::vector<Combination> found;
+  for (size_t a = 0; a < touched.size(); ++a) {
+    for (size_t b = a + 1; b < touched.size() && found.size() < wanted; ++b) {
+      const ParameterSpec& first = table[fitted[touched[a]].parameter];
+      const ParameterSpec& second = table[fitted[touched[b]].parameter];
+      if (first.unit != second.unit) continue;
+      for (double sign : {1.0, -1.0}) {
+        const Eigen::RowVectorXd change = first.scale * null_space.row(touched[a]) +
+                                          sign * second.scale * null_space.row(touched[b]);
+        if (change.norm() > 1e-4 * first.scale) continue;
+        found.push_back(Combine(problem, point, uncertainty, {{first.id, 1.0}, {second.id, sign}},
+                                first.name + (sign > 0 ? " + " : " - ") + second.name, first.unit));
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+NullDirection NoEffect(const FitProblem& problem, int parameter) {
+  NullDirection direction;
+  direction.parameters = {problem.options().table[problem.map().fitted[parameter].parameter].name};
+  direction.coefficients = {1.0};
+  direction.sentence =
+      direction.parameters[0] +
+      " has no effect on these recordings: fix it (--fix=" + direction.parameters[0] + ")";
+  return direction;
+}
+
+}  // namespace
+
+std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,
+                                             const Eigen::MatrixXd& null_space,
+                                             const Uncertainty& uncertainty) {
+  std::vector<NullDirection> directions;
+  if (null_space.cols() == 0) return directions;
+  const auto& fitted = problem.map().fitted;
+
+  // Parameters that are a null direction of their own come first, the rest are told together.
+  std::vector<int> touched;
+  const Eigen::MatrixXd projector = null_space * null_space.transpose();
+  for (int i = 0; i < static_cast<int>(fitted.size()); ++i) {
+    if (null_space.row(i).cwiseAbs().maxCoeff() <= kTouched) continue;
+    if (projector(i, i) > 1.0 - kTouched) {
+      directions.push_back(NoEffect(problem, i));
+    } else {
+      touched.push_back(i);
+    }
+  }
+  if (touched.empty()) return directions;
+
+  NullDirection joint;
+  int largest = touched[0];
+  for (int i : touched) {
+    if (projector(i, i) > projector(largest, largest)) largest = i;
+  }
+  for (int i : touched) {
+    joint.parameters.push_back(problem.options().table[fitted[i].parameter].name);
+    joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
+  }
+  joint.identified = IdentifiedPairs(problem, point, touched, null_space, uncertainty);
+  joint.sentence = JoinNames(joint.parameters) + " cannot be told apart";
+  for (const Combination& c : joint.identified) {
+    joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
+                      " " + c.unit + " is identified";
+  }
+  directions.push_back(joint);
+  return directions;
+}
+
+}  // namespace pushid

@@ -1,0 +1,54 @@
+// ident: evaluating a problem block by block.
+#include "ident/score_blocks.h"
+
+#include <map>
+#include <set>
+
+namespace pushid {
+
+ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  std::map<const double*, int> column_of;
+  int columns = 0, rows = 0;
+  for (double* block : built.parameter_blocks) {
+    column_of[block] = columns;
+    columns += built.problem->ParameterBlockSize(block);
+  }
+  for (const auto& [id, cluster] : built.blocks) {
+    rows += built.problem->GetCostFunctionForResidualBlock(id)->num_residuals();
+  }
+
+  ScoreBlocks score;
+  score.jacobian = Eigen::MatrixXd::Zero(rows, columns);
+  score.residuals.resize(rows);
+  std::set<int> present;
+  int row = 0;
+  for (const auto& [id, cluster] : built.blocks) {
+    const ceres::CostFunction* function = built.problem->GetCostFunctionForResidualBlock(id);
+    std::vector<double*> blocks;
+    built.problem->GetParameterBlocksForResidualBlock(id, &blocks);
+    const int n = function->num_residuals();
+    std::vector<RowMajor> jacobians;
+    std::vector<double*> pointers;
+    for (int size : function->parameter_block_sizes()) jacobians.emplace_back(n, size);
+    for (RowMajor& jacobian : jacobians) pointers.push_back(jacobian.data());
+    // A block that cannot be evaluated here was left out by Build; skip it all the same.
+    const std::vector<const double*> inputs(blocks.begin(), blocks.end());
+    if (!function->Evaluate(inputs.data(), score.residuals.data() + row, pointers.data())) continue;
+    for (size_t b = 0; b < blocks.size(); ++b) {
+      score.jacobian.block(row, column_of.at(blocks[b]), n, jacobians[b].cols()) = jacobians[b];
+    }
+    score.cluster_of_row.insert(score.cluster_of_row.end(), n, cluster);
+    if (cluster >= 0) {
+      present.insert(cluster);
+      score.num_data_rows += n;
+    }
+    row += n;
+  }
+  score.jacobian.conservativeResize(row, columns);
+  score.residuals.conservativeResize(row);
+  score.clusters.assign(present.begin(), present.end());
+  return score;
+}
+
+}  // namespace pushid

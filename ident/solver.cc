@@ -1,0 +1,163 @@
+// ident: running Ceres over the stages of a start.
+#include "ident/solver.h"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+
+namespace pushid {
+namespace {
+
+constexpr double kStartBox = 5.0;
+
+class ProgressCallback : public ceres::IterationCallback {
+ public:
+  ProgressCallback(const SolveProgress& progress, std::string phase)
+      : progress_(progress), phase_(std::move(phase)) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    if (progress_) progress_(phase_, summary.iteration, summary.cost);
+    return ceres::SOLVER_CONTINUE;
+  }
+
+ private:
+  const SolveProgress& progress_;
+  std::string phase_;
+};
+
+ceres::Solver::Options SolverOptions(const FitOptions& options) {
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::DENSE_QR;  // few columns; keeps weak directions accurate
+  solver.dense_linear_algebra_library_type = ceres::EIGEN;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = options.function_tolerance;
+  solver.gradient_tolerance = options.gradient_tolerance;
+  solver.parameter_tolerance = options.parameter_tolerance;
+  solver.num_threads = options.num_threads;
+  solver.logging_type = ceres::SILENT;
+  return solver;
+}
+
+SolveStage RunStage(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
+                    std::string* message) {
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, built->problem.get(), &summary);
+  *message = summary.message;
+  SolveStage stage;
+  stage.horizon = horizon;
+  stage.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  stage.initial_cost = summary.initial_cost;
+  stage.final_cost = summary.final_cost;
+  stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  return stage;
+}
+
+std::string HorizonName(int horizon) {
+  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
+}
+
+}  // namespace
+
+SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
+                     const std::string& label, const SolveProgress& progress) {
+  const FitOptions& options = problem.options();
+  SolveStart start;
+  start.kind = kind;
+  start.from = start.to = from;
+  std::vector<int> horizons = options.horizons;
+  if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
+
+  for (size_t i = 0; i < horizons.size(); ++i) {
+    const bool last = i + 1 == horizons.size();
+    // A recording that could not be rolled out to its end at the stage's start may well be after
+    // it: the last stage is repeated, each time with more of it, until nothing changes.
+    for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
+      FitProblem::Built built = problem.Build(&start.to, horizons[i]);
+      ceres::Solver::Options solver = SolverOptions(options);
+      // Stages on the way need not be exact.
+      if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
+      ProgressCallback callback(progress, label + HorizonName(horizons[i]));
+      if (progress) solver.callbacks.push_back(&callback);
+      const SolveStage stage = RunStage(&built, solver, horizons[i], &start.message);
+      start.stages.push_back(stage);
+      start.iterations += stage.iterations;
+      if (!last) break;
+      start.failed = problem.Failures(start.to, 0);
+      start.cost = stage.final_cost;
+      start.converged = stage.converged;
+      start.usable = stage.converged || stage.final_cost < stage.initial_cost;
+      if (built.shortened.empty() || start.failed.size() >= built.shortened.size()) break;
+    }
+  }
+  return start;
+}
+
+FitPoint EquationErrorStart(const FitProblem& problem) {
+  const FitPoint nominal = problem.NominalPoint();
+  FitPoint point = nominal;
+  FitProblem::Built built = problem.BuildEquationError(&point);
+  std::string message;
+  RunStage(&built, SolverOptions(problem.options()), 0, &message);
+  for (size_t i = 0; i < point.shared.size(); ++i) {
+    const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
+    const double reach = spec.transform == Transform::kIdentity
+                             ? (kStartBox - 1.0) * std::max(spec.scale, std::abs(spec.nominal))
+                             : std::log(kStartBox);
+    point.shared[i] =
+        std::clamp(point.shared[i], nominal.shared[i] - reach, nominal.shared[i] + reach);
+  }
+  return point;
+}
+
+FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {
+  std::mt19937_64 generator(seed);
+  FitPoint point = problem.NominalPoint();
+  for (size_t i = 0; i < point.shared.size(); ++i) {
+    // Own uniform draw: std::uniform_real_distribution differs between standard libraries.
+    const double u = 2.0 * static_cast<double>(generator() >> 11) * 0x1.0p-53 - 1.0;
+    const Transform transform = problem.map().fitted[i].transform;
+    const double natural = ToNatural(transform, point.shared[i]) * std::pow(spread, u);
+    point.shared[i] = ToFitted(transform, natural);
+  }
+  return point;
+}
+
+Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const FitOptions& options = problem.options();
+  Solution solution;
+  const int num_starts = std::max(1, options.num_starts);
+  for (int i = 0; i < num_starts; ++i) {
+    const std::string label =
+        num_starts > 1 ? "start " + std::to_string(i + 1) + "/" + std::to_string(num_starts) + ", "
+                       : "";
+    FitPoint from;
+    std::string kind;
+    if (i > 0) {
+      from = RandomStart(problem, options.start_spread, options.seed * 1000003u + i);
+      kind = "random";
+    } else if (options.start == FitStart::kEquationError) {
+      from = EquationErrorStart(problem);
+      kind = "equation_error";
+    } else {
+      from = problem.NominalPoint();
+      kind = "nominal";
+    }
+    solution.starts.push_back(SolveFrom(problem, from, kind, label, progress));
+    const SolveStart& tried = solution.starts.back();
+    if (!tried.usable) continue;
+    if (solution.best < 0 || tried.failed.size() < solution.Best().failed.size() ||
+        (tried.failed.size() == solution.Best().failed.size() &&
+         tried.cost < solution.Best().cost)) {
+      solution.best = i;
+    }
+  }
+  solution.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solution;
+}
+
+}  // namespace pushid

@@ -1,0 +1,243 @@
+// ident: covariance on the identified subspace, by singular values of the scaled Jacobian.
+#include "ident/uncertainty.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ident/null_directions.h"
+#include "ident/score_blocks.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNullSingularValue = 1e-7;  // relative to the largest one
+constexpr double kTouched = 1e-4;            // share of a null direction that counts
+
+// What is known of each fitted number besides its estimate.
+struct Column {
+  std::string name, unit;
+  Transform transform = Transform::kIdentity;
+  double scale = 1.0;   // typical size, natural unit
+  double fitted = 0.0;  // value on the fitted scale
+  double natural = 0.0;
+  bool at_bound = false;
+};
+
+std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
+  std::vector<Column> columns;
+  const ParameterTable& table = problem.options().table;
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const ParameterSpec& spec = table[fitted[i].parameter];
+    Column c{spec.name, spec.unit, spec.transform, spec.scale, point.shared[i], 0.0, false};
+    c.natural = ToNatural(spec.transform, c.fitted);
+    const double lower = ToFitted(spec.transform, spec.lower);
+    const double upper = ToFitted(spec.transform, spec.upper);
+    const double margin = 1e-6 * (upper - lower);
+    c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
+    columns.push_back(c);
+  }
+  for (const auto& [subject, values] : point.subject) {
+    for (const FittedParameter& f : fitted) {
+      if (f.deviation < 0) continue;
+      const ParameterSpec& spec = table[f.parameter];
+      const bool plain = f.transform == Transform::kIdentity;
+      Column c{spec.name + "[" + subject + "] deviation", plain ? spec.unit : "1"};
+      c.scale = plain ? spec.scale : 1.0;
+      c.fitted = c.natural = values[f.deviation];
+      columns.push_back(c);
+    }
+  }
+  static const char* const kVelocityNames[] = {"xd", "yd", "thetad", "phid"};
+  for (const auto& [recording, values] : point.velocity) {
+    for (size_t k = 0; k < values.size(); ++k) {
+      Column c{"initial " + std::string(kVelocityNames[k % 4]) + "[" +
+                   problem.recordings()[recording].id +
+                   (values.size() > 4 ? ":" + std::to_string(k / 4) : "") + "]",
+               k % 4 < 2 ? "m/s" : "rad/s"};
+      c.scale = 0.1;
+      c.fitted = c.natural = values[k];
+      columns.push_back(c);
+    }
+  }
+  return columns;
+}
+
+// d fitted / d (natural / scale): the change of variables to physical units.
+double PhysicalUnit(const Column& c) { return c.scale / TransformSlope(c.transform, c.natural); }
+
+// Clustered covariance in the coordinates of `basis` (columns: an orthonormal base of the
+// identified subspace of the scaled fitted numbers).
+Eigen::MatrixXd ClusteredCovariance(const ScoreBlocks& score, const Eigen::MatrixXd& jacobian) {
+  const int rank = static_cast<int>(jacobian.cols());
+  const int groups = static_cast<int>(score.clusters.size());
+  const Eigen::MatrixXd hessian = jacobian.transpose() * jacobian;
+  Eigen::MatrixXd moves(rank, groups);
+  for (int g = 0; g < groups; ++g) {
+    std::vector<int> rows;
+    for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+      if (score.cluster_of_row[row] == score.clusters[g]) rows.push_back(row);
+    }
+    const Eigen::MatrixXd own = jacobian(rows, Eigen::all);
+    const Eigen::VectorXd gradient = own.transpose() * score.residuals(rows);
+    const Eigen::MatrixXd rest = hessian - own.transpose() * own;
+    // A recording without which something is undetermined keeps its full leverage.
+    const Eigen::LDLT<Eigen::MatrixXd> without(rest);
+    const bool determined = without.isPositive() && without.rcond() > 1e-12;
+    moves.col(g) = determined ? Eigen::VectorXd(without.solve(gradient))
+                              : Eigen::VectorXd(hessian.ldlt().solve(gradient));
+  }
+  moves.colwise() -= moves.rowwise().mean().eval();
+  return (groups - 1.0) / groups * moves * moves.transpose();
+}
+
+EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
+  if (c.at_bound) return EstimateStatus::kAtBound;
+  if (touched) return EstimateStatus::kUnidentifiable;
+  const double half_width = 0.5 * (e.upper95 - e.lower95);
+  const bool weak = !std::isfinite(half_width) || half_width > std::max(std::abs(e.value), c.scale);
+  return weak ? EstimateStatus::kWeak : EstimateStatus::kIdentified;
+}
+
+Estimate MakeEstimate(const Column& c, double variance, double naive_variance, double quantile,
+                      bool touched) {
+  Estimate e;
+  e.name = c.name;
+  e.unit = c.unit;
+  e.value = c.natural;
+  const double slope = TransformSlope(c.transform, c.natural);
+  double error = touched ? kInfinity : std::sqrt(std::max(0.0, variance));
+  e.standard_error = slope * error;
+  e.standard_error_naive = touched ? kInfinity : slope * std::sqrt(std::max(0.0, naive_variance));
+  if (c.at_bound) e.standard_error = e.standard_error_naive = error = 0.0;
+  e.lower95 = ToNatural(c.transform, c.fitted - quantile * error);
+  e.upper95 = ToNatural(c.transform, c.fitted + quantile * error);
+  e.status = Judge(c, e, touched);
+  return e;
+}
+
+Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  Eigen::MatrixXd correlation = covariance;
+  for (int i = 0; i < covariance.rows(); ++i) {
+    for (int j = 0; j < covariance.cols(); ++j) {
+      const double product = deviation[i] * deviation[j];
+      correlation(i, j) = product > 0.0 ? covariance(i, j) / product : (i == j ? 1.0 : 0.0);
+    }
+  }
+  return correlation;
+}
+
+}  // namespace
+
+std::string StatusName(EstimateStatus status) {
+  switch (status) {
+    case EstimateStatus::kIdentified:
+      return "identified";
+    case EstimateStatus::kWeak:
+      return "weak";
+    case EstimateStatus::kUnidentifiable:
+      return "unidentifiable";
+    case EstimateStatus::kAtBound:
+      return "at bound";
+    case EstimateStatus::kFixed:
+      return "fixed";
+  }
+  return "";
+}
+
+Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  const ScoreBlocks score = EvaluateScoreBlocks(built);
+  const std::vector<Column> columns = Columns(problem, point);
+  const int size = static_cast<int>(columns.size());
+
+  // To physical units; a parameter on its bound does not move.
+  Eigen::VectorXd unit(size);
+  for (int i = 0; i < size; ++i) unit[i] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
+  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
+  const Eigen::MatrixXd triangle =
+      scaled.rows() >= size
+          ? Eigen::MatrixXd(
+                scaled.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>())
+          : scaled;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  const Eigen::VectorXd& singular = svd.singularValues();
+  int rank = 0;
+  while (rank < singular.size() && singular[rank] > kNullSingularValue * singular[0]) ++rank;
+
+  Uncertainty u;
+  u.num_residuals = score.num_data_rows;
+  u.num_clusters = static_cast<int>(score.clusters.size());
+  u.clustered = u.num_clusters > 1;
+  u.condition_number = rank > 0 ? singular[0] / singular[rank - 1] : kInfinity;
+  double sum = 0.0;
+  for (int row = 0; row < score.residuals.size(); ++row) {
+    if (score.cluster_of_row[row] >= 0) sum += score.residuals[row] * score.residuals[row];
+  }
+  const int freedom = std::max(1, score.num_data_rows - rank);
+  u.sigma = std::sqrt(sum / freedom);
+  u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : freedom);
+
+  // In the base of the identified directions, then back to the fitted scale.
+  const Eigen::MatrixXd base = svd.matrixV().leftCols(rank);
+  const Eigen::MatrixXd back = unit.asDiagonal() * base;
+  const Eigen::VectorXd inverse = singular.head(rank).cwiseInverse();
+  const Eigen::MatrixXd naive =
+      back * (u.sigma * u.sigma * inverse.cwiseAbs2()).asDiagonal() * back.transpose();
+  u.covariance =
+      u.clustered
+          ? Eigen::MatrixXd(back * ClusteredCovariance(score, scaled * base) * back.transpose())
+          : naive;
+  u.correlation = Correlation(u.covariance);
+
+  Eigen::MatrixXd null_space(size, 0);
+  for (int k = 0; k < size; ++k) {
+    if (k < rank) continue;
+    const Eigen::VectorXd direction = svd.matrixV().col(k);
+    // Bounds make columns of zeros: those are not news.
+    double off_bound = 0.0;
+    for (int i = 0; i < size; ++i) {
+      if (!columns[i].at_bound) off_bound = std::max(off_bound, std::abs(direction[i]));
+    }
+    if (off_bound < kTouched) continue;
+    null_space.conservativeResize(size, null_space.cols() + 1);
+    null_space.rightCols(1) = direction;
+  }
+  for (int i = 0; i < size; ++i) {
+    const bool touched =
+        null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
+    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), naive(i, i), u.t_quantile,
+                                       touched && !columns[i].at_bound));
+  }
+  u.null_directions = DescribeNullSpace(problem, point, null_space, u);
+  return u;
+}
+
+Combination Combine(const FitProblem& problem, const FitPoint& point,
+                    const Uncertainty& uncertainty, const std::vector<Term>& terms,
+                    const std::string& name, const std::string& unit) {
+  const ParameterSet<double> values = problem.Parameters(point, "");
+  const auto& fitted = problem.map().fitted;
+  Combination result{name, unit};
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
+  for (const Term& term : terms) {
+    result.value += term.coefficient * values[term.parameter];
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].parameter != term.parameter) continue;
+      gradient[static_cast<Eigen::Index>(i)] +=
+          term.coefficient * TransformSlope(fitted[i].transform, values[term.parameter]);
+    }
+  }
+  const double variance = gradient.dot(uncertainty.covariance * gradient);
+  result.standard_error = std::sqrt(std::max(0.0, variance));
+  result.lower95 = result.value - uncertainty.t_quantile * result.standard_error;
+  result.upper95 = result.value + uncertainty.t_quantile * result.standard_error;
+  return result;
+}
+
+}  // namespace pushid
