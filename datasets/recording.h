@@ -36,6 +36,9 @@ struct RecordedPerson {
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
   // All joints, frame-major ([frame][joint]); empty unless asked for.
   std::vector<std::vector<Eigen::Vector3d>> joints;
+  // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.
+  std::vector<std::string> joint_names;
+  std::vector<int> joint_parents;
 };
 
 struct Recording {
