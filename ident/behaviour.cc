@@ -1,0 +1,86 @@
+// ident: the demonstrations and the free modes.
+#include "ident/behaviour.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "models/rollout.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kMasses[] = {60.0, 80.0, 100.0};
+constexpr double kImpulses[] = {4.0, 25.0, 80.0};
+constexpr double kWaitSeconds = 2.0;
+constexpr double kSettledSpeed = 0.1;
+constexpr double kSettledLean = 0.05;
+
+Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double>& parameters,
+                          double mass, double impulse) {
+  Demonstration result;
+  result.mass = mass;
+  result.impulse = impulse;
+  const Scene scene = DemonstrationScene(mass, impulse);
+  const int frames =
+      scene.LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / scene.dt)) + 1;
+  RolloutPath<double> path;
+  const RolloutStatus status =
+      Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
+  const int last = status.ok ? frames - 1 : status.frame - 1;
+  for (int t = 0; t <= last; ++t) {
+    const Vector4<double>& q = path.At(t, 0).q;
+    if (q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) result.fell = true;
+  }
+  const PendulumState<double>& end = path.At(last, 0);
+  result.fell = result.fell || !status.ok;
+  result.speed = end.qd.head<2>().norm();
+  result.lean = end.q.tail<2>().cwiseAbs().maxCoeff();
+  result.distance = end.q.head<2>().norm();
+  result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
+  return result;
+}
+
+// Eigenvalues of one free step about rest, as growth rates.
+double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
+  const Scene scene = DemonstrationScene(80.0, 0.0);
+  const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
+  SelfForce::Jacobian jacobian;
+  self.TotalJacobian(parameters, {}, Vector4<double>::Zero(), &jacobian);
+  Eigen::Matrix<double, 4, 8> force = jacobian.by_state;
+  const double mgl = scene.people[0].body.point_mass() * kGravity * scene.people[0].body.rod_length;
+  force(2, 2) += mgl;  // minus the derivative of gravity at rest
+  force(3, 3) += mgl;
+  const Eigen::Matrix<double, 4, 8> acceleration =
+      InverseMassMatrix<double>(scene.people[0].body, Vector4<double>::Zero()) * force;
+  // Free modes do not depend on where the cart stands: drop x and y.
+  Eigen::Matrix<double, 6, 6> step;  // [theta, phi, qd]
+  Eigen::Matrix<double, 4, 6> a;
+  a << acceleration.middleCols<2>(2), acceleration.rightCols<4>();
+  step.bottomRows<4>() << Eigen::Matrix<double, 4, 2>::Zero(), Eigen::Matrix4d::Identity();
+  step.bottomRows<4>() += scene.dt * a;
+  step.topRows<2>() << Eigen::Matrix2d::Identity(), Eigen::Matrix<double, 2, 4>::Zero();
+  step.topRows<2>() += scene.dt * step.bottomRows<2>();
+  const Eigen::EigenSolver<Eigen::Matrix<double, 6, 6>> solver(step);
+  double largest = 0.0;
+  for (int i = 0; i < 6; ++i) largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
+  return std::log(largest) / scene.dt;
+}
+
+}  // namespace
+
+Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
+  Behaviour behaviour;
+  behaviour.settles = true;
+  for (double mass : kMasses) {
+    for (double impulse : kImpulses) {
+      behaviour.demonstrations.push_back(Demonstrate(options, parameters, mass, impulse));
+      behaviour.settles = behaviour.settles && behaviour.demonstrations.back().settled;
+    }
+  }
+  behaviour.fastest_growth = FastestGrowth(options, parameters);
+  behaviour.self_propelling = !behaviour.settles || parameters[kMu] + parameters[kKpX] < 0.0;
+  return behaviour;
+}
+
+}  // namespace pushid

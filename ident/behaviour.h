@@ -1,0 +1,34 @@
+// ident: what a model does with a person who is pushed and left alone: does she stand again?
+// A fit can score well and never stop walking; this tells.
+#pragma once
+
+#include <vector>
+
+#include "models/options.h"
+#include "models/parameters.h"
+
+namespace pushid {
+
+// The demonstration person two seconds after the last push.
+struct Demonstration {
+  double mass = 0.0;      // kg
+  double impulse = 0.0;   // N s
+  double speed = 0.0;     // m/s, of the cart
+  double lean = 0.0;      // rad, largest deviation from the rest posture
+  double distance = 0.0;  // m, how far the cart went
+  bool fell = false;      // beyond 1.0 rad at any time
+  bool settled = false;   // slower than 0.1 m/s and within 0.05 rad
+};
+
+struct Behaviour {
+  std::vector<Demonstration> demonstrations;  // 60, 80, 100 kg after 4, 25, 80 N s
+  // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
+  // positive: the slightest push grows.
+  double fastest_growth = 0.0;
+  bool settles = false;          // every demonstration settled
+  bool self_propelling = false;  // not settled, or negative damping of the cart
+};
+
+Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);
+
+}  // namespace pushid

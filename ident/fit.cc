@@ -1,0 +1,218 @@
+// ident: a whole fit, from recordings to a judged result.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/fit_result.h"
+#include "ident/score_blocks.h"
+
+namespace pushid {
+namespace {
+
+std::string Describe(const RolloutStatus& status) {
+  return std::string(status.quantity) + " of person " + std::to_string(status.person) +
+         " leaves the model's domain at frame " + std::to_string(status.frame);
+}
+
+// Rows of the table: every free parameter, and every fixed one that acts.
+std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
+                                       const ParameterSet<double>& values,
+                                       const Uncertainty& uncertainty) {
+  std::vector<Estimate> rows;
+  const FitOptions& options = problem.options();
+  for (const ParameterSpec& spec : options.table.specs) {
+    const auto& fitted = problem.map().fitted;
+    const auto at = std::find_if(fitted.begin(), fitted.end(), [&spec](const FittedParameter& f) {
+      return f.parameter == spec.id;
+    });
+    if (at != fitted.end()) {
+      rows.push_back(uncertainty.estimates[static_cast<size_t>(at - fitted.begin())]);
+      continue;
+    }
+    const bool tail = spec.id >= kTailGain && spec.id <= kTailExponent;
+    const bool acts = tail ? options.model.push_tail != PushTail::kNone
+                      : spec.id == kMuY
+                          ? options.model.friction == FrictionKind::kAnisotropic
+                          : values[spec.id] != 0.0 || spec.id == kKpX || spec.id == kKpY;
+    if (!acts) continue;
+    Estimate fixed;
+    fixed.name = spec.name;
+    fixed.unit = spec.unit;
+    fixed.value = fixed.lower95 = fixed.upper95 = values[spec.id];
+    fixed.status = EstimateStatus::kFixed;
+    rows.push_back(fixed);
+  }
+  return rows;
+}
+
+// c = mu + Kp always; per-mass gains of the reference person.
+std::vector<Combination> Derived(const FitProblem& problem, const FitPoint& point,
+                                 const Uncertainty& u) {
+  const ModelOptions& model = problem.options().model;
+  const Parameter mu_y = model.friction == FrictionKind::kIsotropic ? kMu : kMuY;
+  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
+  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
+  auto combine = [&](const std::vector<Term>& terms, const char* name, const char* unit) {
+    return Combine(problem, point, u, terms, name, unit);
+  };
+  return {combine({{kMu, 1.0}, {kKpX, 1.0}}, "c_x", "N s/m"),
+          combine({{mu_y, 1.0}, {kKpY, 1.0}}, "c_y", "N s/m"),
+          combine({{kMu, 1.0 / kReferenceMass}, {kKpX, 1.0 / kReferenceMass}}, "c_x/M", "1/s"),
+          combine({{mu_y, 1.0 / kReferenceMass}, {kKpY, 1.0 / kReferenceMass}}, "c_y/M", "1/s"),
+          combine({{kKpTheta, stiffness}}, "Kp_theta/(m g l)", "1"),
+          combine({{kKpPhi, stiffness}}, "Kp_phi/(m g l)", "1"),
+          combine({{kKdTheta, damping}}, "Kd_theta/(m l^2)", "1/s"),
+          combine({{kKdPhi, damping}}, "Kd_phi/(m l^2)", "1/s")};
+}
+
+std::map<std::string, SubjectParameters> Subjects(const FitProblem& problem, const FitPoint& point,
+                                                  const Uncertainty& u) {
+  std::map<std::string, SubjectParameters> subjects;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
+    }
+  }
+  const auto& fitted = problem.map().fitted;
+  int first = static_cast<int>(point.shared.size());
+  for (const auto& [id, deviations] : point.subject) {
+    const ParameterSet<double> values = problem.Parameters(point, id);
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].deviation < 0) continue;
+      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+      const int a = static_cast<int>(i), b = first + fitted[i].deviation;
+      const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
+      const double error = std::sqrt(std::max(0.0, variance));
+      Estimate e;
+      e.name = spec.name;
+      e.unit = spec.unit;
+      e.value = values[spec.id];
+      const double center = ToFitted(spec.transform, e.value);
+      e.standard_error = error * TransformSlope(spec.transform, e.value);
+      e.lower95 = ToNatural(spec.transform, center - u.t_quantile * error);
+      e.upper95 = ToNatural(spec.transform, center + u.t_quantile * error);
+      subjects[id].pooled[spec.name] = e;
+    }
+    first += static_cast<int>(deviations.size());
+  }
+  return subjects;
+}
+
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best) {
+  std::vector<FittedRecording> fitted;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    FittedRecording one;
+    one.id = recording.id;
+    one.content_hash = recording.content_hash;
+    one.frames = recording.num_frames();
+    fitted.push_back(one);
+  }
+  for (const FailedRollout& failed : best.failed) {
+    fitted[failed.recording].failure = Describe(failed.status);
+  }
+  FitPoint copy = best.to;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  for (const auto& [id, cluster] : built.blocks) {
+    if (cluster < 0) continue;
+    double cost = 0.0;
+    built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
+    fitted[cluster].cost = cost;
+  }
+  return fitted;
+}
+
+std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
+  std::vector<std::string> warnings;
+  for (const FittedRecording& recording : result.recordings) {
+    if (!recording.failure.empty()) {
+      warnings.push_back("recording " + recording.id + ": " + recording.failure +
+                         "; only the frames before it were fitted");
+    }
+  }
+  if (!result.converged) warnings.push_back("the solver stopped before it converged");
+  if (result.behaviour.self_propelling) {
+    warnings.push_back(
+        "self-propelling: the fitted person does not stand again after a push; such a fit may "
+        "score "
+        "well and predicts nothing beyond the data (--settling_weight holds it to settle)");
+  }
+  if (!result.uncertainty.clustered) {
+    warnings.push_back("a single recording: errors cannot be clustered and are too small");
+  }
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " stands at its bound");
+  }
+  bool unused_tail = problem.options().model.push_tail != PushTail::kNone;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      unused_tail = unused_tail && push.kind == PushKind::kExternal;
+    }
+  }
+  if (unused_tail) {
+    warnings.push_back("every push is external (measured whole): the push tail does not act");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+              const SolveProgress& progress) {
+  const FitProblem problem(recordings, options);
+  const Solution solution = Solve(problem, progress);
+  FitResult result;
+  result.options = options;
+  result.starts = solution.starts;
+  result.best_start = solution.best;
+  result.solve_seconds = solution.seconds;
+  if (!result.ok()) {
+    result.message = "no start could be solved: " + solution.starts[0].message;
+    return result;
+  }
+  const SolveStart& best = solution.Best();
+  result.converged = best.converged;
+  result.cost = best.cost;
+  result.message = best.message;
+  result.parameters = problem.Parameters(best.to, "");
+  result.uncertainty = ComputeUncertainty(problem, best.to);
+  result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
+  result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
+                         result.uncertainty.estimates.end());
+  result.derived = Derived(problem, best.to, result.uncertainty);
+  result.subjects = Subjects(problem, best.to, result.uncertainty);
+  result.behaviour = ComputeBehaviour(options.model, result.parameters);
+  result.recordings = FittedRecordings(problem, best);
+  result.warnings = Warnings(problem, result);
+  return result;
+}
+
+IdentifiedModel ModelOf(const FitResult& result) {
+  IdentifiedModel model;
+  model.options = result.options.model;
+  model.mapping = result.options.mapping;
+  model.table = result.options.table;
+  model.parameters = result.parameters;
+  for (const auto& [id, subject] : result.subjects) {
+    if (subject.pooled.empty()) continue;
+    ParameterSet<double>& own = model.by_subject[id] = result.parameters;
+    for (const auto& [name, estimate] : subject.pooled) {
+      own[model.table.Find(name)->id] = estimate.value;
+    }
+  }
+  return model;
+}
+
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
+  const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
+  if (!values.ok()) return values.error();
+  TableEdits edits;
+  edits.set = assignments;
+  if (MaybeError error = EditTable(edits, &model->table)) return error;
+  for (const NamedValue& named : values.value()) {
+    const Parameter id = model->table.Find(named.name)->id;
+    model->parameters[id] = named.value;
+    for (auto& [subject, own] : model->by_subject) own[id] = named.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,82 @@
+// ident: the result of a fit, as data. Everything a report or a prediction needs stands in it, and
+// it serialises to JSON without loss (result_json.h).
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ident/behaviour.h"
+#include "ident/fit_options.h"
+#include "ident/solver.h"
+#include "ident/uncertainty.h"
+
+namespace pushid {
+
+struct SubjectParameters {
+  double mass_kg = 0.0;
+  std::map<std::string, Estimate> pooled;  // value of each pooled parameter for this subject
+};
+
+struct FittedRecording {
+  std::string id;
+  std::string content_hash;
+  int frames = 0;
+  double cost = 0.0;    // robust cost in the objective
+  std::string failure;  // empty, or where its rollout left the domain
+};
+
+struct FitResult {
+  FitOptions options;
+  // As they act: fixed ones too. Indexed by Parameter.
+  ParameterSet<double> parameters{};
+  std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
+  std::vector<Estimate> nuisance;    // subjects' deviations and initial velocities
+  std::vector<Combination> derived;  // c_x, c_y and per-mass gains
+  std::map<std::string, SubjectParameters> subjects;
+  Uncertainty uncertainty;
+  Behaviour behaviour;
+  std::vector<FittedRecording> recordings;
+
+  bool converged = false;
+  double cost = 0.0;
+  std::vector<SolveStart> starts;
+  int best_start = -1;
+  std::string message;
+  std::vector<std::string> warnings;
+
+  // Provenance.
+  std::string version;
+  std::map<std::string, std::string> configuration;  // effective flags
+  std::string manifest, manifest_hash, setting;
+  double solve_seconds = 0.0;
+
+  bool ok() const { return best_start >= 0; }
+};
+
+// The model a prediction needs: options and parameters of each subject.
+struct IdentifiedModel {
+  std::string source;  // file, for messages
+  ModelOptions options;
+  SkeletonMapping mapping = SkeletonMapping::kExact;
+  ParameterTable table;  // names, units and bounds, for --set
+  ParameterSet<double> parameters{};
+  std::map<std::string, ParameterSet<double>> by_subject;  // only where pooled
+
+  // A subject the model does not know gets the shared values.
+  const ParameterSet<double>& For(const std::string& subject) const {
+    const auto found = by_subject.find(subject);
+    return found == by_subject.end() ? parameters : found->second;
+  }
+};
+
+// Fits and judges. recordings must not be empty and the table must have a free parameter.
+FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+              const SolveProgress& progress = nullptr);
+
+IdentifiedModel ModelOf(const FitResult& result);
+
+// A model with some values replaced, for what-ifs (--set).
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
+
+}  // namespace pushid
