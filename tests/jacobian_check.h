@@ -1,0 +1,167 @@
+// tests: one check for the Jacobian of every cost function.
+//
+//   ExpectCorrectJacobian(cost, oracle, blocks, tolerance);   // against another cost function
+//   ExpectCorrectJacobian(cost, blocks, tolerance);           // against Ridders' differentiation
+// An entry is right when |actual - expected| <= relative * (largest |expected| of its column) +
+// absolute. Relative to the column, not to the entry: an entry that vanishes by cancellation
+// carries the rounding of its column. Outputs are filled with NaN first, so that an entry nobody
+// wrote is caught; asking for some blocks' Jacobians only must give the same numbers.
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/dynamic_numeric_diff_cost_function.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace pushid {
+
+using ParameterBlocks = std::vector<std::vector<double>>;
+
+struct JacobianTolerance {
+  double relative = 1e-10;  // to the largest entry of the column
+  double absolute = 1e-13;  // where a whole column vanishes, e.g. at rest
+  double residual = 1e-14;  // between residuals, relative to 1 or to themselves
+};
+
+// What one call of Evaluate wrote; NaN where it wrote nothing.
+struct Evaluation {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  bool ok = false;
+  Eigen::VectorXd residuals;
+  std::vector<RowMajor> jacobians;  // one per block, NaN where not asked for
+};
+
+// wanted: which blocks' Jacobians to ask for; empty means none at all (a null pointer).
+inline Evaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
+                               const std::vector<bool>& wanted) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Evaluation result;
+  result.residuals = Eigen::VectorXd::Constant(cost.num_residuals(), nan);
+  std::vector<const double*> parameters;
+  std::vector<double*> pointers;
+  result.jacobians.reserve(blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    const Eigen::Index columns = cost.parameter_block_sizes()[b];
+    parameters.push_back(blocks[b].data());
+    result.jacobians.push_back(Evaluation::RowMajor::Constant(cost.num_residuals(), columns, nan));
+    pointers.push_back(!wanted.empty() && wanted[b] ? result.jacobians[b].data() : nullptr);
+  }
+  result.ok = cost.Evaluate(parameters.data(), result.residuals.data(),
+                            wanted.empty() ? nullptr : pointers.data());
+  return result;
+}
+
+// Same sizes, and blocks that fit them.
+inline void ExpectSameShape(const ceres::CostFunction& cost, const ceres::CostFunction& oracle,
+                            const ParameterBlocks& blocks) {
+  ASSERT_EQ(cost.num_residuals(), oracle.num_residuals());
+  ASSERT_EQ(cost.parameter_block_sizes(), oracle.parameter_block_sizes());
+  ASSERT_EQ(cost.parameter_block_sizes().size(), blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    ASSERT_EQ(cost.parameter_block_sizes()[b], static_cast<int>(blocks[b].size())) << "block " << b;
+  }
+}
+
+inline void ExpectSameResiduals(const Eigen::VectorXd& actual, const Eigen::VectorXd& expected,
+                                double tolerance) {
+  for (Eigen::Index row = 0; row < expected.size(); ++row) {
+    const double allowed = tolerance * std::max(1.0, std::abs(expected[row]));
+    if (std::abs(actual[row] - expected[row]) <= allowed) continue;
+    ADD_FAILURE() << "residual " << row << " is " << testing::PrintToString(actual[row])
+                  << ", expected " << testing::PrintToString(expected[row]);
+    return;
+  }
+}
+
+// Names the wrong entries, the first few of them one by one.
+inline void ExpectSameJacobians(const Evaluation& actual, const Evaluation& expected,
+                                const JacobianTolerance& tolerance) {
+  constexpr int kMaxNamed = 8;
+  int wrong = 0;
+  for (size_t b = 0; b < expected.jacobians.size(); ++b) {
+    const Evaluation::RowMajor& right = expected.jacobians[b];
+    for (Eigen::Index column = 0; column < right.cols(); ++column) {
+      const double allowed =
+          tolerance.relative * right.col(column).cwiseAbs().maxCoeff() + tolerance.absolute;
+      for (Eigen::Index row = 0; row < right.rows(); ++row) {
+        const double value = actual.jacobians[b](row, column);
+        // Written so that NaN on either side is wrong.
+        if (std::abs(value - right(row, column)) <= allowed) continue;
+        if (++wrong > kMaxNamed) continue;
+        ADD_FAILURE() << "Jacobian of block " << b << ", row " << row << ", column " << column
+                      << " is " << testing::PrintToString(value) << ", expected "
+                      << testing::PrintToString(right(row, column)) << " +- " << allowed;
+      }
+    }
+  }
+  if (wrong > kMaxNamed) ADD_FAILURE() << wrong << " wrong Jacobian entries in all";
+}
+
+// Without Jacobians, with each block's alone and with each block's missing: the same numbers, and
+// nothing written where nothing was asked for.
+inline void ExpectPartialJacobians(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
+                                   const Evaluation& full, double residual_tolerance) {
+  const Evaluation none = EvaluateCost(cost, blocks, {});
+  ASSERT_TRUE(none.ok) << "Evaluate failed without Jacobians";
+  ExpectSameResiduals(none.residuals, full.residuals, residual_tolerance);
+  for (size_t chosen = 0; chosen < blocks.size(); ++chosen) {
+    for (bool alone : {true, false}) {
+      std::vector<bool> wanted(blocks.size(), !alone);
+      wanted[chosen] = alone;
+      const Evaluation partial = EvaluateCost(cost, blocks, wanted);
+      ASSERT_TRUE(partial.ok);
+      EXPECT_EQ(partial.residuals, full.residuals);
+      for (size_t b = 0; b < blocks.size(); ++b) {
+        if (wanted[b]) {
+          EXPECT_EQ(partial.jacobians[b], full.jacobians[b])
+              << "block " << b << " asked for " << (alone ? "alone" : "among others");
+        } else {
+          EXPECT_TRUE(partial.jacobians[b].array().isNaN().all())
+              << "block " << b << " was written without being asked for";
+        }
+      }
+    }
+  }
+}
+
+inline void ExpectCorrectJacobian(const ceres::CostFunction& cost,
+                                  const ceres::CostFunction& oracle, const ParameterBlocks& blocks,
+                                  const JacobianTolerance& tolerance = {}) {
+  ExpectSameShape(cost, oracle, blocks);
+  if (testing::Test::HasFatalFailure()) return;
+  const std::vector<bool> all(blocks.size(), true);
+  const Evaluation actual = EvaluateCost(cost, blocks, all);
+  const Evaluation expected = EvaluateCost(oracle, blocks, all);
+  ASSERT_TRUE(expected.ok) << "the oracle could not be evaluated: a test of nothing";
+  ASSERT_TRUE(actual.ok) << "Evaluate failed where the oracle did not";
+  ExpectSameResiduals(actual.residuals, expected.residuals, tolerance.residual);
+  ExpectSameJacobians(actual, expected, tolerance);
+  ExpectPartialJacobians(cost, blocks, actual, tolerance.residual);
+}
+
+// The residuals of a cost function alone, for numeric differentiation.
+struct ResidualsOf {
+  const ceres::CostFunction* cost;
+  bool operator()(double const* const* blocks, double* residuals) const {
+    return cost->Evaluate(blocks, residuals, nullptr);
+  }
+};
+
+// relative: of Ridders' method, about 1e-8 where residuals are of order 1.
+inline void ExpectCorrectJacobian(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
+                                  const JacobianTolerance& tolerance = {1e-7, 1e-8, 1e-14}) {
+  ceres::NumericDiffOptions options;
+  options.ridders_relative_initial_step_size = 1e-3;
+  ceres::DynamicNumericDiffCostFunction<ResidualsOf, ceres::RIDDERS> oracle(
+      new ResidualsOf{&cost}, ceres::TAKE_OWNERSHIP, options);
+  for (int size : cost.parameter_block_sizes()) oracle.AddParameterBlock(size);
+  oracle.SetNumResiduals(cost.num_residuals());
+  ExpectCorrectJacobian(cost, oracle, blocks, tolerance);
+}
+
+}  // namespace pushid
