@@ -1,0 +1,69 @@
+// ident: how well a configuration predicts recordings it has not seen.
+//
+// Folds: stratified by subject and strength, so that every fold holds out its share of each,
+// repeated with new shuffles; leave-one-subject-out; the strong pushes held out together. The
+// standard error of a mean is over recordings (each one's score averaged over the repeats):
+// recordings are the independent units here, not frames and not folds.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ident/evaluation.h"
+
+namespace pushid {
+
+enum class FoldScheme { kStratified, kSubject, kStrong };
+
+struct Fold {
+  std::string name;  // "repeat 2 fold 3", "without X-05", "strong"
+  std::vector<int> held_out;
+};
+
+// For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
+// Errors: fewer recordings or subjects than the scheme needs, nobody pushed strongly.
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
+
+// Predicted hips of the held-out recordings after fitting on the others.
+class Predictor {
+ public:
+  virtual ~Predictor() = default;
+  // train and test: indices into recordings. One score per test recording.
+  virtual std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                                  const std::vector<int>& train,
+                                                  const std::vector<int>& test) const = 0;
+  std::string name;
+};
+
+struct FoldScore {
+  std::string name;
+  int held_out = 0;
+  double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
+  int failures = 0, falls = 0;
+};
+
+struct CrossValidation {
+  std::string predictor;
+  std::vector<FoldScore> folds;
+  // Each recording's score averaged over the repeats that held it out.
+  ScoreSummary summary;
+  int failures = 0, falls = 0;  // over all folds
+};
+
+using FoldProgress = std::function<void(int done, int total)>;
+CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
+                              const std::vector<Fold>& folds, const Predictor& predictor,
+                              int num_threads, const FoldProgress& progress = nullptr);
+
+// b minus a, recording by recording, with the standard error of its mean.
+struct PairedDifference {
+  std::string a, b;
+  int recordings = 0;
+  double hip_ade = 0.0, hip_ade_error = 0.0;
+  double hip_fde = 0.0, hip_fde_error = 0.0;
+};
+PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
+
+}  // namespace pushid

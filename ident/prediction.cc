@@ -1,0 +1,77 @@
+// ident: rollouts of an identified model.
+#include "ident/prediction.h"
+
+#include <cstdio>
+
+#include "datasets/atomic_file.h"
+
+namespace pushid {
+namespace {
+
+std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
+                                                    const PendulumRecording& recording) {
+  std::vector<ParameterSet<double>> sets;
+  for (const std::string& subject : recording.subject_ids) sets.push_back(model.For(subject));
+  return sets;
+}
+
+}  // namespace
+
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
+                   int num_frames) {
+  Prediction prediction;
+  const int frames = num_frames > 0 ? num_frames : recording.num_frames();
+  prediction.status = Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
+                              InitialVelocities(recording.scene), frames, &prediction.path);
+  if (!prediction.status.ok) return prediction;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    std::vector<Vector3<double>> hip;
+    for (int t = 0; t < frames; ++t) {
+      hip.push_back(HipPosition(recording.scene.people[n].body, prediction.path.At(t, n).q));
+    }
+    prediction.hip.push_back(std::move(hip));
+  }
+  return prediction;
+}
+
+MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& model,
+                              const PendulumRecording& recording, const Prediction& prediction) {
+  const std::vector<ParameterSet<double>> sets = PeoplesParameters(model, recording);
+  const std::vector<SelfForce> self = SelfForces(recording.scene, model.options);
+  std::string text =
+      "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
+      "hip_x_m,hip_y_m,hip_z_m";
+  for (const char* part : {"friction", "balance", "linear", "push", "tail"}) {
+    for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
+      text += std::string(",") + part + "_" + row;
+    }
+  }
+  text += "\n";
+  char number[32];
+  auto add = [&text, &number](double value) {
+    std::snprintf(number, sizeof number, ",%.9g", value);
+    text += number;
+  };
+  for (int t = 0; t < prediction.path.num_frames(); ++t) {
+    for (int n = 0; n < recording.scene.num_people(); ++n) {
+      const PendulumState<double>& state = prediction.path.At(t, n);
+      text += std::to_string(t);
+      add(t * recording.scene.dt);
+      text += "," + std::to_string(n) + "," + recording.subject_ids[n];
+      for (int i = 0; i < 4; ++i) add(state.q[i]);
+      for (int i = 0; i < 4; ++i) add(state.qd[i]);
+      for (int i = 0; i < 3; ++i) add(prediction.hip[n][t][i]);
+      const NetForce<double> force =
+          NetForceAt(recording.scene, model.options, self[n], sets[n], n, t, state,
+                     prediction.path.At(t > 0 ? t - 1 : 0, n).qd);
+      for (const auto* part :
+           {&force.friction, &force.balance, &force.linear, &force.push, &force.tail}) {
+        for (int i = 0; i < 4; ++i) add((*part)[i]);
+      }
+      text += "\n";
+    }
+  }
+  return WriteFileAtomically(path, text);
+}
+
+}  // namespace pushid
