@@ -1,6 +1,7 @@
 // datasets: the part of a BVH file before its rows of numbers.
 #include "datasets/bvh_header.h"
 
+#include <algorithm>
 #include <limits>
 #include <unordered_set>
 
@@ -8,6 +9,8 @@
 
 namespace pushid {
 namespace {
+
+bool IsBrace(char c) { return c == '{' || c == '}'; }
 
 constexpr int kEndSite = -2;  // on the stack of open braces, in place of a joint index
 
@@ -57,14 +60,13 @@ class HierarchyParser {
   // The next token of the file, a brace being one of its own; empty at the end.
   std::string_view Next() {
     while (true) {
-      rest_ = Trimmed(rest_);
+      while (!rest_.empty() && IsBlank(rest_.front())) rest_.remove_prefix(1);
       if (!rest_.empty()) break;
       if (!reader_.Next(&rest_)) return {};
     }
-    std::string_view probe = rest_;
-    std::string_view token = NextToken(&probe);
-    const std::size_t brace = token.find_first_of("{}");
-    if (brace != std::string_view::npos) token = token.substr(0, brace == 0 ? 1 : brace);
+    std::size_t length = 0;
+    while (length < rest_.size() && !IsBlank(rest_[length]) && !IsBrace(rest_[length])) ++length;
+    const std::string_view token = rest_.substr(0, std::max<std::size_t>(length, 1));
     rest_.remove_prefix(token.size());
     return token;
   }

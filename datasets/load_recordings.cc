@@ -33,26 +33,23 @@ std::string FrameTimeWarning(const ManifestRecording& entry, const std::string& 
          " frames per second; the manifest's value is used";
 }
 
-// Turns tracks in file order ([joint][frame]) into the person's, in the project's axes.
-void FillTracks(const BvhPositions& bvh, const Eigen::Matrix3d& rotation, bool all_joints,
-                RecordedPerson* person) {
-  const std::size_t frames = bvh.num_frames();
-  std::vector<Eigen::Vector3d>* tracks[] = {&person->hip, &person->left_ankle,
-                                            &person->right_ankle};
-  for (int i = 0; i < 3; ++i) {
-    tracks[i]->resize(frames);
-    for (std::size_t frame = 0; frame < frames; ++frame) {
-      (*tracks[i])[frame] = rotation * bvh.positions[i][frame];
-    }
+// Moves tracks ([chosen joint][frame], file's axes) into the person, in the project's axes: first
+// hip and ankles, then all joints where those were read.
+void TakeTracks(BvhPositions bvh, const Eigen::Matrix3d& rotation, RecordedPerson* person) {
+  for (auto& track : bvh.positions) {
+    for (Eigen::Vector3d& position : track) position = rotation * position;
   }
-  if (!all_joints) return;
-  const std::size_t joints = bvh.skeleton.joints.size();  // behind the first three entries
-  person->joints.assign(frames, std::vector<Eigen::Vector3d>(joints));
+  person->hip = std::move(bvh.positions[0]);
+  person->left_ankle = std::move(bvh.positions[1]);
+  person->right_ankle = std::move(bvh.positions[2]);
+  const std::size_t joints = bvh.positions.size() - 3;
+  if (joints == 0) return;
+  person->joints.assign(person->hip.size(), std::vector<Eigen::Vector3d>(joints));
   for (std::size_t joint = 0; joint < joints; ++joint) {
     person->joint_names.push_back(bvh.skeleton.joints[joint].name);
     person->joint_parents.push_back(bvh.skeleton.joints[joint].parent);
-    for (std::size_t frame = 0; frame < frames; ++frame) {
-      person->joints[frame][joint] = rotation * bvh.positions[3 + joint][frame];
+    for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {
+      person->joints[frame][joint] = bvh.positions[3 + joint][frame];
     }
   }
 }
@@ -82,19 +79,18 @@ Result<RecordedPerson> LoadPerson(const Manifest& manifest, const ManifestRecord
     }
     return wanted;
   };
-  const Result<BvhPositions> bvh = ReadBvhPositions(person.file, bvh_options);
+  Result<BvhPositions> bvh = ReadBvhPositions(person.file, bvh_options);
   if (!bvh.ok()) return bvh.error();
   if (entry.frames && *entry.frames != bvh.value().num_frames()) {
     return Error{"wrong frame count: the file has " + std::to_string(bvh.value().num_frames()) +
                      " frames, the manifest says " + std::to_string(*entry.frames),
                  person.file, 0};
   }
-  FillTracks(bvh.value(), rotation, options.keep_all_joints, &person);
-  if (MaybeError failed = CheckMotion(person, unit)) return *std::move(failed);
-
   const std::string warning = FrameTimeWarning(entry, person.file, bvh.value().frame_time_s);
   if (!warning.empty() && warnings != nullptr) warnings->push_back(warning);
   hash->Add(bvh.value().content_hash);
+  TakeTracks(std::move(bvh.value()), rotation, &person);
+  if (MaybeError failed = CheckMotion(person, unit)) return *std::move(failed);
   return person;
 }
 

@@ -1,4 +1,5 @@
 // datasets: the manifest written, with everything that was in it before.
+#include <cmath>
 #include <filesystem>
 
 #include "datasets/json_file.h"
@@ -57,9 +58,8 @@ Json RecordingJson(const ManifestRecording& recording) {
   Json json = recording.json.is_object() ? recording.json : Json::object();
   json["id"] = recording.id;
   json["setting"] = recording.setting;
-  json["fps"] = recording.fps == static_cast<int>(recording.fps)
-                    ? Json(static_cast<int>(recording.fps))
-                    : Json(recording.fps);
+  const bool whole_fps = recording.fps == std::floor(recording.fps) && recording.fps < 1e6;
+  json["fps"] = whole_fps ? Json(static_cast<int>(recording.fps)) : Json(recording.fps);
   Json subjects = ObjectsUnder(json, "subjects", recording.subjects.size());
   for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
     subjects[i]["id"] = recording.subjects[i].id;
@@ -104,6 +104,15 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
   }
   Json recordings = Json::array();
   for (const ManifestRecording& recording : manifest.recordings) {
+    bool finite = std::isfinite(recording.fps);
+    for (const ManifestSubject& subject : recording.subjects) {
+      finite = finite && std::isfinite(subject.mass_kg);
+    }
+    if (!finite) {
+      return Error{
+          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
+          0};
+    }
     recordings.push_back(RecordingJson(recording));
   }
   json["recordings"] = recordings;

@@ -1,0 +1,80 @@
+// What tests of several rooms share: a folder of their own, small files, the real recordings.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace pushid {
+
+// A fixture with an empty folder that goes away after the test.
+class TempDirTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (std::filesystem::temp_directory_path() / "pushid-test-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+
+  // Where a file of this name in the folder would be.
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // Writes (and overwrites) a file, with the folders on its way; returns its path.
+  std::string WriteText(const std::string& name, const std::string& text) const {
+    const std::filesystem::path path = folder_ / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << text;
+    return path.string();
+  }
+
+  // How many files the folder holds, in it and below.
+  int CountFiles() const {
+    int count = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
+      count += entry.is_regular_file() ? 1 : 0;
+    }
+    return count;
+  }
+
+  std::filesystem::path folder_;
+};
+
+inline std::string ReadText(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+// The folder of the real recordings: PUSHID_RECORDINGS, or ../shared/fzj_push beside the source; ""
+// when there are none, in which case a test skips itself:
+//
+//   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
+inline std::string RecordingsRoot() {
+  const char* named = std::getenv("PUSHID_RECORDINGS");
+  const std::filesystem::path root =
+      named != nullptr && *named != '\0'
+          ? std::filesystem::path(named)
+          : std::filesystem::path(PUSHID_SOURCE_DIR) / ".." / "shared" / "fzj_push";
+  std::error_code ignored;
+  return std::filesystem::exists(root / "manifest.json", ignored) ? root.string() : "";
+}
+
+constexpr char kNoRecordings[] =
+    "the real recordings are not here; name their folder by PUSHID_RECORDINGS";
+
+// EXPECT_TRUE(Contains(text, part)) that shows both when it fails.
+inline ::testing::AssertionResult Contains(const std::string& text, const std::string& part) {
+  if (text.find(part) != std::string::npos) return ::testing::AssertionSuccess();
+  return ::testing::AssertionFailure() << "'" << part << "' is not in '" << text << "'";
+}
+
+}  // namespace pushid
