@@ -2,9 +2,6 @@
 // seed means the same bytes.
 #include "datasets/synthetic_recordings.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -12,21 +9,15 @@
 #include "datasets/bvh_kinematics.h"
 #include "datasets/load_recordings.h"
 #include "datasets/pendulum_recording.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
 
-class SyntheticRecordings : public testing::Test {
+class SyntheticRecordings : public TempDirTest {
  protected:
-  void SetUp() override {
-    std::string pattern = testing::TempDir() + "pushid_synthetic_XXXXXX";
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::vector<SyntheticRecording> Make(const SyntheticOptions& options) {
     Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
     EXPECT_TRUE(made.ok()) << made.error().ToString();
@@ -35,11 +26,10 @@ class SyntheticRecordings : public testing::Test {
 
   std::vector<Recording> WriteAndLoad(const SyntheticOptions& options,
                                       const std::vector<SyntheticRecording>& made) {
-    const MaybeError failed = WriteSyntheticRecordings(folder_, options, made);
+    const MaybeError failed = WriteSyntheticRecordings(folder_.string(), options, made);
     EXPECT_FALSE(failed) << failed->ToString();
     std::vector<std::string> warnings;
-    Result<std::vector<Recording>> loaded =
-        LoadRecordings(folder_ + "/manifest.json", {}, &warnings);
+    Result<std::vector<Recording>> loaded = LoadRecordings(Path("manifest.json"), {}, &warnings);
     EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
     for (const std::string& warning : warnings) ADD_FAILURE() << warning;
     return loaded.ok() ? loaded.value() : std::vector<Recording>();
@@ -58,8 +48,6 @@ class SyntheticRecordings : public testing::Test {
     }
     return bytes.str();
   }
-
-  std::string folder_;
 };
 
 void ExpectMotionOf(const SyntheticRecording& made, const Recording& observed, double tolerance) {
@@ -173,7 +161,7 @@ TEST_F(SyntheticRecordings, SameSeedSameBytesOtherSeedOthers) {
   options.joint_noise_m = 0.002;
   options.recording_spread = 0.1;
   const auto bytes = [&](const std::string& name, const SyntheticOptions& o) {
-    const std::string folder = folder_ + "/" + name;
+    const std::string folder = Path(name);
     EXPECT_FALSE(WriteSyntheticRecordings(folder, o, Make(o)));
     return Bytes(folder);
   };
@@ -283,10 +271,10 @@ TEST_F(SyntheticRecordings, UnsoundOptionsAndFallsAreErrors) {
 }
 
 TEST_F(SyntheticRecordings, UnwritableFolderIsAnError) {
-  std::ofstream(folder_ + "/file") << "x";
-  const MaybeError failed = WriteSyntheticRecordings(folder_ + "/file", {}, Make({}));
+  WriteText("file", "x");
+  const MaybeError failed = WriteSyntheticRecordings(Path("file"), {}, Make({}));
   ASSERT_TRUE(failed);
-  EXPECT_NE(failed->ToString().find(folder_), std::string::npos);
+  EXPECT_NE(failed->ToString().find(folder_.string()), std::string::npos);
 }
 
 }  // namespace
