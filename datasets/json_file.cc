@@ -123,7 +123,7 @@ std::size_t TooDeepAt(const std::string& text) {
 
 // Some of the parser's exceptions know no position; its events do.
 struct ErrorFinder : nlohmann::json_sax<nlohmann::json> {
-  std::size_t byte = 0;
+  std::size_t last_read = 0;  // the byte at which it could not go on: the end of the wrong token
   std::string message;
 
   bool null() override { return true; }
@@ -138,9 +138,9 @@ struct ErrorFinder : nlohmann::json_sax<nlohmann::json> {
   bool end_object() override { return true; }
   bool start_array(std::size_t) override { return true; }
   bool end_array() override { return true; }
-  bool parse_error(std::size_t position, const std::string&,
+  bool parse_error(std::size_t bytes_read, const std::string&,
                    const nlohmann::json::exception& exception) override {
-    byte = position;
+    last_read = bytes_read > 0 ? bytes_read - 1 : 0;
     message = exception.what();
     return false;
   }
@@ -158,7 +158,7 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   if (message.rfind("parse error at line", 0) == 0)
     message = message.substr(message.find(": ") + 2);
   Error error{"this is not valid JSON: " + message, path, 0};
-  SetPlace(text, finder.byte > 0 ? finder.byte - 1 : 0, &error);
+  SetPlace(text, finder.last_read, &error);
   return error;
 }
 

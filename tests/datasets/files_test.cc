@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <csignal>
 
@@ -185,7 +186,7 @@ TEST_F(JsonFileTest, ValuesAreFoundInTheText) {
   };
   EXPECT_EQ(place(""), ":1:1: m");
   EXPECT_EQ(place("/x/0"), ":1:9: m");
-  EXPECT_EQ(place("/x/1/a\"]"), ":1:22: m");
+  EXPECT_EQ(place("/x/1/a\"]"), ":1:21: m");
   EXPECT_EQ(place("/x/2/c"), ":3:7: m");
   EXPECT_EQ(place("/x/2/missing"), ":2:3: m");
   EXPECT_EQ(place("/x/7"), ":1:8: m");
