@@ -68,6 +68,7 @@ Preset TailPreset() {
   table[kKpPhi].nominal = 2.1 * kStiffnessUnit;
   table[kKdTheta].nominal = kDampingUnit;
   table[kKdPhi].nominal = kDampingUnit;
+  table[kAx].nominal = -9;
   for (Parameter id : {kMu, kKpTheta, kAx, kTailGain, kTailTorque, kTailTime, kTailExponent}) {
     table[id].free = true;
   }

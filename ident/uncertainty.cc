@@ -133,22 +133,6 @@ Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
 
 }  // namespace
 
-std::string StatusName(EstimateStatus status) {
-  switch (status) {
-    case EstimateStatus::kIdentified:
-      return "identified";
-    case EstimateStatus::kWeak:
-      return "weak";
-    case EstimateStatus::kUnidentifiable:
-      return "unidentifiable";
-    case EstimateStatus::kAtBound:
-      return "at bound";
-    case EstimateStatus::kFixed:
-      return "fixed";
-  }
-  return "";
-}
-
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);

@@ -18,7 +18,6 @@
 namespace pushid {
 
 enum class EstimateStatus { kIdentified, kWeak, kUnidentifiable, kAtBound, kFixed };
-std::string StatusName(EstimateStatus status);
 
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.
 struct Estimate {

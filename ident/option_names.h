@@ -1,0 +1,53 @@
+// ident: names of the options, one table for flags and JSON alike.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/result.h"
+#include "ident/crossvalidation.h"
+#include "ident/fit_options.h"
+
+namespace pushid {
+
+template <typename E>
+using OptionNames = std::vector<std::pair<std::string, E>>;
+
+const OptionNames<Posture>& Names(Posture);
+const OptionNames<GainScaling>& Names(GainScaling);
+const OptionNames<FrictionKind>& Names(FrictionKind);
+const OptionNames<PushUse>& Names(PushUse);
+const OptionNames<PushTail>& Names(PushTail);
+const OptionNames<CartDerivative>& Names(CartDerivative);
+const OptionNames<SkeletonMapping>& Names(SkeletonMapping);
+const OptionNames<SelfForceKind>& Names(SelfForceKind);
+const OptionNames<RecordingWeight>& Names(RecordingWeight);
+const OptionNames<FitStart>& Names(FitStart);
+const OptionNames<FoldScheme>& Names(FoldScheme);
+const OptionNames<Transform>& Names(Transform);
+const OptionNames<EstimateStatus>& Names(EstimateStatus);
+
+template <typename E>
+std::string NameOf(E value) {
+  for (const auto& [name, option] : Names(E{})) {
+    if (option == value) return name;
+  }
+  return "";
+}
+
+// Errors: "--posture is 'flat'; it must be upright or initial".
+template <typename E>
+MaybeError ParseName(const std::string& flag, const std::string& text, E* value) {
+  std::string known;
+  for (const auto& [name, option] : Names(E{})) {
+    if (name == text) {
+      *value = option;
+      return std::nullopt;
+    }
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  return Error{flag + " is '" + text + "'; it must be one of " + known};
+}
+
+}  // namespace pushid

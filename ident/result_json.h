@@ -1,0 +1,30 @@
+// ident: a fit's result as JSON, without loss: every number reads back the same, infinities as the
+// string "infinity". Reports and predictions are functions of this file alone.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "ident/crossvalidation.h"
+#include "ident/fit_result.h"
+
+namespace pushid {
+
+// What changes from run to run and stands under `run`.
+struct RunInfo {
+  std::string date, host, model_path;
+  double total_seconds = 0.0;
+  int num_threads = 1;
+};
+
+nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run);
+
+// Errors: not a pushid model, a newer format, missing or wrong entries by name.
+Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file);
+Result<FitResult> ReadFitResult(const std::string& path);
+
+nlohmann::ordered_json ToJson(const Evaluation& evaluation);
+nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
+nlohmann::ordered_json ToJson(const CrossValidation& validation);
+nlohmann::ordered_json ToJson(const PairedDifference& difference);
+
+}  // namespace pushid
