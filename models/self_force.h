@@ -4,8 +4,9 @@
 // With e = (theta, phi) minus the reference posture, v = (xd, yd), and the gain scales of
 // GainScale:
 //   friction  F_x = -mu xd                      F_y = -mu_y yd
-//   balance   F_x = -Kp_x xd - Kd_x xdd         F_theta = hold_theta - Kp_theta e_theta - Kd_theta
-//   thd linear    F_x = M (a_x e_theta + b_x thd - c_q |v| xd)
+//   balance   F_x = -Kp_x xd - Kd_x xdd         F_y = -Kp_y yd - Kd_y ydd
+//             F_theta = hold_theta - Kp_theta e_theta - Kd_theta thd
+//   linear    F_x = M (a_x e_theta + b_x thd - c_q |v| xd)
 //             F_theta = M t_x xd - m l^2 d_q |thd| thd
 // and the same for y and phi, where a, b and t change sign, because phi turns towards -y.
 // hold is the torque that holds the reference posture against gravity: zero for an upright one.

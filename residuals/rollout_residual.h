@@ -1,8 +1,7 @@
 // residuals: a whole recording against its rollout: one Ceres residual block per recording.
 //
-//   residuals: FrameResidual (frame_residual.h) times `weight` for frames 1 .. horizon - 1,
-//   frame-major,
-//              then person, then component; in sigmas.
+//   residuals: FrameResidual (frame_residual.h) times `weight` for frames 1 .. horizon - 1, in
+//              sigmas; ordered by frame, then person, then component.
 //   blocks:    BlockLayout (parameter_map.h).
 // Jacobian by forward sensitivities (rollout_sensitivities.h). Rejected: one block per frame, which
 // would roll out the same recording once per frame.
