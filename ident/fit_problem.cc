@@ -99,14 +99,10 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
 
 double FitProblem::Weight(int recording, int horizon) const {
   if (options_.recording_weight == RecordingWeight::kFrame) return 1.0;
-  // The mean over recordings of the number of frames keeps the cost's size that of plain frames.
-  double total = 0.0;
-  auto frames = [horizon](const PendulumRecording& r) {
-    return std::max(1, (horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames()) - 1);
-  };
-  for (const PendulumRecording& r : recordings_) total += frames(r);
-  return std::sqrt(total /
-                   (static_cast<double>(recordings_.size()) * frames(recordings_[recording])));
+  // A recording's frames are far from independent: together they count as one.
+  const PendulumRecording& r = recordings_[recording];
+  const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
+  return 1.0 / std::sqrt(std::max(1, frames - 1));
 }
 
 void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {

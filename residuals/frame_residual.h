@@ -22,9 +22,9 @@ inline constexpr int kFrameResiduals = 9;
 struct ResidualSigmas {
   double hip = 0.10;      // m; raise it when the marker of the hip is poor
   double velocity = 1.0;  // m/s, of the cart
-  double angle = 0.3;     // rad
-  double rate = 1.0;      // rad/s
-  double robust = 1.0;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
+  double angle = 1.0;     // rad
+  double rate = 3.0;      // rad/s
+  double robust = 0.5;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
 };
 
 struct MeasuredFrame {
