@@ -1,90 +1,14 @@
-// From files to recordings: small ones made here, broken ones, and the real ones where they are.
+// From files to recordings: small ones made here, and broken ones.
 #include "datasets/load_recordings.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-
-#include "datasets/bvh.h"
-#include "datasets/push_csv.h"
-#include "datasets/select_recordings.h"
-#include "tests/test_support.h"
+#include "tests/datasets/recording_folder.h"
 
 namespace pushid {
 namespace {
 
-// A hip that moves forward over two standing feet; axes and unit of the file are free.
-BvhMotion Walker(int frames, double hip_height_m = 0.95) {
-  BvhMotion motion;
-  motion.length_unit = LengthUnit::kMetre;
-  motion.frame_time_s = 0.016667;
-  BvhJoint hip, left, right;
-  hip.name = "Pelvis";
-  hip.channels = DefaultBvhChannels(true);
-  left.name = "rig:Left_Foot";
-  left.parent = 0;
-  left.channels = DefaultBvhChannels(true);
-  right = left;
-  right.name = "rig:Right_Foot";
-  motion.skeleton.joints = {hip, left, right};
-  for (int frame = 0; frame < frames; ++frame) {
-    const double x = 0.01 * frame;
-    const std::vector<double> row = {x,  0.0,  hip_height_m,        0, 0, 0,  //
-                                     -x, 0.1,  0.08 - hip_height_m, 0, 0, 0,  //
-                                     -x, -0.1, 0.08 - hip_height_m, 0, 0, 0};
-    motion.values.insert(motion.values.end(), row.begin(), row.end());
-  }
-  return motion;
-}
-
-class LoadRecordingsTest : public TempDirTest {
- protected:
-  // One recording of one person: 20 frames, five of them pushed.
-  void SetUp() override {
-    TempDirTest::SetUp();
-    WriteBvhFile("a.bvh", Walker(20));
-    WritePush("a.csv", 5);
-    ManifestRecording recording;
-    recording.id = "a";
-    recording.setting = "single";
-    recording.fps = 60.0;
-    recording.subjects = {{"s1", 70.0}};
-    recording.bvh = {"a.bvh"};
-    recording.push_csv = "a.csv";
-    recording.magnitude = "weak";
-    manifest_.recordings = {recording};
-  }
-
-  void WriteBvhFile(const std::string& name, const BvhMotion& motion,
-                    LengthUnit unit = LengthUnit::kMillimetre) const {
-    const MaybeError failed = WriteBvh(Path(name), motion, unit);
-    ASSERT_FALSE(failed) << failed->ToString();
-  }
-
-  void WritePush(const std::string& name, int rows) const {
-    std::vector<Eigen::Vector4d> force;
-    for (int i = 0; i < rows; ++i) force.emplace_back(100.0 + i, 0.0, 50.0, 0.0);
-    ASSERT_FALSE(WritePushCsv(Path(name), force));
-  }
-
-  Result<std::vector<Recording>> Load(const LoadOptions& options = {}) {
-    EXPECT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
-    warnings_.clear();
-    return LoadRecordings(Path("manifest.json"), options, &warnings_);
-  }
-
-  // The message of the error that loading gives.
-  std::string Message(const LoadOptions& options = {}) {
-    const auto loaded = Load(options);
-    return loaded.ok() ? "no error" : loaded.error().ToString();
-  }
-
-  ManifestRecording& entry() { return manifest_.recordings[0]; }
-
-  Manifest manifest_;
-  std::vector<std::string> warnings_;
-};
+using LoadRecordingsTest = RecordingFolderTest;
 
 TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
   entry().condition_code = "p";
@@ -347,38 +271,6 @@ TEST_F(LoadRecordingsTest, SettingsAndIds) {
   EXPECT_TRUE(Contains(ids("single", {"b"}), "'row_1', which --setting=single leaves out"));
   manifest_.recordings = {entry()};
   EXPECT_TRUE(Contains(ids("groups"), "no recording has more than one person"));
-}
-
-TEST(RealRecordings, AllOfThemLoad) {
-  if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  std::vector<std::string> warnings;
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", {}, &warnings);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value().size(), 81u);
-  EXPECT_TRUE(warnings.empty()) << warnings[0];
-  int people = 0;
-  for (const Recording& recording : loaded.value()) {
-    people += static_cast<int>(recording.people.size());
-    EXPECT_EQ(recording.pushes.size(), 1u);
-    for (const RecordedPerson& person : recording.people) {
-      // People stand on the ground and face x, the left foot to the left.
-      EXPECT_NEAR(person.hip[0].z(), 1.0, 0.25) << person.file;
-      EXPECT_GT(person.left_ankle[0].y(), person.right_ankle[0].y()) << person.file;
-    }
-  }
-  EXPECT_EQ(people, 255);
-}
-
-TEST(RealRecordings, SettingSingle) {
-  if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  LoadOptions options;
-  options.setting = "single";
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value().size(), 32u);
-  EXPECT_EQ(loaded.value()[0].id, "single_X05_00");
-  EXPECT_EQ(loaded.value()[0].num_frames(), 103);
-  EXPECT_EQ(loaded.value()[0].pushes[0].force[1][0], 13.962787);
 }
 
 }  // namespace

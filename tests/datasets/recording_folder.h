@@ -1,0 +1,88 @@
+// A fixture: a folder with one small recording and its manifest, to be changed and loaded.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/bvh.h"
+#include "datasets/load_recordings.h"
+#include "datasets/push_csv.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+
+// A hip that moves forward over two standing feet; axes and unit of the file are free.
+inline BvhMotion Walker(int frames, double hip_height_m = 0.95) {
+  BvhMotion motion;
+  motion.length_unit = LengthUnit::kMetre;
+  motion.frame_time_s = 0.016667;
+  BvhJoint hip, left, right;
+  hip.name = "Pelvis";
+  hip.channels = DefaultBvhChannels(true);
+  left.name = "rig:Left_Foot";
+  left.parent = 0;
+  left.channels = DefaultBvhChannels(true);
+  right = left;
+  right.name = "rig:Right_Foot";
+  motion.skeleton.joints = {hip, left, right};
+  for (int frame = 0; frame < frames; ++frame) {
+    const double x = 0.01 * frame;
+    const std::vector<double> row = {x,  0.0,  hip_height_m,        0, 0, 0,  //
+                                     -x, 0.1,  0.08 - hip_height_m, 0, 0, 0,  //
+                                     -x, -0.1, 0.08 - hip_height_m, 0, 0, 0};
+    motion.values.insert(motion.values.end(), row.begin(), row.end());
+  }
+  return motion;
+}
+
+class RecordingFolderTest : public TempDirTest {
+ protected:
+  // One recording of one person: 20 frames, five of them pushed.
+  void SetUp() override {
+    TempDirTest::SetUp();
+    WriteBvhFile("a.bvh", Walker(20));
+    WritePush("a.csv", 5);
+    ManifestRecording recording;
+    recording.id = "a";
+    recording.setting = "single";
+    recording.fps = 60.0;
+    recording.subjects = {{"s1", 70.0}};
+    recording.bvh = {"a.bvh"};
+    recording.push_csv = "a.csv";
+    recording.magnitude = "weak";
+    manifest_.recordings = {recording};
+  }
+
+  void WriteBvhFile(const std::string& name, const BvhMotion& motion,
+                    LengthUnit unit = LengthUnit::kMillimetre) const {
+    const MaybeError failed = WriteBvh(Path(name), motion, unit);
+    ASSERT_FALSE(failed) << failed->ToString();
+  }
+
+  void WritePush(const std::string& name, int rows) const {
+    std::vector<Eigen::Vector4d> force;
+    for (int i = 0; i < rows; ++i) force.emplace_back(100.0 + i, 0.0, 50.0, 0.0);
+    ASSERT_FALSE(WritePushCsv(Path(name), force));
+  }
+
+  Result<std::vector<Recording>> Load(const LoadOptions& options = {}) {
+    EXPECT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
+    warnings_.clear();
+    return LoadRecordings(Path("manifest.json"), options, &warnings_);
+  }
+
+  // The message of the error that loading gives.
+  std::string Message(const LoadOptions& options = {}) {
+    const auto loaded = Load(options);
+    return loaded.ok() ? "no error" : loaded.error().ToString();
+  }
+
+  ManifestRecording& entry() { return manifest_.recordings[0]; }
+
+  Manifest manifest_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace pushid
