@@ -135,7 +135,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
         "score "
         "well and predicts nothing beyond the data (--settling_weight holds it to settle)");
   }
-  if (!result.uncertainty.clustered) {
+  if (result.uncertainty.num_clusters == 1) {
     warnings.push_back("a single recording: errors cannot be clustered and are too small");
   }
   for (const Estimate& e : result.estimates) {

@@ -1,0 +1,187 @@
+// apps: fit flags and their defaults.
+#include "apps/fit_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <sstream>
+
+#include "ident/option_names.h"
+
+DEFINE_string(
+    preset, "tail",
+    "the single-person model: tail (push tail, posture-relative recovery) or ldp (plain PD "
+    "and friction from upright)");
+DEFINE_string(self_force, "none",
+              "what is fitted on top: none, or linear (cross terms, quadratic)");
+DEFINE_string(posture, "",
+              "balance error measured from: upright or initial (default: the preset's)");
+DEFINE_string(gain_scaling, "",
+              "gains of other bodies: none, mass, or body (mass and rod length) (default: the "
+              "preset's)");
+DEFINE_string(friction, "", "isotropic or anisotropic (default: the preset's)");
+DEFINE_string(push, "", "as_recorded (honour push_kind) or added (default: the preset's)");
+DEFINE_string(push_tail, "", "none or exponential (default: the preset's)");
+DEFINE_string(cart_derivative, "none", "none or backward: lets Kd_x and Kd_y act");
+DEFINE_string(mapping, "exact", "skeleton to pendulum: exact, or ldp for comparison");
+
+DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
+DEFINE_string(free, "", "parameters fitted: name or name=start, comma-separated");
+DEFINE_string(prior, "", "priors: name:mean:sigma in the parameter's unit, comma-separated");
+DEFINE_bool(preset_priors, true, "keep the preset's weak priors");
+DEFINE_string(pool, "", "parameters that may differ by subject, comma-separated");
+DEFINE_double(
+    pooling_sigma, 0.2,
+    "how far a subject may deviate from the shared value (standard deviation on the fitted "
+    "scale; 0.2 is about 20 % for a positive parameter)");
+
+DEFINE_double(sigma_hip, 0.1, "standard deviation of the hip's position, m");
+DEFINE_double(sigma_velocity, 1.0, "standard deviation of the cart's velocity, m/s");
+DEFINE_double(sigma_angle, 1.0, "standard deviation of the angles, rad");
+DEFINE_double(sigma_rate, 3.0, "standard deviation of the angular rates, rad/s");
+DEFINE_double(robust, 0.5, "pseudo-Huber scale of a frame in sigmas; 0: plain least squares");
+DEFINE_string(recording_weight, "recording",
+              "what counts the same: every recording, or every frame");
+DEFINE_double(
+    settling_weight, -1.0,
+    "weight of the demonstrations that a pushed person stands again; 0: off (default: the "
+    "preset's)");
+DEFINE_double(stability_weight, 0.0,
+              "weight of the rollouts continued past the data, with the push and 1.4 times it");
+
+DEFINE_string(horizons, "8,16,32,64", "frames of the stages before all frames, comma-separated");
+DEFINE_string(start, "equation_error", "first start: equation_error or nominal");
+DEFINE_int32(starts, 1, "how many starts; the best one is taken");
+DEFINE_double(start_spread, 5.0, "random starts multiply every gain by up to this, either way");
+DEFINE_uint64(seed, 1, "seed of everything random");
+DEFINE_int32(num_threads, 1, "threads");
+DEFINE_int32(max_iterations, 200, "iterations of each stage");
+DEFINE_double(function_tolerance, 1e-10, "relative change of the cost that ends a stage");
+DEFINE_double(gradient_tolerance, 1e-12, "gradient that ends a stage");
+DEFINE_double(parameter_tolerance, 1e-9, "relative step that ends a stage");
+
+namespace pushid {
+namespace {
+
+template <typename E>
+MaybeError Override(const char* flag, const std::string& text, E* value) {
+  if (text.empty()) return std::nullopt;
+  return ParseName(std::string("--") + flag, text, value);
+}
+
+MaybeError ReadModel(FitOptions* o) {
+  ModelOptions& m = o->model;
+  for (MaybeError error :
+       {Override("self_force", FLAGS_self_force, &o->self_force),
+        Override("mapping", FLAGS_mapping, &o->mapping),
+        Override("posture", FLAGS_posture, &m.posture),
+        Override("gain_scaling", FLAGS_gain_scaling, &m.gain_scaling),
+        Override("friction", FLAGS_friction, &m.friction), Override("push", FLAGS_push, &m.push),
+        Override("push_tail", FLAGS_push_tail, &m.push_tail),
+        Override("cart_derivative", FLAGS_cart_derivative, &m.cart_derivative),
+        Override("recording_weight", FLAGS_recording_weight, &o->recording_weight),
+        Override("start", FLAGS_start, &o->start)}) {
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+MaybeError ReadHorizons(FitOptions* o) {
+  o->horizons.clear();
+  std::stringstream list(FLAGS_horizons);
+  for (std::string part; std::getline(list, part, ',');) {
+    char* end = nullptr;
+    const long frames = std::strtol(part.c_str(), &end, 10);
+    if (part.empty() || *end != '\0' || frames < 2) {
+      return Error{"--horizons: '" + part + "' is no number of frames of at least 2"};
+    }
+    o->horizons.push_back(static_cast<int>(frames));
+  }
+  o->horizons.push_back(0);
+  return std::nullopt;
+}
+
+MaybeError CheckPositive(const char* flag, double value) {
+  if (value > 0.0) return std::nullopt;
+  return Error{std::string("--") + flag + " must be positive"};
+}
+
+// Parameters of terms that the options switched off must not be fitted: they have no effect.
+void FixWhatDoesNotAct(const ModelOptions& model, ParameterTable* table) {
+  if (model.push_tail == PushTail::kNone) {
+    for (Parameter id : {kTailGain, kTailTorque, kTailTime, kTailExponent})
+      (*table)[id].free = false;
+  }
+  if (model.friction == FrictionKind::kIsotropic) (*table)[kMuY].free = false;
+}
+
+}  // namespace
+
+Result<FitOptions> FitOptionsFromFlags() {
+  Result<Preset> preset = MakePreset(FLAGS_preset);
+  if (!preset.ok()) return preset.error();
+  FitOptions o;
+  o.preset = FLAGS_preset;
+  o.model = preset.value().model;
+  o.table = preset.value().table;
+  o.settling_weight =
+      FLAGS_settling_weight >= 0.0 ? FLAGS_settling_weight : preset.value().settling_weight;
+  o.stability_weight = FLAGS_stability_weight;
+  if (MaybeError error = ReadModel(&o)) return *error;
+  if (MaybeError error = ReadHorizons(&o)) return *error;
+  for (MaybeError error :
+       {CheckPositive("sigma_hip", FLAGS_sigma_hip),
+        CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
+        CheckPositive("sigma_angle", FLAGS_sigma_angle),
+        CheckPositive("sigma_rate", FLAGS_sigma_rate),
+        CheckPositive("pooling_sigma", FLAGS_pooling_sigma), CheckPositive("starts", FLAGS_starts),
+        CheckPositive("num_threads", FLAGS_num_threads),
+        CheckPositive("max_iterations", FLAGS_max_iterations)}) {
+    if (error) return *error;
+  }
+  if (FLAGS_start_spread < 1.0) return Error{"--start_spread must be at least 1"};
+  if (FLAGS_robust < 0.0) return Error{"--robust must not be negative"};
+
+  if (!FLAGS_preset_priors) {
+    for (ParameterSpec& spec : o.table.specs) spec.prior.reset();
+  }
+  FreeSelfForce(o.self_force, &o.table);
+  FixWhatDoesNotAct(o.model, &o.table);
+  TableEdits edits;
+  edits.fix = FLAGS_fix;
+  edits.free = FLAGS_free;
+  edits.prior = FLAGS_prior;
+  edits.pool = FLAGS_pool;
+  if (MaybeError error = EditTable(edits, &o.table)) return *error;
+  if (o.table.Free().empty()) return Error{"every parameter is fixed: nothing is left to fit"};
+
+  o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
+              FLAGS_robust};
+  o.pooling_sigma = FLAGS_pooling_sigma;
+  o.num_starts = FLAGS_starts;
+  o.start_spread = FLAGS_start_spread;
+  o.seed = FLAGS_seed;
+  o.num_threads = FLAGS_num_threads;
+  o.max_iterations = FLAGS_max_iterations;
+  o.function_tolerance = FLAGS_function_tolerance;
+  o.gradient_tolerance = FLAGS_gradient_tolerance;
+  o.parameter_tolerance = FLAGS_parameter_tolerance;
+  return o;
+}
+
+Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
+  const gflags::FlagSaver saver;
+  std::stringstream list(extra_flags);
+  for (std::string word; list >> word;) {
+    const size_t equals = word.find('=');
+    const std::string name = word.substr(0, equals);
+    if (name.rfind("--", 0) != 0 || equals == std::string::npos ||
+        gflags::SetCommandLineOption(name.c_str() + 2, word.c_str() + equals + 1).empty()) {
+      return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
+    }
+  }
+  return FitOptionsFromFlags();
+}
+
+int NumThreads() { return FLAGS_num_threads; }
+
+}  // namespace pushid

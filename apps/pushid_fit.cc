@@ -1,0 +1,89 @@
+// apps: pushid-fit: recordings in, identified parameters out.
+#include <gflags/gflags.h>
+
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+
+#include "apps/app_support.h"
+#include "apps/fit_flags.h"
+#include "apps/recording_flags.h"
+#include "datasets/atomic_file.h"
+#include "datasets/json_file.h"
+#include "ident/report_text.h"
+#include "ident/result_json.h"
+
+DEFINE_string(model_out, "", "write the identified model here (JSON)");
+
+namespace {
+
+std::string Today() {
+  char text[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+int Run() {
+  using namespace pushid;
+  const auto begin = std::chrono::steady_clock::now();
+  const Result<FitOptions> options = FitOptionsFromFlags();
+  if (!options.ok()) return Fail(options.error());
+  if (!FLAGS_model_out.empty()) {
+    if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
+  }
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
+  if (!recordings.ok()) return Fail(recordings.error());
+  for (const Recording& recording : recordings.value()) {
+    if (recording.pushes.empty()) {
+      return Fail("recording " + recording.id +
+                  " has no push: estimate one with pushid-push, or leave it out (--ids)");
+    }
+  }
+  const std::vector<PendulumRecording> pendulums =
+      MapRecordings(recordings.value(), options.value().mapping);
+
+  ProgressLine line;
+  FitResult result = Fit(pendulums, options.value(),
+                         [&line](const std::string& phase, int iteration, double cost) {
+                           line.Show("fitting " + phase + ": iteration " +
+                                     std::to_string(iteration) + ", cost " + Significant(cost, 6));
+                         });
+  line.Finish();
+  if (!result.ok()) {
+    std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
+    return kFitFailed;
+  }
+  result.version = Version();
+  result.configuration = EffectiveFlags();
+  // Where the data lay is no part of what was found; the hash is.
+  result.configuration.erase("recordings");
+  result.manifest = FLAGS_recordings;
+  result.setting = FLAGS_setting;
+  const Result<std::string> hash = HashFile(FLAGS_recordings);
+  if (hash.ok()) result.manifest_hash = hash.value();
+
+  std::printf("%s", ReportText(result).c_str());
+  if (!FLAGS_model_out.empty()) {
+    RunInfo run;
+    run.date = Today();
+    run.host = HostName();
+    run.model_path = FLAGS_model_out;
+    run.num_threads = NumThreads();
+    run.total_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (MaybeError error = WriteJson(FLAGS_model_out, ToJson(result, run))) return Fail(*error);
+    std::printf("model written to %s\n", FLAGS_model_out.c_str());
+  }
+  return result.converged ? kDone : kFitFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return pushid::RunApp(argc, argv,
+                        "pushid-fit identifies friction, balance gains and the push tail from push "
+                        "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "
+                        "--model_out=model.json",
+                        Run);
+}

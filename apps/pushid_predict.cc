@@ -1,0 +1,67 @@
+// apps: pushid-predict: what happens after a push, from the first frame and the push alone.
+#include <gflags/gflags.h>
+
+#include <cstdio>
+
+#include "apps/app_support.h"
+#include "apps/model_flags.h"
+#include "apps/recording_flags.h"
+#include "datasets/atomic_file.h"
+#include "ident/evaluation.h"
+#include "ident/report_text.h"
+
+DEFINE_string(id, "", "the recording whose first frame and push are taken");
+DEFINE_string(out, "", "write the trajectory here (CSV: states, hip, forces by part)");
+DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
+
+namespace {
+
+int Run() {
+  using namespace pushid;
+  const Result<IdentifiedModel> model = LoadFlaggedModel();
+  if (!model.ok()) return Fail(model.error());
+  if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
+    return Fail(*missing);
+  }
+  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) {
+    return Fail(*missing);
+  }
+  if (FLAGS_frames < 0 || FLAGS_frames == 1) return Fail("--frames must be 0 or at least 2");
+  if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
+  if (!recordings.ok()) return Fail(recordings.error());
+  const PendulumRecording recording =
+      MakePendulumRecording(recordings.value().front(), model.value().mapping);
+
+  const Prediction prediction = Predict(model.value(), recording, FLAGS_frames);
+  if (!prediction.status.ok) {
+    std::fprintf(stderr,
+                 "pushid-predict: recording %s: %s of person %d leaves the model's domain at "
+                 "frame %d\n",
+                 recording.id.c_str(), std::string(prediction.status.quantity).c_str(),
+                 prediction.status.person, prediction.status.frame);
+    return kFitFailed;
+  }
+  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, model.value(), recording, prediction)) {
+    return Fail(*error);
+  }
+  std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
+              prediction.path.num_frames(), FLAGS_out.c_str());
+  if (FLAGS_frames == 0) {
+    const RecordingScore score = ScoreHip(recording, prediction.hip);
+    std::printf("against the recording: hipADE %s m, hipFDE %s m\n",
+                Significant(score.hip_ade, 3).c_str(), Significant(score.hip_fde, 3).c_str());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-predict rolls a model out from a recording's first frame and push.\n\n"
+      "  pushid-predict --model=model.json --recordings=M/manifest.json "
+      "--id=NAME --out=trajectory.csv",
+      Run);
+}

@@ -1,0 +1,50 @@
+// apps: loading what --recordings names.
+#include "apps/recording_flags.h"
+
+#include <sstream>
+
+#include "apps/app_support.h"
+
+DEFINE_string(recordings, "", "manifest.json of the recordings");
+DEFINE_string(setting, "all",
+              "which recordings: settings of the manifest, comma-separated; groups (more than one "
+              "person); all");
+DEFINE_string(ids, "", "only these recordings, comma-separated ids");
+DEFINE_string(length_unit, "", "unit of the BVH files, mm, cm or m, whatever the manifest says");
+
+namespace pushid {
+
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids) {
+  if (MaybeError missing =
+          Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
+    return *missing;
+  }
+  LoadOptions options;
+  options.setting = FLAGS_setting;
+  options.ids = ids;
+  if (ids.empty()) {
+    std::stringstream list(FLAGS_ids);
+    for (std::string id; std::getline(list, id, ',');) options.ids.push_back(id);
+  }
+  if (!FLAGS_length_unit.empty()) {
+    options.length_unit = LengthUnitFromName(FLAGS_length_unit);
+    if (!options.length_unit) {
+      return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
+    }
+  }
+  std::vector<std::string> warnings;
+  Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_recordings, options, &warnings);
+  for (const std::string& warning : warnings) Warn(warning);
+  return recordings;
+}
+
+std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
+                                             SkeletonMapping mapping) {
+  std::vector<PendulumRecording> pendulums;
+  for (const Recording& recording : recordings) {
+    pendulums.push_back(MakePendulumRecording(recording, mapping));
+  }
+  return pendulums;
+}
+
+}  // namespace pushid

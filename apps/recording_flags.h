@@ -1,0 +1,24 @@
+// apps: the flags by which every executable takes recordings.
+#pragma once
+
+#include <gflags/gflags.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/load_recordings.h"
+#include "datasets/pendulum_recording.h"
+
+DECLARE_string(recordings);
+DECLARE_string(setting);
+
+namespace pushid {
+
+// The recordings of --recordings, --setting and --ids; warnings go to stderr. Other ids than the
+// flag's may be asked for.
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {});
+
+std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
+                                             SkeletonMapping mapping);
+
+}  // namespace pushid

@@ -1,0 +1,218 @@
+// ident: the report for a terminal.
+#include "ident/report_text.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "ident/option_names.h"
+#include "ident/text_table.h"
+
+namespace pushid {
+namespace {
+
+std::string Interval(double lower, double upper) {
+  return "[" + Significant(lower) + ", " + Significant(upper) + "]";
+}
+
+std::string Count(int number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+std::string HowSure(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
+  return "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
+         "; Student's t = " + Significant(u.t_quantile, 3) + "); naive ones beside them\n";
+}
+
+std::string ParameterTableText(const FitResult& result) {
+  TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
+                   "naive error", "prior"},
+                  {true, false, false, true, true, true, false, true});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed) {
+      table.Add({e.name, Significant(e.value), "-", "-", e.unit, "fixed", "-", ""});
+      continue;
+    }
+    const std::string prior =
+        spec != nullptr && spec->prior
+            ? Significant(spec->prior->mean, 3) + " +- " + Significant(spec->prior->sigma, 3)
+            : "";
+    const bool unknown = e.status == EstimateStatus::kUnidentifiable;
+    table.Add({e.name, Significant(e.value),
+               unknown ? "infinite" : Significant(e.standard_error, 3),
+               unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
+               unknown ? "infinite" : Significant(e.standard_error_naive, 3), prior});
+  }
+  return table.ToString();
+}
+
+std::string DerivedText(const FitResult& result) {
+  TextTable table({"derived", "value", "std error", "95 % interval", "unit"},
+                  {true, false, false, true, true});
+  for (const Combination& c : result.derived) {
+    const bool fixed = c.standard_error == 0.0;
+    table.Add({c.name, Significant(c.value), fixed ? "-" : Significant(c.standard_error, 3),
+               fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
+  }
+  const double kp = result.parameters[kKpX];
+  return table.ToString() +
+         "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. Convention: Kp_x = "
+         "Kp_y = " +
+         Significant(kp) +
+         " N s/m held, mu = c - Kp.\nGains are for a person of 85 kg with a rod of " +
+         "0.95 m (gain scaling: " + NameOf(result.options.model.gain_scaling) + ").\n";
+}
+
+std::string CorrelationText(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  std::string text;
+  for (int i = 0; i < u.correlation.rows(); ++i) {
+    for (int j = i + 1; j < u.correlation.cols(); ++j) {
+      if (std::abs(u.correlation(i, j)) < 0.9) continue;
+      text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
+              Significant(u.correlation(i, j), 2) + "\n";
+    }
+  }
+  return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
+}
+
+std::string BehaviourText(const FitResult& result) {
+  const Behaviour& b = result.behaviour;
+  std::string text;
+  if (b.settles) {
+    text =
+        "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within two "
+        "seconds\n";
+  } else {
+    text = "NOT SETTLING, two seconds after a push:\n";
+    for (const Demonstration& d : b.demonstrations) {
+      if (d.settled) continue;
+      text += "  " + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s: " +
+              (d.fell ? "fell"
+                      : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
+                            " rad from rest") +
+              "\n";
+    }
+  }
+  text += "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
+          (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
+  return text;
+}
+
+std::string MeanText(const MeanScore& mean) {
+  return Significant(mean.hip_ade, 3) + " +- " + Significant(mean.hip_ade_error, 2) + " / " +
+         Significant(mean.hip_fde, 3) + " +- " + Significant(mean.hip_fde_error, 2);
+}
+
+}  // namespace
+
+std::string Significant(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string ReportText(const FitResult& result) {
+  const FitOptions& o = result.options;
+  std::string text = "pushid " + result.version + ", preset " + o.preset + ": " +
+                     Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
+                     result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
+                     NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
+                     ", self force " + NameOf(o.self_force) + "\n\n";
+  text += ParameterTableText(result) + HowSure(result) + "\n" + DerivedText(result) + "\n";
+  for (const NullDirection& n : result.uncertainty.null_directions) {
+    text += "unidentifiable: " + n.sentence + "\n";
+  }
+  text += CorrelationText(result);
+  bool any_pooled = false;
+  for (const auto& [id, subject] : result.subjects)
+    any_pooled = any_pooled || !subject.pooled.empty();
+  if (any_pooled) {
+    TextTable table({"subject", "kg", "parameter", "value", "std error", "95 % interval", "unit"},
+                    {true, false, true, false, false, true, true});
+    for (const auto& [id, subject] : result.subjects) {
+      for (const auto& [name, e] : subject.pooled) {
+        table.Add({id, Significant(subject.mass_kg), name, Significant(e.value),
+                   Significant(e.standard_error, 3), Interval(e.lower95, e.upper95), e.unit});
+      }
+    }
+    text += table.ToString() + "\n";
+  }
+  text += BehaviourText(result) + "\n";
+  text += "cost " + Significant(result.cost, 6) + " after " +
+          Count(result.starts[result.best_start].iterations, "iteration") + " from " +
+          Count(static_cast<int>(result.starts.size()), "start") + "; " +
+          (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  return text;
+}
+
+std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
+  std::string text;
+  if (per_recording) {
+    TextTable table({"recording", "frames", "hipADE m", "hipFDE m", "static", "const velocity", ""},
+                    {true, false, false, false, false, false, true});
+    for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
+      const RecordingScore& r = evaluation.model.recordings[i];
+      const bool ok = r.failure.empty();
+      table.Add({r.id, std::to_string(r.frames), ok ? Significant(r.hip_ade, 3) : "-",
+                 ok ? Significant(r.hip_fde, 3) : "-",
+                 Significant(evaluation.static_baseline.recordings[i].hip_ade, 3),
+                 Significant(evaluation.constant_velocity.recordings[i].hip_ade, 3), r.failure});
+    }
+    text += table.ToString() + "\n";
+  }
+  TextTable table({"hipADE / hipFDE in m", "recordings", "model", "static", "constant velocity"},
+                  {true, false, true, true, true});
+  auto add = [&table](const std::string& name, const MeanScore& model, const MeanScore& still,
+                      const MeanScore& velocity) {
+    table.Add({name, std::to_string(model.recordings), MeanText(model), MeanText(still),
+               MeanText(velocity)});
+  };
+  const auto& [m, s, v] = evaluation;
+  add("mean over recordings", m.mean, s.mean, v.mean);
+  add("frame-weighted", m.frame_weighted, s.frame_weighted, v.frame_weighted);
+  auto groups = [&](const char* what, const std::map<std::string, MeanScore> ScoreSummary::*by) {
+    for (const auto& [name, mean] : m.*by) {
+      add(what + name, mean, (s.*by).at(name), (v.*by).at(name));
+    }
+  };
+  if (m.by_magnitude.size() > 1) groups("strength ", &ScoreSummary::by_magnitude);
+  if (m.by_subject.size() > 1) groups("subject ", &ScoreSummary::by_subject);
+  if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
+  return text + table.ToString();
+}
+
+std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
+  std::string text;
+  if (rivals.empty()) return text;
+  TextTable folds({"fold", "held out", "hipADE m", "hipFDE m", "failed", "fell"},
+                  {true, false, false, false, false, false});
+  for (const FoldScore& fold : rivals[0].folds) {
+    folds.Add({fold.name, std::to_string(fold.held_out), Significant(fold.hip_ade, 3),
+               Significant(fold.hip_fde, 3), std::to_string(fold.failures),
+               std::to_string(fold.falls)});
+  }
+  text += folds.ToString() + "\n";
+  TextTable table({"held out", "hipADE m", "hipFDE m", "frame-weighted",
+                   "hipADE - " + rivals[0].predictor, "failed", "fell"},
+                  {true, true, true, true, true, false, false});
+  for (const CrossValidation& rival : rivals) {
+    const MeanScore& mean = rival.summary.mean;
+    const MeanScore& frames = rival.summary.frame_weighted;
+    const PairedDifference difference = Compare(rivals[0], rival);
+    table.Add({rival.predictor,
+               Significant(mean.hip_ade, 3) + " +- " + Significant(mean.hip_ade_error, 2),
+               Significant(mean.hip_fde, 3) + " +- " + Significant(mean.hip_fde_error, 2),
+               Significant(frames.hip_ade, 3) + " / " + Significant(frames.hip_fde, 3),
+               &rival == &rivals[0] ? ""
+                                    : Significant(difference.hip_ade, 2) + " +- " +
+                                          Significant(difference.hip_ade_error, 2),
+               std::to_string(rival.failures), std::to_string(rival.falls)});
+  }
+  return text + table.ToString();
+}
+
+}  // namespace pushid
