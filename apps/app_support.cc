@@ -2,6 +2,7 @@
 #include "apps/app_support.h"
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -53,7 +54,12 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)()) {
   g_program = path.substr(path.find_last_of('/') + 1);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(PUSHID_VERSION);
+  // What goes wrong inside the solver is told in our own words; --minloglevel=0 brings its log
+  // back.
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  FLAGS_logtostderr = true;
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
+  google::InitGoogleLogging(argv[0]);
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
     PrintHelp(usage);
     return kDone;

@@ -50,7 +50,7 @@ DEFINE_double(stability_weight, 0.0,
 
 DEFINE_string(horizons, "8,16,32,64", "frames of the stages before all frames, comma-separated");
 DEFINE_string(start, "equation_error", "first start: equation_error or nominal");
-DEFINE_int32(starts, 1, "how many starts; the best one is taken");
+DEFINE_int32(starts, 0, "how many starts; the best one is taken (default 0: the preset's)");
 DEFINE_double(start_spread, 5.0, "random starts multiply every gain by up to this, either way");
 DEFINE_uint64(seed, 1, "seed of everything random");
 DEFINE_int32(num_threads, 1, "threads");
@@ -128,23 +128,23 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.stability_weight = FLAGS_stability_weight;
   if (MaybeError error = ReadModel(&o)) return *error;
   if (MaybeError error = ReadHorizons(&o)) return *error;
-  for (MaybeError error :
-       {CheckPositive("sigma_hip", FLAGS_sigma_hip),
-        CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
-        CheckPositive("sigma_angle", FLAGS_sigma_angle),
-        CheckPositive("sigma_rate", FLAGS_sigma_rate),
-        CheckPositive("pooling_sigma", FLAGS_pooling_sigma), CheckPositive("starts", FLAGS_starts),
-        CheckPositive("num_threads", FLAGS_num_threads),
-        CheckPositive("max_iterations", FLAGS_max_iterations)}) {
+  for (MaybeError error : {CheckPositive("sigma_hip", FLAGS_sigma_hip),
+                           CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
+                           CheckPositive("sigma_angle", FLAGS_sigma_angle),
+                           CheckPositive("sigma_rate", FLAGS_sigma_rate),
+                           CheckPositive("pooling_sigma", FLAGS_pooling_sigma),
+                           CheckPositive("num_threads", FLAGS_num_threads),
+                           CheckPositive("max_iterations", FLAGS_max_iterations)}) {
     if (error) return *error;
   }
+  if (FLAGS_starts < 0) return Error{"--starts must not be negative"};
   if (FLAGS_start_spread < 1.0) return Error{"--start_spread must be at least 1"};
   if (FLAGS_robust < 0.0) return Error{"--robust must not be negative"};
 
+  FreeSelfForce(o.self_force, &o.table);
   if (!FLAGS_preset_priors) {
     for (ParameterSpec& spec : o.table.specs) spec.prior.reset();
   }
-  FreeSelfForce(o.self_force, &o.table);
   FixWhatDoesNotAct(o.model, &o.table);
   TableEdits edits;
   edits.fix = FLAGS_fix;
@@ -157,7 +157,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
               FLAGS_robust};
   o.pooling_sigma = FLAGS_pooling_sigma;
-  o.num_starts = FLAGS_starts;
+  o.num_starts = FLAGS_starts > 0 ? FLAGS_starts : preset.value().num_starts;
   o.start_spread = FLAGS_start_spread;
   o.seed = FLAGS_seed;
   o.num_threads = FLAGS_num_threads;

@@ -132,7 +132,7 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     const double sigma = spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean);
     auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.prior->mean), sigma);
     built->blocks.push_back(
-        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), -1});
+        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
   }
   for (auto& [name, values] : point->subject) {
     for (const FittedParameter& f : map_.fitted) {
@@ -143,15 +143,21 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
       auto* prior =
           new PriorResidual(map_.num_deviations, f.deviation, 0.0, options_.pooling_sigma * unit);
       built->blocks.push_back(
-          {built->problem->AddResidualBlock(prior, nullptr, values.data()), -1});
+          {built->problem->AddResidualBlock(prior, nullptr, values.data()), kPoolingCluster});
     }
   }
 }
 
 void FitProblem::AddRest(FitPoint* point, Built* built) const {
   auto add = [built](RestProblem rest, const std::vector<double*>& blocks) {
-    auto* residual = new RestResidual(std::move(rest));
-    built->blocks.push_back({built->problem->AddResidualBlock(residual, nullptr, blocks), -1});
+    auto residual = std::make_unique<RestResidual>(std::move(rest));
+    std::vector<double> values(residual->num_residuals());
+    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) {
+      ++built->rests_left_out;  // Ceres cannot start from a block that fails
+      return;
+    }
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
   };
   if (options_.settling_weight > 0.0) {
     for (double impulse : kDemonstrationImpulses) {

@@ -51,16 +51,21 @@ class FitProblem {
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
 
+  // Clusters of what is not data.
+  static constexpr int kPriorCluster = -1;    // priors on parameters, settling, stability
+  static constexpr int kPoolingCluster = -2;  // what ties the subjects' deviations to zero
+
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
   struct Built {
     std::unique_ptr<ceres::Problem> problem;
-    // One cluster per recording: the blocks whose scores belong together; cluster -1 of priors,
-    // settling and stability blocks, which are not data.
+    // Residual blocks by cluster: the recording they belong to, or one of the clusters below.
     std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
+    int rests_left_out = 0;  // demonstrations that could not be rolled out to their end here
   };
+
   Built Build(FitPoint* point, int horizon) const;
 
   // The same blocks with equation-error residuals instead of rollouts.

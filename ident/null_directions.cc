@@ -2,6 +2,7 @@
 #include "ident/null_directions.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -33,9 +34,10 @@ std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoi
                                          const Uncertainty& uncertainty) {
   const auto& fitted = problem.map().fitted;
   const ParameterTable& table = problem.options().table;
-  const size_t wanted = touched.size() > static_cast<size_t>(null_space.cols())
-                            ? touched.size() - null_space.cols()
-                            : 0;
+  const Eigen::MatrixXd own = null_space(touched, Eigen::all);
+  Eigen::FullPivLU<Eigen::MatrixXd> decomposition(own);
+  decomposition.setThreshold(kTouched);
+  const size_t wanted = touched.size() - static_cast<size_t>(decomposition.rank());
   std::vector<Combination> found;
   for (size_t a = 0; a < touched.size(); ++a) {
     for (size_t b = a + 1; b < touched.size() && found.size() < wanted; ++b) {
@@ -65,6 +67,28 @@ NullDirection NoEffect(const FitProblem& problem, int parameter) {
   return direction;
 }
 
+NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
+                          const std::vector<int>& group, const Eigen::MatrixXd& null_space,
+                          const Uncertainty& uncertainty) {
+  const Eigen::MatrixXd projector = null_space * null_space.transpose();
+  NullDirection joint;
+  int largest = group[0];
+  for (int i : group) {
+    if (projector(i, i) > projector(largest, largest)) largest = i;
+  }
+  for (int i : group) {
+    joint.parameters.push_back(problem.options().table[problem.map().fitted[i].parameter].name);
+    joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
+  }
+  joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
+  joint.sentence = JoinNames(joint.parameters) + " cannot be told apart";
+  for (const Combination& c : joint.identified) {
+    joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
+                      " " + c.unit + " is identified";
+  }
+  return joint;
+}
+
 }  // namespace
 
 std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,
@@ -74,35 +98,28 @@ std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const Fi
   if (null_space.cols() == 0) return directions;
   const auto& fitted = problem.map().fitted;
 
-  // Parameters that are a null direction of their own come first, the rest are told together.
-  std::vector<int> touched;
+  // Parameters belong together when one's share of the null space moves the other.
   const Eigen::MatrixXd projector = null_space * null_space.transpose();
+  std::vector<int> touched;
   for (int i = 0; i < static_cast<int>(fitted.size()); ++i) {
-    if (null_space.row(i).cwiseAbs().maxCoeff() <= kTouched) continue;
-    if (projector(i, i) > 1.0 - kTouched) {
-      directions.push_back(NoEffect(problem, i));
-    } else {
-      touched.push_back(i);
+    if (null_space.row(i).cwiseAbs().maxCoeff() > kTouched) touched.push_back(i);
+  }
+  while (!touched.empty()) {
+    std::vector<int> group = {touched[0]};
+    const auto in_group = [&group](int i) {
+      return std::find(group.begin(), group.end(), i) != group.end();
+    };
+    for (size_t k = 0; k < group.size(); ++k) {
+      for (int i : touched) {
+        if (!in_group(i) && std::abs(projector(group[k], i)) > kTouched) group.push_back(i);
+      }
     }
+    touched.erase(std::remove_if(touched.begin(), touched.end(), in_group), touched.end());
+    std::sort(group.begin(), group.end());
+    directions.push_back(group.size() == 1
+                             ? NoEffect(problem, group[0])
+                             : Inseparable(problem, point, group, null_space, uncertainty));
   }
-  if (touched.empty()) return directions;
-
-  NullDirection joint;
-  int largest = touched[0];
-  for (int i : touched) {
-    if (projector(i, i) > projector(largest, largest)) largest = i;
-  }
-  for (int i : touched) {
-    joint.parameters.push_back(problem.options().table[fitted[i].parameter].name);
-    joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
-  }
-  joint.identified = IdentifiedPairs(problem, point, touched, null_space, uncertainty);
-  joint.sentence = JoinNames(joint.parameters) + " cannot be told apart";
-  for (const Combination& c : joint.identified) {
-    joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
-                      " " + c.unit + " is identified";
-  }
-  directions.push_back(joint);
   return directions;
 }
 

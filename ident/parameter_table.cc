@@ -84,6 +84,7 @@ Preset LdpPreset() {
   // LDP's 200 per frame at 60 Hz.
   table[kKdTheta].nominal = table[kKdPhi].nominal = 200.0 / 60.0;
   for (Parameter id : {kMu, kMuY, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) table[id].free = true;
+  preset.num_starts = 12;  // several basins: some start in the best one
   preset.model.posture = Posture::kUpright;
   preset.model.gain_scaling = GainScaling::kMass;
   preset.model.friction = FrictionKind::kAnisotropic;
@@ -137,7 +138,12 @@ Result<Preset> MakePreset(const std::string& name) {
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   if (kind != SelfForceKind::kLinear) return;
-  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) (*table)[id].free = true;
+  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
+    ParameterSpec& spec = (*table)[id];
+    spec.free = true;
+    // As weak as the preset's own priors: without them these terms drive the person instead.
+    if (!spec.prior) spec.prior = Prior{spec.nominal, spec.scale};
+  }
 }
 
 }  // namespace pushid

@@ -56,13 +56,16 @@ std::string DerivedText(const FitResult& result) {
     table.Add({c.name, Significant(c.value), fixed ? "-" : Significant(c.standard_error, 3),
                fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
   }
-  const double kp = result.parameters[kKpX];
+  const ParameterTable& specs = result.options.table;
+  const std::string held = specs[kKpX].free || specs[kKpY].free
+                               ? "Here Kp is fitted too."
+                               : "Convention: Kp_x = " + Significant(result.parameters[kKpX]) +
+                                     ", Kp_y = " + Significant(result.parameters[kKpY]) +
+                                     " N s/m held, mu = c - Kp.";
   return table.ToString() +
-         "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. Convention: Kp_x = "
-         "Kp_y = " +
-         Significant(kp) +
-         " N s/m held, mu = c - Kp.\nGains are for a person of 85 kg with a rod of " +
-         "0.95 m (gain scaling: " + NameOf(result.options.model.gain_scaling) + ").\n";
+         "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " + held +
+         "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
+         NameOf(result.options.model.gain_scaling) + ").\n";
 }
 
 std::string CorrelationText(const FitResult& result) {
@@ -99,6 +102,11 @@ std::string BehaviourText(const FitResult& result) {
   text += "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
           (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
   return text;
+}
+
+std::string WithError(double value, double error, const MeanScore& mean) {
+  if (mean.recordings == 0) return "-";
+  return Significant(value, 3) + " +- " + Significant(error, 2);
 }
 
 std::string MeanText(const MeanScore& mean) {
@@ -203,13 +211,13 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
     const MeanScore& mean = rival.summary.mean;
     const MeanScore& frames = rival.summary.frame_weighted;
     const PairedDifference difference = Compare(rivals[0], rival);
-    table.Add({rival.predictor,
-               Significant(mean.hip_ade, 3) + " +- " + Significant(mean.hip_ade_error, 2),
-               Significant(mean.hip_fde, 3) + " +- " + Significant(mean.hip_fde_error, 2),
+    const bool compared = &rival != &rivals[0] && difference.recordings > 0;
+    table.Add({rival.predictor, WithError(mean.hip_ade, mean.hip_ade_error, mean),
+               WithError(mean.hip_fde, mean.hip_fde_error, mean),
                Significant(frames.hip_ade, 3) + " / " + Significant(frames.hip_fde, 3),
-               &rival == &rivals[0] ? ""
-                                    : Significant(difference.hip_ade, 2) + " +- " +
-                                          Significant(difference.hip_ade_error, 2),
+               compared ? Significant(difference.hip_ade, 2) + " +- " +
+                              Significant(difference.hip_ade_error, 2)
+                        : "",
                std::to_string(rival.failures), std::to_string(rival.falls)});
   }
   return text + table.ToString();

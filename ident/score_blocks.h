@@ -11,7 +11,7 @@ namespace pushid {
 struct ScoreBlocks {
   Eigen::MatrixXd jacobian;  // all residuals x all fitted numbers
   Eigen::VectorXd residuals;
-  std::vector<int> cluster_of_row;  // recording; -1: prior, settling or stability
+  std::vector<int> cluster_of_row;  // recording, or a cluster of FitProblem
   std::vector<int> clusters;        // the recordings present, ascending
   int num_data_rows = 0;
 };

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace pushid {
@@ -72,6 +73,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
 
   for (size_t i = 0; i < horizons.size(); ++i) {
     const bool last = i + 1 == horizons.size();
+    size_t left_out_before = std::numeric_limits<size_t>::max();
     // A recording that could not be rolled out to its end at the stage's start may well be after
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
@@ -89,7 +91,9 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       start.cost = stage.final_cost;
       start.converged = stage.converged;
       start.usable = stage.converged || stage.final_cost < stage.initial_cost;
-      if (built.shortened.empty() || start.failed.size() >= built.shortened.size()) break;
+      const size_t left_out = built.shortened.size() + built.rests_left_out;
+      if (left_out == 0 || left_out >= left_out_before) break;
+      left_out_before = left_out;
     }
   }
   return start;
@@ -147,7 +151,13 @@ Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
       kind = "nominal";
     }
     solution.starts.push_back(SolveFrom(problem, from, kind, label, progress));
-    const SolveStart& tried = solution.starts.back();
+    if (kind == "equation_error" && !solution.starts.back().usable) {
+      solution.starts.push_back(
+          SolveFrom(problem, problem.NominalPoint(), "nominal", label, progress));
+    }
+  }
+  for (int i = 0; i < static_cast<int>(solution.starts.size()); ++i) {
+    const SolveStart& tried = solution.starts[i];
     if (!tried.usable) continue;
     if (solution.best < 0 || tried.failed.size() < solution.Best().failed.size() ||
         (tried.failed.size() == solution.Best().failed.size() &&

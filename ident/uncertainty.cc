@@ -94,6 +94,54 @@ Eigen::MatrixXd ClusteredCovariance(const ScoreBlocks& score, const Eigen::Matri
   return (groups - 1.0) / groups * moves * moves.transpose();
 }
 
+// Right singular vectors, by the triangle of a QR decomposition.
+struct Directions {
+  Eigen::VectorXd singular;
+  Eigen::MatrixXd v;
+  int rank = 0;
+};
+Directions Decompose(const Eigen::MatrixXd& jacobian) {
+  const Eigen::Index size = jacobian.cols();
+  Eigen::MatrixXd triangle = jacobian;
+  if (jacobian.rows() >= size) {
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
+    triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
+  Directions directions{svd.singularValues(), svd.matrixV(), 0};
+  const Eigen::VectorXd& singular = directions.singular;
+  while (directions.rank < singular.size() &&
+         singular[directions.rank] > kNullSingularValue * singular[0]) {
+    ++directions.rank;
+  }
+  return directions;
+}
+
+// Directions that the recordings say nothing about, whatever priors and demonstrations say: a
+// number that only its prior holds is not identified.
+Eigen::MatrixXd DataNullSpace(const ScoreBlocks& score, const Eigen::MatrixXd& scaled,
+                              const std::vector<Column>& columns) {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+    if (score.cluster_of_row[row] != FitProblem::kPriorCluster) rows.push_back(row);
+  }
+  const Directions data = Decompose(scaled(rows, Eigen::all));
+  const int size = static_cast<int>(columns.size());
+  Eigen::MatrixXd null_space(size, 0);
+  for (int k = data.rank; k < size; ++k) {
+    const Eigen::VectorXd direction = data.v.col(k);
+    // Parameters on a bound make columns of zeros: those are not news.
+    double off_bound = 0.0;
+    for (int i = 0; i < size; ++i) {
+      if (!columns[i].at_bound) off_bound = std::max(off_bound, std::abs(direction[i]));
+    }
+    if (off_bound < kTouched) continue;
+    null_space.conservativeResize(size, null_space.cols() + 1);
+    null_space.rightCols(1) = direction;
+  }
+  return null_space;
+}
+
 EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
@@ -144,15 +192,9 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
   Eigen::VectorXd unit(size);
   for (int i = 0; i < size; ++i) unit[i] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
-  const Eigen::MatrixXd triangle =
-      scaled.rows() >= size
-          ? Eigen::MatrixXd(
-                scaled.householderQr().matrixQR().topRows(size).triangularView<Eigen::Upper>())
-          : scaled;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  const Eigen::VectorXd& singular = svd.singularValues();
-  int rank = 0;
-  while (rank < singular.size() && singular[rank] > kNullSingularValue * singular[0]) ++rank;
+  const Directions all = Decompose(scaled);
+  const int rank = all.rank;
+  const Eigen::VectorXd& singular = all.singular;
 
   Uncertainty u;
   u.num_residuals = score.num_data_rows;
@@ -168,7 +210,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
   u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : freedom);
 
   // In the base of the identified directions, then back to the fitted scale.
-  const Eigen::MatrixXd base = svd.matrixV().leftCols(rank);
+  const Eigen::MatrixXd base = all.v.leftCols(rank);
   const Eigen::MatrixXd back = unit.asDiagonal() * base;
   const Eigen::VectorXd inverse = singular.head(rank).cwiseInverse();
   const Eigen::MatrixXd naive =
@@ -179,19 +221,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
           : naive;
   u.correlation = Correlation(u.covariance);
 
-  Eigen::MatrixXd null_space(size, 0);
-  for (int k = 0; k < size; ++k) {
-    if (k < rank) continue;
-    const Eigen::VectorXd direction = svd.matrixV().col(k);
-    // Bounds make columns of zeros: those are not news.
-    double off_bound = 0.0;
-    for (int i = 0; i < size; ++i) {
-      if (!columns[i].at_bound) off_bound = std::max(off_bound, std::abs(direction[i]));
-    }
-    if (off_bound < kTouched) continue;
-    null_space.conservativeResize(size, null_space.cols() + 1);
-    null_space.rightCols(1) = direction;
-  }
+  const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
@@ -221,6 +251,15 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
   result.standard_error = std::sqrt(std::max(0.0, variance));
   result.lower95 = result.value - uncertainty.t_quantile * result.standard_error;
   result.upper95 = result.value + uncertainty.t_quantile * result.standard_error;
+  if (terms.size() == 1) {
+    // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
+    // log.
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].parameter != terms[0].parameter) continue;
+      result.lower95 = terms[0].coefficient * uncertainty.estimates[i].lower95;
+      result.upper95 = terms[0].coefficient * uncertainty.estimates[i].upper95;
+    }
+  }
   return result;
 }
 
