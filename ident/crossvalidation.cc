@@ -6,8 +6,9 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <random>
 #include <thread>
+
+#include "datasets/random.h"
 
 namespace pushid {
 namespace {
@@ -16,10 +17,10 @@ std::string PushedSubject(const PendulumRecording& recording) {
   return recording.subject_ids[recording.pushed_person];
 }
 
-// Fisher-Yates with own draws, the same on every standard library.
-void Shuffle(std::vector<int>* items, std::mt19937_64* generator) {
+// Fisher and Yates's shuffle.
+void Shuffle(std::vector<int>* items, Random* random) {
   for (size_t i = items->size(); i > 1; --i) {
-    std::swap((*items)[i - 1], (*items)[(*generator)() % i]);
+    std::swap((*items)[i - 1], (*items)[random->Fork() % i]);
   }
 }
 
@@ -30,13 +31,13 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
     strata[{recordings[i].magnitude, PushedSubject(recordings[i])}].push_back(i);
   }
   std::vector<Fold> folds;
-  std::mt19937_64 generator(seed);
+  Random random(seed);
   for (int repeat = 0; repeat < repeats; ++repeat) {
     std::vector<Fold> round(num_folds);
     int next = 0;  // carried over from stratum to stratum: folds stay equally large
     for (const auto& [key, members] : strata) {
       std::vector<int> shuffled = members;
-      Shuffle(&shuffled, &generator);
+      Shuffle(&shuffled, &random);
       for (int index : shuffled) round[next++ % num_folds].held_out.push_back(index);
     }
     for (int f = 0; f < num_folds; ++f) {

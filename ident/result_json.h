@@ -9,6 +9,8 @@
 
 namespace pushid {
 
+inline constexpr int kModelFormat = 1;  // raised when older readers would misread a file
+
 // What changes from run to run and stands under `run`.
 struct RunInfo {
   std::string date, host, model_path;

@@ -8,7 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <random>
+
+#include "datasets/random.h"
 
 namespace pushid {
 namespace {
@@ -117,13 +118,12 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
 }
 
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {
-  std::mt19937_64 generator(seed);
+  Random random(seed);
   FitPoint point = problem.NominalPoint();
   for (size_t i = 0; i < point.shared.size(); ++i) {
-    // Own uniform draw: std::uniform_real_distribution differs between standard libraries.
-    const double u = 2.0 * static_cast<double>(generator() >> 11) * 0x1.0p-53 - 1.0;
     const Transform transform = problem.map().fitted[i].transform;
-    const double natural = ToNatural(transform, point.shared[i]) * std::pow(spread, u);
+    const double natural =
+        ToNatural(transform, point.shared[i]) * std::pow(spread, random.Uniform(-1.0, 1.0));
     point.shared[i] = ToFitted(transform, natural);
   }
   return point;

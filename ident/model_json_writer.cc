@@ -1,0 +1,218 @@
+// ident: FitResult to JSON. model_json_reader.cc is the inverse.
+#include <cmath>
+
+#include "ident/option_names.h"
+#include "ident/result_json.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// JSON knows no infinity.
+Json Number(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return "nan";
+  return value > 0 ? "infinity" : "-infinity";
+}
+
+Json EstimateJson(const Estimate& e) {
+  return {{"name", e.name},
+          {"value", e.value},
+          {"standard_error", Number(e.standard_error)},
+          {"standard_error_naive", Number(e.standard_error_naive)},
+          {"interval_95", {Number(e.lower95), Number(e.upper95)}},
+          {"unit", e.unit},
+          {"status", NameOf(e.status)}};
+}
+
+Json CombinationJson(const Combination& c) {
+  return {{"name", c.name},
+          {"value", c.value},
+          {"standard_error", c.standard_error},
+          {"interval_95", {c.lower95, c.upper95}},
+          {"unit", c.unit}};
+}
+
+Json MatrixJson(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < matrix.cols(); ++j) row.push_back(Number(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json TableJson(const ParameterTable& table) {
+  Json rows = Json::array();
+  for (const ParameterSpec& spec : table.specs) {
+    Json row = {{"name", spec.name},       {"unit", spec.unit},
+                {"nominal", spec.nominal}, {"bounds", {spec.lower, spec.upper}},
+                {"scale", spec.scale},     {"transform", NameOf(spec.transform)},
+                {"free", spec.free},       {"pooled", spec.pooled},
+                {"meaning", spec.meaning}};
+    if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json OptionsJson(const FitOptions& o) {
+  return {{"preset", o.preset},
+          {"self_force", NameOf(o.self_force)},
+          {"mapping", NameOf(o.mapping)},
+          {"posture", NameOf(o.model.posture)},
+          {"gain_scaling", NameOf(o.model.gain_scaling)},
+          {"friction", NameOf(o.model.friction)},
+          {"push", NameOf(o.model.push)},
+          {"push_tail", NameOf(o.model.push_tail)},
+          {"cart_derivative", NameOf(o.model.cart_derivative)},
+          {"sigmas",
+           {{"hip_m", o.sigmas.hip},
+            {"velocity_m_s", o.sigmas.velocity},
+            {"angle_rad", o.sigmas.angle},
+            {"rate_rad_s", o.sigmas.rate},
+            {"robust", o.sigmas.robust}}},
+          {"recording_weight", NameOf(o.recording_weight)},
+          {"settling_weight", o.settling_weight},
+          {"stability_weight", o.stability_weight},
+          {"pooling_sigma", o.pooling_sigma},
+          {"horizons", o.horizons},
+          {"start", NameOf(o.start)},
+          {"num_starts", o.num_starts},
+          {"start_spread", o.start_spread},
+          {"seed", o.seed},
+          {"max_iterations", o.max_iterations},
+          {"function_tolerance", o.function_tolerance},
+          {"gradient_tolerance", o.gradient_tolerance},
+          {"parameter_tolerance", o.parameter_tolerance}};
+}
+
+Json BehaviourJson(const Behaviour& b) {
+  Json demonstrations = Json::array();
+  for (const Demonstration& d : b.demonstrations) {
+    demonstrations.push_back({{"mass_kg", d.mass},
+                              {"impulse_Ns", d.impulse},
+                              {"speed_m_s", d.speed},
+                              {"lean_rad", d.lean},
+                              {"distance_m", d.distance},
+                              {"fell", d.fell},
+                              {"settled", d.settled}});
+  }
+  return {{"settles", b.settles},
+          {"self_propelling", b.self_propelling},
+          {"fastest_growth_per_s", b.fastest_growth},
+          {"demonstrations", demonstrations}};
+}
+
+Json UncertaintyJson(const Uncertainty& u) {
+  Json names = Json::array(), nulls = Json::array();
+  for (const Estimate& e : u.estimates) names.push_back(e.name);
+  for (const NullDirection& n : u.null_directions) {
+    Json identified = Json::array();
+    for (const Combination& c : n.identified) identified.push_back(CombinationJson(c));
+    nulls.push_back({{"parameters", n.parameters},
+                     {"coefficients", n.coefficients},
+                     {"identified", identified},
+                     {"sentence", n.sentence}});
+  }
+  return {{"clustered_by", u.clustered ? "recording" : "none"},
+          {"clusters", u.num_clusters},
+          {"residuals", u.num_residuals},
+          {"sigma", u.sigma},
+          {"t_quantile", u.t_quantile},
+          {"condition_number", Number(u.condition_number)},
+          {"fitted", names},
+          {"covariance_fitted_scale", MatrixJson(u.covariance)},
+          {"correlation", MatrixJson(u.correlation)},
+          {"null_directions", nulls}};
+}
+
+Json StartsJson(const FitResult& result) {
+  Json starts = Json::array();
+  for (const SolveStart& s : result.starts) {
+    Json stages = Json::array();
+    for (const SolveStage& stage : s.stages) {
+      stages.push_back({{"horizon", stage.horizon},
+                        {"iterations", stage.iterations},
+                        {"initial_cost", stage.initial_cost},
+                        {"final_cost", stage.final_cost},
+                        {"converged", stage.converged}});
+    }
+    starts.push_back({{"kind", s.kind},
+                      {"usable", s.usable},
+                      {"converged", s.converged},
+                      {"cost", s.cost},
+                      {"iterations", s.iterations},
+                      {"failed_rollouts", s.failed.size()},
+                      {"from_fitted_scale", s.from.Flat()},
+                      {"to_fitted_scale", s.to.Flat()},
+                      {"stages", stages},
+                      {"message", s.message}});
+  }
+  return starts;
+}
+
+Json EstimatesJson(const std::vector<Estimate>& estimates) {
+  Json rows = Json::array();
+  for (const Estimate& e : estimates) rows.push_back(EstimateJson(e));
+  return rows;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
+  Json derived = Json::array(), recordings = Json::array();
+  Json subjects = Json::object(), values = Json::object();
+  for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
+  for (const ParameterSpec& spec : result.options.table.specs) {
+    values[spec.name] = result.parameters[spec.id];
+  }
+  for (const auto& [id, subject] : result.subjects) {
+    Json pooled = Json::object();
+    for (const auto& [name, estimate] : subject.pooled) pooled[name] = EstimateJson(estimate);
+    subjects[id] = {{"mass_kg", subject.mass_kg}, {"pooled", pooled}};
+  }
+  for (const FittedRecording& r : result.recordings) {
+    recordings.push_back({{"id", r.id},
+                          {"frames", r.frames},
+                          {"cost", r.cost},
+                          {"failure", r.failure},
+                          {"content_hash", r.content_hash}});
+  }
+  return {{"format", "pushid model"},
+          {"format_version", kModelFormat},
+          {"version", result.version},
+          {"model", OptionsJson(result.options)},
+          {"parameters", EstimatesJson(result.estimates)},
+          {"derived", derived},
+          {"nuisance", EstimatesJson(result.nuisance)},
+          {"subjects", subjects},
+          {"values", values},
+          {"behaviour", BehaviourJson(result.behaviour)},
+          {"uncertainty", UncertaintyJson(result.uncertainty)},
+          {"warnings", result.warnings},
+          {"fit",
+           {{"converged", result.converged},
+            {"cost", result.cost},
+            {"message", result.message},
+            {"best_start", result.best_start},
+            {"starts", StartsJson(result)}}},
+          {"table", TableJson(result.options.table)},
+          {"data",
+           {{"manifest_hash", result.manifest_hash},
+            {"setting", result.setting},
+            {"recordings", recordings}}},
+          {"configuration", result.configuration},
+          {"run",
+           {{"date", run.date},
+            {"host", run.host},
+            {"manifest", result.manifest},
+            {"model_out", run.model_path},
+            {"solve_seconds", result.solve_seconds},
+            {"total_seconds", run.total_seconds},
+            {"num_threads", run.num_threads}}}};
+}
+
+}  // namespace pushid
