@@ -1,0 +1,103 @@
+// What the tests of ident share: synthetic recordings as pendulums, and fits that may recover the
+// truth behind them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "datasets/pendulum_recording.h"
+#include "datasets/random.h"
+#include "datasets/synthetic_recordings.h"
+#include "ident/fit_result.h"
+
+namespace pushid {
+
+// 4 people, 6 pushes each, 70 frames: 24 recordings.
+inline SyntheticOptions SmallStudy() {
+  SyntheticOptions options;
+  options.frames = 70;
+  return options;
+}
+
+// 2 people, 3 pushes each, 45 frames: where only the machinery matters.
+inline SyntheticOptions TinyStudy() {
+  SyntheticOptions options;
+  options.subjects = 2;
+  options.recordings_per_subject = 3;
+  options.frames = 45;
+  options.joint_noise_m = 0.002;
+  return options;
+}
+
+inline std::vector<PendulumRecording> AsPendulums(const std::vector<Recording>& recordings) {
+  std::vector<PendulumRecording> pendulums;
+  for (const Recording& recording : recordings) {
+    pendulums.push_back(MakePendulumRecording(recording, SkeletonMapping::kExact));
+  }
+  return pendulums;
+}
+
+inline std::vector<PendulumRecording> MakePendulums(const SyntheticOptions& options) {
+  const auto made = MakeSyntheticRecordings(options);
+  EXPECT_TRUE(made.ok()) << made.error().ToString();
+  return AsPendulums(Recordings(made.value()));
+}
+
+// The tail preset as a user gets it, its fixed parameters at the truth of `study`.
+inline FitOptions DefaultFit(const SyntheticOptions& study) {
+  const Preset preset = MakePreset("tail").value();
+  FitOptions options;
+  options.preset = preset.name;
+  options.model = study.model;
+  options.table = preset.table;
+  options.settling_weight = preset.settling_weight;
+  options.num_starts = preset.num_starts;
+  for (ParameterSpec& spec : options.table.specs) {
+    if (!spec.free) spec.nominal = study.parameters[spec.id];
+  }
+  return options;
+}
+
+// Without whatever pulls a fit away from the data: priors, settling, stability, robust loss.
+inline FitOptions UnbiasedFit(const SyntheticOptions& study) {
+  FitOptions options = DefaultFit(study);
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = options.stability_weight = 0.0;
+  options.sigmas.robust = 0.0;
+  return options;
+}
+
+// For noise-free data: on until rounding errors end it.
+inline FitOptions ExactFit(const SyntheticOptions& study) {
+  FitOptions options = UnbiasedFit(study);
+  options.function_tolerance = 1e-30;
+  options.gradient_tolerance = 1e-30;
+  options.parameter_tolerance = 1e-14;
+  return options;
+}
+
+// The free parameters of `options` start from the truth times a factor within [1 / 5, 5].
+inline FitPoint WrongStart(const FitProblem& problem, const ParameterSet<double>& truth,
+                           uint64_t seed) {
+  Random random(seed);
+  FitPoint point = problem.NominalPoint();
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const double factor = std::pow(5.0, random.Uniform(-1.0, 1.0));
+    point.shared[i] = ToFitted(fitted[i].transform, truth[fitted[i].parameter] * factor);
+  }
+  return point;
+}
+
+inline const Estimate* FindEstimate(const std::vector<Estimate>& estimates,
+                                    const std::string& name) {
+  for (const Estimate& estimate : estimates) {
+    if (estimate.name == name) return &estimate;
+  }
+  return nullptr;
+}
+
+}  // namespace pushid

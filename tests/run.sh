@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds everything and runs every test; ctest's summary stands last.
+# Tests that need the published recordings look in PUSHID_RECORDINGS (default ../shared/fzj_push) and
+# count as skipped where there are none.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source tests/install_packages.sh
+install_packages "${build_packages[@]}" "${test_packages[@]}"
+
+export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
+generator=()
+command -v ninja >/dev/null && [ ! -f build/release/CMakeCache.txt ] && generator=(-G Ninja)
+cmake --preset release "${generator[@]}"
+cmake --build --preset release --parallel "$(nproc)"
+ctest --preset release --parallel "$(nproc)"
