@@ -6,8 +6,10 @@
 #include "apps/app_support.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
+#include "ident/truth_table.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
+DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
 
 namespace {
 
@@ -19,6 +21,12 @@ int Run() {
   }
   const Result<FitResult> result = ReadFitResult(FLAGS_model);
   if (!result.ok()) return Fail(result.error());
+  if (!FLAGS_truth.empty()) {
+    const Result<std::map<std::string, double>> truth = ReadTruth(FLAGS_truth);
+    if (!truth.ok()) return Fail(truth.error());
+    std::printf("%s", TruthTable(result.value(), truth.value()).c_str());
+    return kDone;
+  }
   std::printf("%s", ReportText(result.value()).c_str());
   return kDone;
 }
