@@ -3,6 +3,7 @@
 
 #include <gflags/gflags.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "ident/option_names.h"
@@ -85,13 +86,15 @@ MaybeError ReadModel(FitOptions* o) {
   return std::nullopt;
 }
 
+constexpr long kLongestHorizon = 1000000;  // frames
+
 MaybeError ReadHorizons(FitOptions* o) {
   o->horizons.clear();
   std::stringstream list(FLAGS_horizons);
   for (std::string part; std::getline(list, part, ',');) {
     char* end = nullptr;
     const long frames = std::strtol(part.c_str(), &end, 10);
-    if (part.empty() || *end != '\0' || frames < 2) {
+    if (part.empty() || *end != '\0' || frames < 2 || frames > kLongestHorizon) {
       return Error{"--horizons: '" + part + "' is no number of frames of at least 2"};
     }
     o->horizons.push_back(static_cast<int>(frames));
@@ -100,9 +103,39 @@ MaybeError ReadHorizons(FitOptions* o) {
   return std::nullopt;
 }
 
+// Written so that NaN and infinity fail.
 MaybeError CheckPositive(const char* flag, double value) {
-  if (value > 0.0) return std::nullopt;
+  if (value > 0.0 && std::isfinite(value)) return std::nullopt;
   return Error{std::string("--") + flag + " must be positive"};
+}
+
+MaybeError CheckNotNegative(const char* flag, double value) {
+  if (value >= 0.0 && std::isfinite(value)) return std::nullopt;
+  return Error{std::string("--") + flag + " must be a number of at least 0"};
+}
+
+MaybeError CheckNumbers() {
+  for (MaybeError error : {CheckPositive("sigma_hip", FLAGS_sigma_hip),
+                           CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
+                           CheckPositive("sigma_angle", FLAGS_sigma_angle),
+                           CheckPositive("sigma_rate", FLAGS_sigma_rate),
+                           CheckPositive("pooling_sigma", FLAGS_pooling_sigma),
+                           CheckPositive("num_threads", FLAGS_num_threads),
+                           CheckPositive("max_iterations", FLAGS_max_iterations),
+                           CheckNotNegative("robust", FLAGS_robust),
+                           CheckNotNegative("stability_weight", FLAGS_stability_weight),
+                           CheckNotNegative("starts", FLAGS_starts),
+                           CheckNotNegative("function_tolerance", FLAGS_function_tolerance),
+                           CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
+                           CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
+    if (error) return error;
+  }
+  // Below zero stands for the preset's weight.
+  if (!std::isfinite(FLAGS_settling_weight)) return Error{"--settling_weight must be a number"};
+  if (!(FLAGS_start_spread >= 1.0 && FLAGS_start_spread <= 1000.0)) {
+    return Error{"--start_spread must lie between 1 and 1000"};
+  }
+  return std::nullopt;
 }
 
 // Parameters of terms that the options switched off must not be fitted: they have no effect.
@@ -128,18 +161,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.stability_weight = FLAGS_stability_weight;
   if (MaybeError error = ReadModel(&o)) return *error;
   if (MaybeError error = ReadHorizons(&o)) return *error;
-  for (MaybeError error : {CheckPositive("sigma_hip", FLAGS_sigma_hip),
-                           CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
-                           CheckPositive("sigma_angle", FLAGS_sigma_angle),
-                           CheckPositive("sigma_rate", FLAGS_sigma_rate),
-                           CheckPositive("pooling_sigma", FLAGS_pooling_sigma),
-                           CheckPositive("num_threads", FLAGS_num_threads),
-                           CheckPositive("max_iterations", FLAGS_max_iterations)}) {
-    if (error) return *error;
-  }
-  if (FLAGS_starts < 0) return Error{"--starts must not be negative"};
-  if (FLAGS_start_spread < 1.0) return Error{"--start_spread must be at least 1"};
-  if (FLAGS_robust < 0.0) return Error{"--robust must not be negative"};
+  if (MaybeError error = CheckNumbers()) return *error;
 
   FreeSelfForce(o.self_force, &o.table);
   if (!FLAGS_preset_priors) {

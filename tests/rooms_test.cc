@@ -1,0 +1,85 @@
+// Dependencies point down only: apps -> ident -> residuals -> models. datasets serves residuals,
+// ident and apps, and may use models; models knows nobody.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"models", {}},
+    {"datasets", {"models"}},
+    {"residuals", {"datasets", "models"}},
+    {"ident", {"residuals", "datasets", "models"}},
+    {"apps", {"ident", "residuals", "datasets", "models"}},
+};
+
+std::vector<fs::path> Sources(const fs::path& room) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(room)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".h" || extension == ".cc") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// visit(line number, what stands between the quotes or brackets)
+template <typename Visit>
+void ForEachInclude(const fs::path& file, Visit visit) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*["<]([^">]+)[">].*)");
+  std::ifstream stream(file);
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    std::smatch match;
+    if (std::regex_match(line, match, kInclude)) visit(number, match[1].str());
+  }
+}
+
+TEST(RoomsTest, NothingIncludesUpward) {
+  int files = 0;
+  for (const auto& [room, allowed] : kMayInclude) {
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      ++files;
+      ForEachInclude(file, [&, &of = room, &may = allowed](int line, const std::string& included) {
+        EXPECT_EQ(included.find(".."), std::string::npos)
+            << file << ":" << line << ": includes are written from the top: " << included;
+        const std::string target = included.substr(0, included.find('/'));
+        EXPECT_NE(target, "tests") << file << ":" << line;
+        if (kMayInclude.count(target) == 0 || target == of) return;
+        EXPECT_TRUE(may.count(target) == 1)
+            << file << ":" << line << ": " << of << " must not include " << included;
+      });
+    }
+  }
+  EXPECT_GT(files, 50) << "the sources were not found";
+}
+
+// The maths stays free of the solver, the log, JSON and files.
+TEST(RoomsTest, ModelsArePlainMaths) {
+  const std::vector<std::string> forbidden = {"ceres/",  "glog/",  "gflags/",    "nlohmann/",
+                                              "fstream", "cstdio", "filesystem", "iostream"};
+  for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / "models")) {
+    // The networks of restoration/ load their weights.
+    if (file.string().find("/restoration/") != std::string::npos) continue;
+    ForEachInclude(file, [&](int line, const std::string& included) {
+      for (const std::string& start : forbidden) {
+        EXPECT_NE(included.rfind(start, 0), 0u) << file << ":" << line << ": " << included;
+      }
+    });
+  }
+}
+
+}  // namespace
+}  // namespace pushid
