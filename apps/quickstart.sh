@@ -35,7 +35,7 @@ say "Identifying friction, balance gains and the push tail (no priors: the truth
 say "Predicting the held-out pushes"
 "$bin/pushid-evaluate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --per_recording=false --json_out="$out/scores.json"
-id=S01_00  # any of the held-out ones
+id=S01_00_weak
 "$bin/pushid-predict" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --id="$id" --out="$out/trajectory.csv"
 
