@@ -191,12 +191,16 @@ Result<FitOptions> FitOptionsFromFlags() {
 }
 
 Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
+  // Other flags than those of this file would be taken and do nothing.
+  const std::string this_file = gflags::GetCommandLineFlagInfoOrDie("preset").filename;
   const gflags::FlagSaver saver;
   std::stringstream list(extra_flags);
   for (std::string word; list >> word;) {
     const size_t equals = word.find('=');
     const std::string name = word.substr(0, equals);
+    gflags::CommandLineFlagInfo flag;
     if (name.rfind("--", 0) != 0 || equals == std::string::npos ||
+        !gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) || flag.filename != this_file ||
         gflags::SetCommandLineOption(name.c_str() + 2, word.c_str() + equals + 1).empty()) {
       return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
     }

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <set>
 #include <sstream>
 
 #include "apps/app_support.h"
@@ -56,6 +57,17 @@ MaybeError AddRivals(Predictors* predictors) {
   return std::nullopt;
 }
 
+// Two of one name could not be told apart in the tables.
+MaybeError CheckNames(const Predictors& predictors) {
+  std::set<std::string> names;
+  for (const auto& predictor : predictors) {
+    if (names.insert(predictor->name).second) continue;
+    return Error{"--compare: there is more than one '" + predictor->name +
+                 "'; name the configurations differently"};
+  }
+  return std::nullopt;
+}
+
 int Run() {
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
@@ -70,11 +82,13 @@ int Run() {
     predictors.push_back(
         std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
   }
+  if (MaybeError error = CheckNames(predictors)) return Fail(*error);
   if (!FLAGS_json_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
   }
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
+  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(recordings.value(), options.value().mapping);
   const Result<std::vector<Fold>> folds =

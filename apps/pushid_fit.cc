@@ -34,12 +34,7 @@ int Run() {
   }
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
-  for (const Recording& recording : recordings.value()) {
-    if (recording.pushes.empty()) {
-      return Fail("recording " + recording.id +
-                  " has no push: estimate one with pushid-push, or leave it out (--ids)");
-    }
-  }
+  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(recordings.value(), options.value().mapping);
 

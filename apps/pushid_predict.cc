@@ -16,6 +16,8 @@ DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
 
 namespace {
 
+constexpr int kMostFrames = 1000000;  // hours of motion
+
 int Run() {
   using namespace pushid;
   const Result<IdentifiedModel> model = LoadFlaggedModel();
@@ -26,7 +28,9 @@ int Run() {
   if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) {
     return Fail(*missing);
   }
-  if (FLAGS_frames < 0 || FLAGS_frames == 1) return Fail("--frames must be 0 or at least 2");
+  if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
+    return Fail("--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames));
+  }
   if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
   if (!recordings.ok()) return Fail(recordings.error());

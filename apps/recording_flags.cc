@@ -38,6 +38,16 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   return recordings;
 }
 
+MaybeError CheckPushed(const std::vector<Recording>& recordings) {
+  for (const Recording& recording : recordings) {
+    if (!recording.pushes.empty()) continue;
+    return Error{"recording " + recording.id +
+                     " has no push: estimate one with pushid-push, or leave it out (--ids)",
+                 FLAGS_recordings};
+  }
+  return std::nullopt;
+}
+
 std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
                                              SkeletonMapping mapping) {
   std::vector<PendulumRecording> pendulums;

@@ -18,6 +18,9 @@ namespace pushid {
 // flag's may be asked for.
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {});
 
+// Whether there is a push in every one of them: without it there is nothing to learn from.
+MaybeError CheckPushed(const std::vector<Recording>& recordings);
+
 std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
                                              SkeletonMapping mapping);
 

@@ -167,60 +167,99 @@ std::vector<SolveStart> StartsFrom(const Json& json) {
   return starts;
 }
 
+// What the types alone do not ensure and readers of a result rely on.
+void CheckConsistent(const FitResult& result) {
+  if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
+    throw std::runtime_error("best_start is none of the starts");
+  }
+  const Uncertainty& u = result.uncertainty;
+  if (u.correlation.rows() > static_cast<int>(u.estimates.size())) {
+    throw std::runtime_error("correlation and parameters do not belong together");
+  }
+  if (!(result.parameters[kTailTime] > 0.0)) {
+    throw std::runtime_error("tail_time must be positive");
+  }
+  for (const auto& [id, subject] : result.subjects) {
+    for (const auto& [name, estimate] : subject.pooled) {
+      if (result.options.table.Find(name) == nullptr) {
+        throw std::runtime_error("subject " + id + " has an unknown parameter '" + name + "'");
+      }
+    }
+  }
+}
+
+// "[json.exception.type_error.302] type must be number, but is string": the end is for people.
+std::string Reason(const std::exception& exception) {
+  const std::string text = exception.what();
+  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
+
 }  // namespace
 
 Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file) {
-  if (!json.is_object() || json.value("format", "") != "pushid model") {
+  if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
+      !json.contains("format_version") || !json["format_version"].is_number()) {
     return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
   }
-  if (json.value("format_version", 0) > kModelFormat) {
+  if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
   }
+  std::string part;  // the one being read
+  const auto at = [&json, &part](const char* key) -> const Json& {
+    part = key;
+    return json.at(key);
+  };
   try {
     FitResult result;
     const Preset known = MakePreset("tail").value();
-    result.options = OptionsFrom(json.at("model"));
-    result.options.table = TableFrom(json.at("table"), known.table);
-    result.version = json.at("version");
-    for (const Json& e : json.at("parameters")) result.estimates.push_back(EstimateFrom(e));
-    for (const Json& e : json.at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
-    for (const Json& c : json.at("derived")) result.derived.push_back(CombinationFrom(c));
-    for (const auto& [id, subject] : json.at("subjects").items()) {
+    result.options = OptionsFrom(at("model"));
+    result.options.table = TableFrom(at("table"), known.table);
+    result.version = at("version");
+    for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
+    for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
+    for (const Json& c : at("derived")) result.derived.push_back(CombinationFrom(c));
+    for (const auto& [id, subject] : at("subjects").items()) {
       result.subjects[id].mass_kg = subject.at("mass_kg");
       for (const auto& [name, estimate] : subject.at("pooled").items()) {
         result.subjects[id].pooled[name] = EstimateFrom(estimate);
       }
     }
     for (const ParameterSpec& spec : result.options.table.specs) {
-      result.parameters[spec.id] = json.at("values").at(spec.name);
+      const Json& values = at("values");
+      part = "values/" + spec.name;
+      result.parameters[spec.id] = values.at(spec.name);
     }
-    result.behaviour = BehaviourFrom(json.at("behaviour"));
-    result.uncertainty = UncertaintyFrom(json.at("uncertainty"));
+    result.behaviour = BehaviourFrom(at("behaviour"));
+    result.uncertainty = UncertaintyFrom(at("uncertainty"));
     for (const Estimate& e : result.estimates) {
       if (e.status == EstimateStatus::kFixed) continue;
       result.uncertainty.estimates.push_back(e);
     }
     result.uncertainty.estimates.insert(result.uncertainty.estimates.end(), result.nuisance.begin(),
                                         result.nuisance.end());
-    result.warnings = json.at("warnings").get<std::vector<std::string>>();
-    const Json& fit = json.at("fit");
+    result.warnings = at("warnings").get<std::vector<std::string>>();
+    const Json& fit = at("fit");
     result.converged = fit.at("converged");
     result.cost = fit.at("cost");
     result.message = fit.at("message");
     result.best_start = fit.at("best_start");
     result.starts = StartsFrom(fit.at("starts"));
-    result.manifest_hash = json.at("data").at("manifest_hash");
-    result.setting = json.at("data").at("setting");
-    for (const Json& r : json.at("data").at("recordings")) {
+    result.manifest_hash = at("data").at("manifest_hash");
+    result.setting = at("data").at("setting");
+    for (const Json& r : at("data").at("recordings")) {
       result.recordings.push_back(
           {r.at("id"), r.at("content_hash"), r.at("frames"), r.at("cost"), r.at("failure")});
     }
-    result.configuration = json.at("configuration").get<std::map<std::string, std::string>>();
-    result.manifest = json.at("run").at("manifest");
-    result.solve_seconds = json.at("run").at("solve_seconds");
+    result.configuration = at("configuration").get<std::map<std::string, std::string>>();
+    result.manifest = at("run").at("manifest");
+    result.solve_seconds = at("run").at("solve_seconds");
+    CheckConsistent(result);
     return result;
   } catch (const std::exception& exception) {
-    return Error{std::string("incomplete or damaged model: ") + exception.what(), file};
+    return Error{"incomplete or damaged model, at '" + part + "': " + Reason(exception) +
+                     "; take another copy or fit again",
+                 file};
   }
 }
 

@@ -1,0 +1,181 @@
+// Flags that make no sense, outputs that cannot be written, models that are none: exit 1, one line,
+// before any fit starts.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+using BadUsageTest = AppTest;
+
+struct Case {
+  std::vector<std::string> flags;
+  std::vector<std::string> says;
+};
+
+TEST_F(BadUsageTest, FitFlags) {
+  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent";
+  const std::vector<Case> cases = {
+      {{"--fix=mew"}, {"--fix", "'mew'", "no parameter", "Kp_theta"}},
+      {{"--free=mew"}, {"--free", "'mew'"}},
+      {{"--fix=mu=fast"}, {"--fix", "'mu=fast'", "number"}},
+      {{"--fix=mu=nan"}, {"--fix", "'mu=nan'", "number"}},
+      {{"--free=Kp_theta=0"}, {"--free", "Kp_theta = 0", "bounds"}},
+      {{"--free=Kp_theta=-5"}, {"--free", "Kp_theta = -5", "bounds"}},
+      {{"--fix=tail_time=0"}, {"--fix", "tail_time = 0", "bounds"}},
+      {{"--fix=tail_gain=-1"}, {"--fix", "tail_gain = -1", "bounds"}},
+      {{"--prior=mu:100"}, {"--prior", "name:mean:sigma"}},
+      {{"--prior=mu:100:0"}, {"--prior", "sigma > 0"}},
+      {{"--pool=Kp_x"}, {"--pool", "Kp_x", "fixed"}},
+      {{"--fix=" + all_free}, {"every parameter is fixed"}},
+      {{"--preset=best"}, {"--preset", "'best'", "tail or ldp"}},
+      {{"--self_force=lstm"}, {"--self_force", "'lstm'"}},
+      {{"--posture=lying"}, {"--posture", "'lying'"}},
+      {{"--push_tail=long"}, {"--push_tail", "'long'"}},
+      {{"--setting=double"}, {"--setting=double", "manifest.json", "single"}},
+      {{"--setting=groups"}, {"--setting=groups", "more than one person"}},
+      {{"--ids=nobody"}, {"'nobody'", "manifest.json"}},
+      {{"--length_unit=inch"}, {"--length_unit", "'inch'", "mm, cm or m"}},
+      {{"--horizons=8,x"}, {"--horizons", "'x'"}},
+      {{"--horizons=99999999999999"}, {"--horizons", "'99999999999999'"}},
+      {{"--sigma_hip=0"}, {"--sigma_hip", "positive"}},
+      {{"--sigma_hip=inf"}, {"--sigma_hip", "positive"}},
+      {{"--robust=-1"}, {"--robust"}},
+      {{"--robust=nan"}, {"--robust"}},
+      {{"--settling_weight=nan"}, {"--settling_weight"}},
+      {{"--stability_weight=-1"}, {"--stability_weight"}},
+      {{"--stability_weight=inf"}, {"--stability_weight"}},
+      {{"--starts=-1"}, {"--starts"}},
+      {{"--start_spread=0.5"}, {"--start_spread"}},
+      {{"--start_spread=nan"}, {"--start_spread"}},
+      {{"--num_threads=0"}, {"--num_threads"}},
+      {{"--max_iterations=0"}, {"--max_iterations"}},
+      {{"--function_tolerance=-1"}, {"--function_tolerance"}},
+      {{"--function_tolerance=nan"}, {"--function_tolerance"}},
+      {{"--seed=abc"}, {"seed", "abc"}},
+  };
+  const int files = CountFiles();
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.flags[0]);
+    std::vector<std::string> flags = {Recordings(), "--model_out=" + Path("out.json")};
+    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
+    EXPECT_TRUE(Refused(RunApp("pushid-fit", flags, 30), one.says));
+  }
+  EXPECT_EQ(CountFiles(), files) << "something was written";
+}
+
+TEST_F(BadUsageTest, OutputsThatCannotBeWrittenAreRefusedBeforeTheFit) {
+  WriteText("not_a_folder", "");
+  const std::string model = "--model=" + FitModel();
+  for (const std::string& out :
+       {Path("missing/model.json"), folder_.string(), Path("not_a_folder/model.json"),
+        std::string("/proc/model.json")}) {
+    SCOPED_TRACE(out);
+    // No progress on stderr: Refused wants the error alone.
+    EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--model_out=" + out}), {out}));
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-crossvalidate", {Recordings(), "--json_out=" + out}), {out}));
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out}), {out}));
+    EXPECT_TRUE(Refused(
+        RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out}), {out}));
+  }
+}
+
+TEST_F(BadUsageTest, Models) {
+  const std::string good = ReadText(FitModel());
+  auto json = [&good](auto change) {
+    nlohmann::ordered_json model = nlohmann::ordered_json::parse(good);
+    change(model);
+    return model.dump(1);
+  };
+  const std::vector<std::pair<std::string, std::string>> models = {
+      {"", "empty"},
+      {good.substr(0, good.size() / 2), "JSON"},
+      {"[]\n", "model"},
+      {"{}\n", "no pushid model"},
+      {ReadText(manifest_), "no pushid model"},
+      {json([](auto& m) { m["format_version"] = 999; }), "newer"},
+      {json([](auto& m) { m["values"].erase("mu"); }), "'values/mu'"},
+      {json([](auto& m) { m["values"]["mu"] = "much"; }), "'values/mu'"},
+      {json([](auto& m) { m["values"]["mu"] = nullptr; }), "'values/mu'"},
+      {json([](auto& m) { m["model"]["posture"] = "lying"; }), "posture"},
+      {json([](auto& m) { m.erase("table"); }), "table"},
+      {json([](auto& m) { m["parameters"] = 3; }), "'parameters'"},
+      {json([](auto& m) { m["format"] = 3; }), "no pushid model"},
+      {json([](auto& m) { m["format_version"] = "new"; }), "no pushid model"},
+      {json([](auto& m) { m["values"]["tail_time"] = 0; }), "tail_time"},
+      {json([](auto& m) { m["fit"]["best_start"] = 7; }), "best_start"},
+      {json([](auto& m) { m["parameters"].erase(m["parameters"].begin()); }), "correlation"},
+  };
+  for (const auto& [text, says] : models) {
+    SCOPED_TRACE("a model that must be refused for its " + says);
+    const std::string model = "--model=" + WriteText("damaged.json", text);
+    EXPECT_TRUE(Refused(RunApp("pushid-report", {model}), {"damaged.json", says}));
+    EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {model, Recordings()}), {"damaged.json", says}));
+    EXPECT_TRUE(Refused(
+        RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + Path("out.csv")}),
+        {"damaged.json", says}));
+  }
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-report", {"--model=" + Path("none")}), {"none", "no such file"}));
+}
+
+TEST_F(BadUsageTest, WhatIfsAndIds) {
+  const std::string model = "--model=" + FitModel();
+  const std::string out = "--out=" + Path("out.csv");
+  const std::vector<Case> cases = {
+      {{"--set=mew=1"}, {"--set", "'mew'"}},
+      {{"--set=mu"}, {"--set", "mu"}},
+      {{"--set=mu=fast"}, {"--set", "'mu=fast'"}},
+      {{"--set=tail_time=0"}, {"--set", "tail_time = 0"}},
+      {{"--set=Kp_theta=-1"}, {"--set", "Kp_theta = -1"}},
+      {{"--id=nobody"}, {"'nobody'"}},
+      {{"--frames=-1"}, {"--frames"}},
+      {{"--frames=1"}, {"--frames"}},
+      {{"--frames=2000000000"}, {"--frames"}},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.flags[0]);
+    std::vector<std::string> flags = {model, Recordings(), "--id=" + id_, out};
+    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
+    EXPECT_TRUE(Refused(RunApp("pushid-predict", flags, 30), one.says));
+    EXPECT_FALSE(std::filesystem::exists(Path("out.csv")));
+  }
+}
+
+TEST_F(BadUsageTest, CrossValidationFlags) {
+  const std::vector<Case> cases = {
+      {{"--scheme=random"}, {"--scheme", "'random'"}},
+      {{"--folds=1"}, {"--folds"}},
+      {{"--folds=13"}, {"--folds"}},
+      {{"--repeats=0"}, {"--repeats"}},
+      {{"--compare=ldp"}, {"--compare", "'ldp'", "name:"}},
+      {{"--compare=pd: preset=ldp"}, {"--compare", "'preset=ldp'"}},
+      {{"--compare=pd: --preset=best"}, {"--compare", "'best'"}},
+      {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
+      {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
+      {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.flags[0]);
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-crossvalidate", {Recordings(), one.flags[0]}, 30), one.says));
+  }
+  const std::string one_subject = ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& r : json["recordings"]) r["subjects"][0]["id"] = "s1";
+  });
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-crossvalidate", {one_subject, "--scheme=subject"}), {"subject"}));
+  const std::string no_strong = ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& r : json["recordings"]) r["magnitude"] = "weak";
+  });
+  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {no_strong, "--scheme=strong"}), {"strong"}));
+}
+
+}  // namespace
+}  // namespace pushid

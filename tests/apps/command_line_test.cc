@@ -1,0 +1,102 @@
+// What all executables share: help, version, flag files, exit codes, what goes to which stream.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+using CommandLineTest = AppTest;
+
+struct App {
+  const char* name;
+  const char* flag;  // one that its help must name
+};
+const std::vector<App> kApps = {{"pushid-fit", "--model_out"},       {"pushid-report", "--model"},
+                                {"pushid-evaluate", "--json_out"},   {"pushid-predict", "--id"},
+                                {"pushid-simulate", "--out"},        {"pushid-push", "--sensor"},
+                                {"pushid-crossvalidate", "--scheme"}};
+
+TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
+  for (const App& app : kApps) {
+    const AppRun run = RunApp(app.name, {"--help"});
+    EXPECT_EQ(run.exit_code, 0) << app.name;
+    EXPECT_TRUE(Contains(run.out, std::string("  ") + app.name)) << "an example call";
+    EXPECT_TRUE(Contains(run.out, app.flag));
+    EXPECT_TRUE(Contains(run.out, "--flagfile"));
+    EXPECT_TRUE(Contains(run.out, "--version"));
+    EXPECT_EQ(run.out.find("minloglevel"), std::string::npos) << "flags of other libraries";
+    EXPECT_EQ(run.err, "");
+  }
+}
+
+TEST_F(CommandLineTest, VersionIsTheProgramAndANumber) {
+  for (const App& app : kApps) {
+    const AppRun run = RunApp(app.name, {"--version"});
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_TRUE(Contains(run.out, std::string(app.name) + " 0.")) << run.err;
+  }
+}
+
+TEST_F(CommandLineTest, UnknownFlagsAndLooseWordsAreRefused) {
+  for (const App& app : kApps) {
+    EXPECT_TRUE(Refused(RunApp(app.name, {"--no_such_flag=1"}), {"no_such_flag"}));
+    EXPECT_TRUE(Refused(RunApp(app.name, {"manifest.json"}), {"'manifest.json'", "--help"}));
+  }
+}
+
+TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {}), {"--recordings", "manifest.json"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {}), {"--recordings", "manifest.json"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-push", {}), {"--id", "manifest"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {}), {"--out"}));
+  for (const char* app : {"pushid-report", "pushid-evaluate", "pushid-predict"}) {
+    EXPECT_TRUE(Refused(RunApp(app, {}), {"--model", "pushid-fit --model_out"}));
+  }
+  const std::string model = "--model=" + FitModel();
+  EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {model}), {"--recordings"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-push", {Recordings()}), {"--id"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-predict", {model, Recordings()}), {"--id"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_}), {"--out"}));
+}
+
+TEST_F(CommandLineTest, AFlagFileCountsLikeFlags) {
+  const std::string flags =
+      WriteText("fit.flags", Recordings() + "\n--fix=mu=33\n--model_out=" + Path("m.json") + "\n");
+  const AppRun run = RunApp("pushid-fit", {"--flagfile=" + flags});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json(Path("m.json"))["values"]["mu"], 33.0);
+}
+
+TEST_F(CommandLineTest, ProgressIsPlainLinesOnStderrAndCanBeSilenced) {
+  FitModel();
+  EXPECT_TRUE(Contains(fit_.err, "fitting "));
+  EXPECT_EQ(fit_.err.find('\r'), std::string::npos) << "no terminal: nothing to redraw";
+  EXPECT_EQ(fit_.err.back(), '\n');
+  EXPECT_EQ(fit_.out.find("fitting "), std::string::npos);
+  FitModel("quiet.json", {"--quiet"});
+  EXPECT_EQ(fit_.err, "");
+}
+
+TEST_F(CommandLineTest, AFitThatDoesNotConvergeExitsWithTwo) {
+  const AppRun run = RunApp("pushid-fit", {Recordings(), "--max_iterations=1"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(Contains(run.out, "NOT CONVERGED"));
+}
+
+TEST_F(CommandLineTest, APredictionThatFallsExitsWithTwoAndSaysWhere) {
+  const std::string model = FitModel();
+  const AppRun run =
+      RunApp("pushid-predict", {"--model=" + model, Recordings(), "--id=" + id_, "--frames=600",
+                                "--set=Kp_theta=1,a_x=0", "--out=" + Path("fall.csv")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(Contains(run.err, "theta of person 0"));
+  EXPECT_TRUE(Contains(run.err, "frame "));
+  EXPECT_FALSE(std::filesystem::exists(Path("fall.csv")));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,158 @@
+// pushid-evaluate, pushid-predict and pushid-crossvalidate on synthetic recordings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+using EvaluateAppTest = AppTest;
+using PredictAppTest = AppTest;
+using CrossValidateAppTest = AppTest;
+
+// Rows of a CSV file; the first is the header.
+std::vector<std::vector<std::string>> ReadCsv(const std::string& path) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream text(ReadText(path));
+  for (std::string line; std::getline(text, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream cells(line);
+    rows.emplace_back();
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+double LastNumber(const std::string& path, const std::string& column) {
+  const auto rows = ReadCsv(path);
+  for (size_t i = 0; i < rows[0].size(); ++i) {
+    if (rows[0][i] == column) return std::atof(rows.back()[i].c_str());
+  }
+  ADD_FAILURE() << "no column " << column;
+  return NAN;
+}
+
+void ExpectScore(const nlohmann::ordered_json& json, const char* what) {
+  ASSERT_TRUE(json.contains("hipADE_m") && json.contains("hipFDE_m")) << what << ": " << json;
+  EXPECT_GT(json["hipADE_m"].get<double>(), 0.0) << what;
+  EXPECT_GT(json["hipFDE_m"].get<double>(), 0.0) << what;
+}
+
+TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
+  const std::string model = "--model=" + FitModel();
+  const AppRun run =
+      RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::ordered_json json = Json(Path("scores.json"));
+  ASSERT_EQ(json["recordings"].size(), 12u);
+  double sum = 0.0, frames = 0.0, weighted = 0.0;
+  for (const auto& row : json["recordings"]) {
+    ExpectScore(row, "recording");
+    EXPECT_TRUE(row.contains("id"));
+    sum += row["hipADE_m"].get<double>();
+    frames += row["frames"].get<double>();
+    weighted += row["frames"].get<double>() * row["hipADE_m"].get<double>();
+  }
+  EXPECT_EQ(json["recordings"][0]["id"], id_);
+  EXPECT_EQ(json["recordings"][0]["frames"], 45);
+  EXPECT_NEAR(json["mean"]["hipADE_m"].get<double>(), sum / 12, 1e-12);
+  EXPECT_NEAR(json["frame_weighted"]["hipADE_m"].get<double>(), weighted / frames, 1e-12);
+  for (const char* key : {"mean", "frame_weighted"}) {
+    ExpectScore(json[key], key);
+    ExpectScore(json["baselines"]["static"][key], "static");
+    ExpectScore(json["baselines"]["constant_velocity"][key], "constant_velocity");
+  }
+  EXPECT_LT(json["mean"]["hipADE_m"], json["baselines"]["static"]["mean"]["hipADE_m"]);
+  EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), 0.05) << "the model made these recordings";
+  for (const char* part : {"mean over recordings", "frame-weighted", "constant velocity"}) {
+    EXPECT_TRUE(Contains(run.out, part));
+  }
+}
+
+TEST_F(EvaluateAppTest, AWhatIfChangesTheScores) {
+  const std::string model = "--model=" + FitModel();
+  const std::string out = Path("scores.json");
+  ASSERT_EQ(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out}).exit_code, 0);
+  const double before = Json(out)["mean"]["hipADE_m"];
+  ASSERT_EQ(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out, "--set=mu=200"})
+                .exit_code,
+            0);
+  EXPECT_GT(Json(out)["mean"]["hipADE_m"].get<double>(), before);
+}
+
+TEST_F(PredictAppTest, WritesOneRowPerFrameWithNothingButNumbers) {
+  const std::string model = "--model=" + FitModel();
+  const std::string out = Path("trajectory.csv");
+  const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "45 frames"));
+  EXPECT_TRUE(Contains(run.out, "hipADE"));
+  const auto rows = ReadCsv(out);
+  ASSERT_EQ(rows.size(), 46u);
+  for (size_t i = 1; i < rows.size(); ++i) {
+    ASSERT_EQ(rows[i].size(), rows[0].size()) << "row " << i;
+    for (size_t j = 0; j < rows[i].size(); ++j) {
+      if (rows[0][j] == "subject") continue;
+      char* end = nullptr;
+      EXPECT_TRUE(std::isfinite(std::strtod(rows[i][j].c_str(), &end)) && *end == '\0')
+          << rows[0][j] << " = " << rows[i][j];
+    }
+  }
+}
+
+TEST_F(PredictAppTest, ASlipperyFloorCarriesFurtherAndFramesMayGoOn) {
+  const std::string model = "--model=" + FitModel();
+  double last[2];
+  const char* sets[] = {"--set=mu=20", "--set=mu=200"};
+  for (int i : {0, 1}) {
+    const std::string out = Path("trajectory.csv");
+    const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out,
+                                                 "--frames=120", sets[i]});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(ReadCsv(out).size(), 121u);
+    last[i] = LastNumber(out, "hip_x_m");
+  }
+  EXPECT_GT(last[0], last[1] + 0.02);
+}
+
+TEST_F(CrossValidateAppTest, EverySchemeScoresAndCompares) {
+  for (const char* scheme : {"stratified", "subject", "strong"}) {
+    const std::string out = Path(std::string(scheme) + ".json");
+    const AppRun run = RunApp(
+        "pushid-crossvalidate",
+        {Recordings(), std::string("--scheme=") + scheme, "--folds=2", "--repeats=2",
+         "--compare=short: --push_tail=none; linear: --self_force=linear", "--json_out=" + out});
+    ASSERT_EQ(run.exit_code, 0) << scheme << ": " << run.err;
+    for (const char* part : {"tail", "short", "linear", "ridge", "static", "constant velocity"}) {
+      EXPECT_TRUE(Contains(run.out, part)) << scheme;
+    }
+    const nlohmann::ordered_json json = Json(out);
+    ASSERT_EQ(json["predictors"].size(), 6u);
+    EXPECT_EQ(json["paired_differences"].size(), 5u);
+    for (const auto& predictor : json["predictors"]) {
+      ExpectScore(predictor["mean"], "mean");
+      ExpectScore(predictor["frame_weighted"], "frame_weighted");
+    }
+    const size_t folds = std::string(scheme) == "stratified" ? 4
+                         : std::string(scheme) == "subject"  ? 2
+                                                             : 1;
+    EXPECT_EQ(json["predictors"][0]["folds"].size(), folds) << scheme;
+    EXPECT_LT(json["predictors"][0]["mean"]["hipADE_m"].get<double>(), 0.1) << scheme;
+  }
+}
+
+TEST_F(CrossValidateAppTest, RepeatsItself) {
+  const std::vector<std::string> arguments = {Recordings(), "--folds=3", "--repeats=1",
+                                              "--yardsticks=false"};
+  const AppRun first = RunApp("pushid-crossvalidate", arguments);
+  EXPECT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_EQ(RunApp("pushid-crossvalidate", arguments).out, first.out);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,122 @@
+// pushid-fit and pushid-report on synthetic recordings.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+using FitAppTest = AppTest;
+using Words = std::vector<std::string>;
+
+// The report's words; columns may be wider or narrower by a digit.
+Words SplitWords(const std::string& text) {
+  // How many steps the solver takes is its own business.
+  std::istringstream stream(
+      std::regex_replace(text, std::regex("after [0-9]+ iterations?"), "after some iterations"));
+  Words words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+// Equal, or numbers (brackets and commas around them aside) that differ by less than 2 %: last
+// digits differ between compilers and versions of Ceres.
+bool SameWord(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const std::regex number(R"(^(\[?)([-+0-9.e]+)([\],;]*)$)");
+  std::smatch of_a, of_b;
+  if (!std::regex_match(a, of_a, number) || !std::regex_match(b, of_b, number)) return false;
+  if (of_a[1] != of_b[1] || of_a[3] != of_b[3]) return false;
+  const double x = std::atof(of_a[2].str().c_str()), y = std::atof(of_b[2].str().c_str());
+  return std::abs(x - y) <= 0.02 * std::max(std::abs(x), std::abs(y));
+}
+
+TEST_F(FitAppTest, ModelHasItsParts) {
+  const nlohmann::ordered_json model = Json(FitModel());
+  for (const char* key :
+       {"format", "format_version", "version", "model", "parameters", "derived", "values",
+        "behaviour", "uncertainty", "warnings", "fit", "table", "data", "configuration", "run"}) {
+    EXPECT_TRUE(model.contains(key)) << key;
+  }
+  ASSERT_FALSE(model["parameters"].empty());
+  for (const char* key : {"name", "unit", "value", "standard_error", "interval_95",
+                          "standard_error_naive", "status"}) {
+    EXPECT_TRUE(model["parameters"][0].contains(key)) << key << "\n" << model["parameters"][0];
+  }
+  EXPECT_EQ(model["data"]["recordings"].size(), 12u);
+  EXPECT_FALSE(model["data"]["manifest_hash"].get<std::string>().empty());
+  EXPECT_TRUE(model["fit"]["converged"]);
+  EXPECT_EQ(model["configuration"]["seed"], "1");
+  EXPECT_EQ(model.dump().find("nan"), std::string::npos);
+}
+
+TEST_F(FitAppTest, FindsTheParametersTheRecordingsWereMadeWith) {
+  const nlohmann::ordered_json values = Json(FitModel())["values"];
+  const nlohmann::ordered_json truth = Json(manifest_)["synthetic"]["truth"];
+  for (const char* name : {"Kp_theta", "a_x", "tail_gain", "tail_time"}) {
+    EXPECT_NEAR(values[name].get<double>() / truth[name].get<double>(), 1.0, 0.25) << name;
+  }
+}
+
+TEST_F(FitAppTest, TwoRunsWriteTheSameModel) {
+  nlohmann::ordered_json first = Json(FitModel("first.json"));
+  nlohmann::ordered_json second = Json(FitModel("second.json"));
+  EXPECT_NE(first["run"], second["run"]);
+  first.erase("run");
+  second.erase("run");
+  EXPECT_EQ(first.dump(), second.dump());
+}
+
+TEST_F(FitAppTest, ReportPrintsWhatTheFitPrinted) {
+  const std::string model = FitModel();
+  const AppRun report = RunApp("pushid-report", {"--model=" + model});
+  ASSERT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_EQ(report.out + "model written to " + model + "\n", fit_.out);
+}
+
+TEST_F(FitAppTest, ReportStaysAsItWasAgreed) {
+  FitModel("m.json", {"--preset_priors=false", "--settling_weight=0"});
+  const std::string report = fit_.out.substr(0, fit_.out.find("model written to"));
+  const std::string golden = std::string(PUSHID_SOURCE_DIR) + "/tests/apps/golden/fit_report.txt";
+  if (std::getenv("PUSHID_UPDATE_GOLDEN") != nullptr) {
+    std::ofstream(golden, std::ios::binary) << report;
+    GTEST_SKIP() << golden << " written";
+  }
+  const Words is = SplitWords(report), was = SplitWords(ReadText(golden));
+  for (size_t i = 0; i < std::min(is.size(), was.size()); ++i) {
+    ASSERT_TRUE(SameWord(is[i], was[i]))
+        << "'" << is[i] << "' where the agreed report has '" << was[i]
+        << "'; if that is meant, run this test once with PUSHID_UPDATE_GOLDEN=1\n"
+        << report;
+  }
+  EXPECT_EQ(is.size(), was.size()) << report;
+}
+
+TEST_F(FitAppTest, OnlyTheRecordingsAskedForAreFitted) {
+  const nlohmann::ordered_json model = Json(FitModel("m.json", {"--ids=" + id_}));
+  ASSERT_EQ(model["data"]["recordings"].size(), 1u);
+  EXPECT_EQ(model["data"]["recordings"][0]["id"], id_);
+  EXPECT_TRUE(Contains(fit_.out, "a single recording"));
+}
+
+TEST_F(FitAppTest, GainsThatCannotBeToldApartAreNamed) {
+  FitModel("m.json", {"--free=mu,Kp_x,Kp_y", "--preset_priors=false", "--settling_weight=0"});
+  EXPECT_TRUE(Contains(fit_.out, "unidentifiable"));
+  EXPECT_TRUE(Contains(fit_.out, "mu, Kp_x and Kp_y cannot be told apart"));
+}
+
+TEST_F(FitAppTest, ThePlainPresetFitsToo) {
+  const nlohmann::ordered_json model = Json(FitModel("m.json", {"--preset=ldp", "--starts=1"}));
+  EXPECT_EQ(model["model"]["preset"], "ldp");
+  EXPECT_TRUE(Contains(fit_.out, "mu_y"));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,83 @@
+// Runs a built executable as a user does: its own process, its exit code, what it prints.
+//
+//   const AppRun run = RunApp("pushid-fit", {"--recordings=" + manifest});
+//   EXPECT_EQ(run.exit_code, 0) << run.err;
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <thread>
+#include <vector>
+
+extern char** environ;
+
+namespace pushid {
+
+struct AppRun {
+  int exit_code = -1;  // -1: killed by a signal, out of time, or never started
+  int signal = 0;
+  bool timed_out = false;
+  std::string out, err;
+};
+
+inline std::string ReadFromStart(std::FILE* file) {
+  std::string text;
+  std::rewind(file);
+  char part[4096];
+  for (size_t n; (n = std::fread(part, 1, sizeof part, file)) > 0;) text.append(part, n);
+  std::fclose(file);
+  return text;
+}
+
+// Output goes to unnamed files rather than pipes: nothing can fill up and block. An app that is not
+// done after `seconds` is killed.
+inline AppRun RunApp(const std::string& name, const std::vector<std::string>& arguments,
+                     double seconds = 120.0) {
+  const std::string path = std::string(PUSHID_BIN_DIR) + "/" + name;
+  std::vector<char*> argv = {const_cast<char*>(path.c_str())};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+
+  AppRun run;
+  std::FILE* out = std::tmpfile();
+  std::FILE* err = std::tmpfile();
+  if (out == nullptr || err == nullptr) {
+    run.err = "no temporary file for the output";
+    return run;
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, fileno(out), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, fileno(err), STDERR_FILENO);
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, path.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed == 0) {
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+    int status = 0;
+    while (waitpid(child, &status, WNOHANG) == 0) {
+      if (!run.timed_out && Clock::now() > deadline) {
+        run.timed_out = true;
+        kill(child, SIGKILL);
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (WIFSIGNALED(status)) run.signal = WTERMSIG(status);
+    if (WIFEXITED(status) && !run.timed_out) run.exit_code = WEXITSTATUS(status);
+  }
+  run.out = ReadFromStart(out);
+  run.err = failed == 0 ? ReadFromStart(err) : "cannot start " + path;
+  if (failed != 0) std::fclose(err);
+  return run;
+}
+
+}  // namespace pushid
