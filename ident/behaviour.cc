@@ -79,7 +79,11 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
     }
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);
-  behaviour.self_propelling = !behaviour.settles || parameters[kMu] + parameters[kKpX] < 0.0;
+  behaviour.self_propelling =
+      behaviour.fastest_growth > 0.0 || parameters[kMu] + parameters[kKpX] < 0.0;
+  for (const Demonstration& d : behaviour.demonstrations) {
+    behaviour.self_propelling = behaviour.self_propelling || d.fell;
+  }
   return behaviour;
 }
 

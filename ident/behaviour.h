@@ -25,8 +25,10 @@ struct Behaviour {
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
   double fastest_growth = 0.0;
-  bool settles = false;          // every demonstration settled
-  bool self_propelling = false;  // not settled, or negative damping of the cart
+  bool settles = false;  // every demonstration settled
+  // The person drives herself: an unstable free mode, negative damping of the cart, or a fall. One
+  // who is merely slow to stand again does not.
+  bool self_propelling = false;
 };
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);

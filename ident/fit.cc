@@ -131,9 +131,12 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   if (!result.converged) warnings.push_back("the solver stopped before it converged");
   if (result.behaviour.self_propelling) {
     warnings.push_back(
-        "self-propelling: the fitted person does not stand again after a push; such a fit may "
-        "score "
-        "well and predicts nothing beyond the data (--settling_weight holds it to settle)");
+        "self-propelling: the fitted person drives herself after a push; such a fit may score well "
+        "and predicts nothing beyond the data (--settling_weight holds it to settle)");
+  } else if (!result.behaviour.settles) {
+    warnings.push_back(
+        "slow to settle: the fitted person stands again later than two seconds after "
+        "some pushes (--settling_weight holds it to settle sooner)");
   }
   if (result.uncertainty.num_clusters == 1) {
     warnings.push_back("a single recording: errors cannot be clustered and are too small");
