@@ -16,6 +16,7 @@ constexpr double kDemonstrationMass = 80.0;                     // kg
 constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s
 constexpr int kFramesPastTheEnd = 40;
 constexpr double kStrongerPush = 1.4;
+constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 }  // namespace
 
@@ -148,6 +149,22 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
   }
 }
 
+// A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
+// wandering off to its bounds, whence later stages need not come back.
+void FitProblem::AddStagePriors(FitPoint* point, Built* built) const {
+  const int size = static_cast<int>(point->shared.size());
+  for (int i = 0; i < size; ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    if (spec.prior) continue;
+    const double sigma = spec.transform == Transform::kIdentity
+                             ? kStagePrior * std::max(std::abs(spec.nominal), spec.scale)
+                             : std::log(kStagePrior);
+    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.nominal), sigma);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
+  }
+}
+
 void FitProblem::AddRest(FitPoint* point, Built* built) const {
   auto add = [built](RestProblem rest, const std::vector<double*>& blocks) {
     auto residual = std::make_unique<RestResidual>(std::move(rest));
@@ -194,7 +211,11 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon) const {
   }
   AddPriors(point, &built);
   // The demonstrations are long rollouts: they join once the horizon is as long.
-  if (horizon == 0) AddRest(point, &built);
+  if (horizon == 0) {
+    AddRest(point, &built);
+  } else {
+    AddStagePriors(point, &built);
+  }
   return built;
 }
 

@@ -76,6 +76,7 @@ class FitProblem {
   double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
+  void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;
 
   const std::vector<PendulumRecording>& recordings_;
