@@ -52,7 +52,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
     std::snprintf(number, sizeof number, ",%.9g", value);
     text += number;
   };
-  for (int t = 0; t < prediction.path.num_frames(); ++t) {
+  const int frames = prediction.status.ok ? prediction.path.num_frames() : prediction.status.frame;
+  for (int t = 0; t < frames; ++t) {
     for (int n = 0; n < recording.scene.num_people(); ++n) {
       const PendulumState<double>& state = prediction.path.At(t, n);
       text += std::to_string(t);
@@ -60,7 +61,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
       text += "," + std::to_string(n) + "," + recording.subject_ids[n];
       for (int i = 0; i < 4; ++i) add(state.q[i]);
       for (int i = 0; i < 4; ++i) add(state.qd[i]);
-      for (int i = 0; i < 3; ++i) add(prediction.hip[n][t][i]);
+      const Vector3<double> hip = HipPosition(recording.scene.people[n].body, state.q);
+      for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double> force =
           NetForceAt(recording.scene, model.options, self[n], sets[n], n, t, state,
                      prediction.path.At(t > 0 ? t - 1 : 0, n).qd);

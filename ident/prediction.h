@@ -20,7 +20,8 @@ struct Prediction {
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0);
 
-// Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV.
+// Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV;
+// after a failure, the frames before it.
 MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& model,
                               const PendulumRecording& recording, const Prediction& prediction);
 
