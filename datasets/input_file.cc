@@ -118,6 +118,9 @@ bool LineReader::NextNonBlank(std::string_view* line) {
   return false;
 }
 
+// Bytes; a manifest of a million recordings is smaller. /dev/zero would never end.
+constexpr std::size_t kLargestText = std::size_t{1} << 30;
+
 Result<std::string> ReadWholeFile(const std::string& path) {
   InputFile file;
   if (MaybeError failed = file.Open(path)) return *std::move(failed);
@@ -125,6 +128,7 @@ Result<std::string> ReadWholeFile(const std::string& path) {
   std::size_t used = 0;
   text.resize(file.size() > 0 ? static_cast<std::size_t>(file.size()) + 1 : 1 << 12);
   while (true) {
+    if (used >= kLargestText) return Error{"the file is too large for a text of its kind", path, 0};
     if (used == text.size()) text.resize(2 * text.size());
     Result<std::size_t> count = file.Read(text.data() + used, text.size() - used);
     if (!count.ok()) return count.error();

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "datasets/number_text.h"
 #include "datasets/random.h"
 
 namespace pushid {
@@ -134,9 +135,11 @@ MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
   const auto range = [](const std::string& what, double low, double high, double min,
                         double max) -> MaybeError {
     if (low >= min && low <= high && high <= max) return {};  // false for NaN
-    return Error{what + " from " + std::to_string(low) + " to " + std::to_string(high) +
-                 ": must be an ascending range within " + std::to_string(min) + " to " +
-                 std::to_string(max)};
+    const std::string within = Rounded(min) + " to " + Rounded(max);
+    if (!(low < high || low > high))
+      return Error{what + " is " + Rounded(low) + "; it must be " + within};
+    return Error{what + " from " + Rounded(low) + " to " + Rounded(high) +
+                 ": must be an ascending range within " + within};
   };
   constexpr double kMany = 100000;
   if (o.strengths.empty()) return Error{"no push strengths given: name at least one"};

@@ -221,6 +221,12 @@ TEST_F(BadInputTest, Manifests) {
   }
 }
 
+TEST_F(BadInputTest, FoldersAndDevicesAreNoFiles) {
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=/"}), {"/: ", "not a file"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=/dev/null"}), {"/dev/null: ", "empty"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=/dev/zero"}), {"/dev/zero: ", "large"}));
+}
+
 TEST_F(BadInputTest, ARecordingWithoutAPush) {
   DamageEntry([](ordered_json& r) { r.erase("push_csv"); });
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings()}), {id_, "no push", "pushid-push"}));

@@ -148,6 +148,46 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
   }
 }
 
+TEST_F(BadUsageTest, SimulationFlags) {
+  const std::vector<Case> cases = {
+      {{"--people=0"}, {"is 0; it must"}},
+      {{"--frames=2"}, {"frames is 2; it must"}},
+      {{"--fps=nan"}, {"fps is nan; it must"}},
+      {{"--noise=-1"}, {"is -1; it must"}},
+      {{"--push_kind=soft"}, {"--push_kind", "'soft'", "net or external"}},
+      {{"--set=mew=1"}, {"--set", "'mew'"}},
+      {{"--set=tail_time=0"}, {"--set", "tail_time = 0"}},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.flags[0]);
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-simulate", {"--out=" + Path("made"), one.flags[0]}, 30), one.says));
+    EXPECT_FALSE(std::filesystem::exists(Path("made")));
+  }
+}
+
+TEST_F(BadUsageTest, PushFlags) {
+  const std::string good_sensor =
+      "--sensor=" + WriteText("good.csv", "time,force\n0,1\n0.2,90\n0.5,1\n");
+  const std::string sensor = "--sensor=" + WriteText("sensor.csv", "time,force\n0,1\n0.5,nan\n");
+  const std::vector<Case> cases = {
+      {{"--first_frame=5", "--end_frame=3"}, {id_, "from frame 5 to 3"}},
+      {{"--first_frame=500", "--end_frame=600"}, {id_, "frames 0 to"}},
+      {{"--person=4"}, {id_, "no person 4"}},
+      {{"--smoothing=-4"}, {"smoothing", "-4"}},
+      {{"--sensor=" + Path("none.csv")}, {"none.csv", "no such file"}},
+      {{sensor}, {"sensor.csv:3", "'nan'"}},
+      {{good_sensor, "--direction=a,b"}, {"--direction", "'a,b'"}},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.flags[0]);
+    std::vector<std::string> flags = {Recordings(), "--id=" + id_, "--out=" + Path("push.csv")};
+    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
+    EXPECT_TRUE(Refused(RunApp("pushid-push", flags, 30), one.says));
+    EXPECT_FALSE(std::filesystem::exists(Path("push.csv")));
+  }
+}
+
 TEST_F(BadUsageTest, CrossValidationFlags) {
   const std::vector<Case> cases = {
       {{"--scheme=random"}, {"--scheme", "'random'"}},

@@ -85,6 +85,26 @@ TEST_F(EvaluateAppTest, AWhatIfChangesTheScores) {
   EXPECT_GT(Json(out)["mean"]["hipADE_m"].get<double>(), before);
 }
 
+TEST_F(EvaluateAppTest, ARolloutThatFailsIsNamedAndTheOthersGoOn) {
+  const std::string model = "--model=" + FitModel();
+  const AppRun run =
+      RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json"),
+                                 "--set=Kp_theta=1,tail_torque=0.8"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::ordered_json json = Json(Path("scores.json"));
+  size_t failed = 0;
+  for (const auto& row : json["recordings"]) {
+    if (!row.contains("failure")) continue;
+    ++failed;
+    EXPECT_TRUE(Contains(row["failure"], "theta"));
+    EXPECT_TRUE(Contains(row["failure"], "frame "));
+    EXPECT_TRUE(Contains(run.out, row["failure"]));
+  }
+  EXPECT_GT(failed, 0u);
+  ASSERT_LT(failed, 12u);
+  EXPECT_EQ(json["mean"]["recordings"], 12 - failed);
+}
+
 TEST_F(PredictAppTest, WritesOneRowPerFrameWithNothingButNumbers) {
   const std::string model = "--model=" + FitModel();
   const std::string out = Path("trajectory.csv");

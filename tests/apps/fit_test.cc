@@ -74,6 +74,15 @@ TEST_F(FitAppTest, TwoRunsWriteTheSameModel) {
   EXPECT_EQ(first.dump(), second.dump());
 }
 
+TEST_F(FitAppTest, MoreThreadsFindTheSame) {
+  const nlohmann::ordered_json one = Json(FitModel("one.json"))["values"];
+  const nlohmann::ordered_json two = Json(FitModel("two.json", {"--num_threads=2"}))["values"];
+  for (const auto& [name, value] : one.items()) {
+    EXPECT_NEAR(two[name].get<double>(), value.get<double>(), 1e-9 * std::abs(value.get<double>()))
+        << name;
+  }
+}
+
 TEST_F(FitAppTest, ReportPrintsWhatTheFitPrinted) {
   const std::string model = FitModel();
   const AppRun report = RunApp("pushid-report", {"--model=" + model});
