@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include "datasets/load_recordings.h"
 #include "datasets/synthetic_recordings.h"
 #include "ident/fit_result.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -107,6 +110,24 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
     warned = warned || w.find("self-propelling") == 0;
   }
   EXPECT_TRUE(warned);
+}
+
+// The trap in the published data: least squares makes people drive themselves, and must say so.
+TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
+  if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
+  LoadOptions load;
+  load.setting = "single";
+  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const Preset preset = MakePreset("ldp").value();
+  FitOptions options;
+  options.model = preset.model;
+  options.table = preset.table;
+  options.num_starts = preset.num_starts;
+  const FitResult result = Fit(AsPendulums(loaded.value()), options);
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(result.behaviour.self_propelling);
+  EXPECT_LT(result.derived[0].value, 0.0) << result.derived[0].name;
 }
 
 }  // namespace
