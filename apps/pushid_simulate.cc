@@ -3,9 +3,11 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "apps/app_support.h"
 #include "apps/model_flags.h"
+#include "datasets/json_file.h"
 #include "datasets/recording_names.h"
 #include "datasets/synthetic_recordings.h"
 #include "ident/report_text.h"
@@ -20,45 +22,91 @@ DEFINE_int32(frames, 90, "frames of each recording");
 DEFINE_double(fps, 60.0, "frames a second");
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
 DEFINE_string(push_kind, "net", "net (only the push's first part, the tail follows) or external");
-DEFINE_double(
-    spread, 0.0,
-    "how much people's gains vary between recordings (standard deviation of the logarithm)");
+DEFINE_double(recording_spread, 0.0,
+              "how much all parameters vary between recordings (standard deviation of the "
+              "logarithm; 0.1 is about 10 %)");
+DEFINE_double(subject_spread, 0.0, "the same between people");
 DEFINE_uint64(seed, 1, "seed of people, pushes and noise");
 
 namespace {
 
 using namespace pushid;
 
-// The model of --model, else the tail model with the values identified from the published
-// recordings; either with --set.
+// The model of --model, else the tail preset: what it fits has the values identified from the
+// published recordings, what it holds keeps its value, so that a fit can find the truth exactly.
+// Either with --set.
 Result<IdentifiedModel> Truth() {
   if (!FLAGS_model.empty()) return LoadFlaggedModel();
   const Preset preset = MakePreset("tail").value();
   IdentifiedModel model;
   model.options = preset.model;
   model.table = preset.table;
-  model.parameters = PublishedTailParameters();
+  model.parameters = preset.table.Values();
+  for (Parameter id : preset.table.Free()) model.parameters[id] = PublishedTailParameters()[id];
   if (MaybeError error = SetValues(FLAGS_set, &model)) return *error;
   return model;
+}
+
+// Written so that NaN fails.
+MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return std::nullopt;
+  std::ostringstream text;
+  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
+       << highest;
+  return Error{text.str()};
+}
+
+// The library checks them too, but knows no flags.
+MaybeError CheckNumbers() {
+  for (MaybeError error :
+       {CheckRange("people", FLAGS_people, 1, 10000),
+        CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000),
+        CheckRange("frames", FLAGS_frames, 3, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
+        CheckRange("noise", FLAGS_noise, 0, 0.1),
+        CheckRange("recording_spread", FLAGS_recording_spread, 0, 2),
+        CheckRange("subject_spread", FLAGS_subject_spread, 0, 2)}) {
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+// Earlier output of this program may be replaced; somebody's real recordings may not.
+MaybeError CheckFolder(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder, ignored)) return std::nullopt;
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    return Error{"--out names " + folder.string() + ", which is a file; name a folder"};
+  }
+  const std::filesystem::path manifest = folder / "manifest.json";
+  if (!std::filesystem::exists(manifest, ignored)) return std::nullopt;
+  const Result<JsonDocument> document = ReadJsonDocument(manifest.string());
+  if (document.ok() && document.value().content.contains("synthetic")) return std::nullopt;
+  return Error{"is no output of pushid-simulate and would be overwritten; name another --out",
+               manifest.string()};
 }
 
 void PrintTruth(const IdentifiedModel& truth) {
   TextTable table({"parameter", "truth", "unit"}, {true, false, true});
   for (const ParameterSpec& spec : truth.table.specs) {
-    if (spec.free) table.Add({spec.name, Significant(truth.parameters[spec.id]), spec.unit});
+    const double value = truth.parameters[spec.id];
+    if (spec.free || value != spec.nominal) table.Add({spec.name, Significant(value), spec.unit});
   }
   std::printf("%s", table.ToString().c_str());
+  if (FLAGS_recording_spread > 0.0 || FLAGS_subject_spread > 0.0) {
+    std::printf(
+        "(the centre: every parameter varies about it by %s between recordings, %s "
+        "between people)\n",
+        Significant(FLAGS_recording_spread, 3).c_str(),
+        Significant(FLAGS_subject_spread, 3).c_str());
+  }
 }
 
 int Run() {
   if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) {
     return Fail(*missing);
   }
-  std::error_code ignored;
-  if (std::filesystem::exists(FLAGS_out, ignored) &&
-      !std::filesystem::is_directory(FLAGS_out, ignored)) {
-    return Fail("--out names " + FLAGS_out + ", which is a file; name a folder");
-  }
+  if (MaybeError error = CheckFolder(FLAGS_out)) return Fail(*error);
+  if (MaybeError error = CheckNumbers()) return Fail(*error);
   const Result<IdentifiedModel> truth = Truth();
   if (!truth.ok()) return Fail(truth.error());
   const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);
@@ -74,7 +122,8 @@ int Run() {
   options.fps = FLAGS_fps;
   options.joint_noise_m = FLAGS_noise;
   options.push_kind = *kind;
-  options.recording_spread = FLAGS_spread;
+  options.recording_spread = FLAGS_recording_spread;
+  options.subject_spread = FLAGS_subject_spread;
   options.seed = FLAGS_seed;
   const Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
   if (!made.ok()) return Fail(made.error());
@@ -82,9 +131,10 @@ int Run() {
     return Fail(*error);
   }
   PrintTruth(truth.value());
-  std::printf("%zu recordings of %d people, joints noisy by %s mm, written to %s\n",
-              made.value().size(), FLAGS_people, Significant(1000.0 * FLAGS_noise, 3).c_str(),
-              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
+  std::printf(
+      "%zu recordings of %d people, joints noisy by %s mm: %s names the BVH and push files\n",
+      made.value().size(), FLAGS_people, Significant(1000.0 * FLAGS_noise, 3).c_str(),
+      (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
 }
 

@@ -1,11 +1,18 @@
 // ident: reading the truth and setting it beside the estimates.
 #include "ident/truth_table.h"
 
+#include <cmath>
+
 #include "datasets/json_file.h"
 #include "ident/report_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {
+namespace {
+
+constexpr double kFileRounding = 1e-6;  // of a parameter
+
+}  // namespace
 
 Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path) {
   const Result<JsonDocument> document = ReadJsonDocument(manifest_path);
@@ -28,7 +35,9 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
   for (const Estimate& e : result.estimates) {
     const auto known = truth.find(e.name);
     if (e.status == EstimateStatus::kFixed || known == truth.end()) continue;
-    const bool inside = e.lower95 <= known->second && known->second <= e.upper95;
+    // Without noise the interval shrinks below what the files' decimals can hold.
+    const double slack = kFileRounding * std::abs(known->second);
+    const bool inside = e.lower95 - slack <= known->second && known->second <= e.upper95 + slack;
     ++compared;
     covered += inside;
     table.Add({e.name, Significant(known->second), Significant(e.value),

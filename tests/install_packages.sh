@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034
 # The one list of packages, and what installs those that are missing. Source it, then call
 #   install_packages "${build_packages[@]}" "${test_packages[@]}"
 # As root (or with password-less sudo) it installs; otherwise it names the exact command and fails.
@@ -7,8 +8,10 @@ build_packages=(g++ cmake ninja-build ccache
 test_packages=(libgtest-dev libbenchmark-dev)
 
 install_packages() {
-  if ! command -v dpkg-query >/dev/null; then
-    echo "This is no Debian: make sure that these Debian packages' contents are there: $*" >&2
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    echo "This is no Debian, so nothing is installed. Needed are a C++17 compiler, CMake 3.23, Ceres" >&2
+    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json and xxHash; for the tests GoogleTest and" >&2
+    echo "Google Benchmark (Debian's names: $*)." >&2
     return 0
   fi
   local missing=() package
@@ -22,14 +25,19 @@ install_packages() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     if ! sudo -n true 2>/dev/null; then
-      echo "Packages are missing, and installing them needs root. Run this, then try again:" >&2
-      echo "  sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+      echo "Packages are missing, and installing them needs root. Run this as root, then try again:" >&2
+      echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
       return 1
     fi
     as_root=(sudo -n)
   fi
   echo "Installing ${missing[*]}"
-  "${as_root[@]}" apt-get update -q >/dev/null
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -q --no-install-recommends "${missing[@]}" >/dev/null
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=120)
+  # An outdated list of one source need not matter; a failed installation does.
+  "${apt[@]}" update >/dev/null </dev/null || echo "apt-get update failed; trying without" >&2
+  if ! "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >/dev/null </dev/null; then
+    echo "Installing failed. Look what this says, then try again:" >&2
+    echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+    return 1
+  fi
 }

@@ -4,12 +4,13 @@
 # count as skipped where there are none.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+# shellcheck source=tests/install_packages.sh
 source tests/install_packages.sh
 install_packages "${build_packages[@]}" "${test_packages[@]}"
 
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 generator=()
-command -v ninja >/dev/null && [ ! -f build/release/CMakeCache.txt ] && generator=(-G Ninja)
+if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset release "${generator[@]}"
 cmake --build --preset release --parallel "$(nproc)"
 ctest --preset release --parallel "$(nproc)"

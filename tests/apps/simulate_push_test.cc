@@ -1,0 +1,137 @@
+// pushid-simulate and pushid-push: what they write is what the other programs take.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "datasets/json_file.h"
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class SimulateAppTest : public AppTest {
+ protected:
+  // pushid-simulate into `name`; returns the manifest's path.
+  std::string Simulate(const std::string& name, std::vector<std::string> flags) {
+    flags.push_back("--out=" + Path(name));
+    run_ = RunApp("pushid-simulate", flags);
+    EXPECT_EQ(run_.exit_code, 0) << run_.err;
+    return Path(name + "/manifest.json");
+  }
+
+  AppRun run_;
+};
+
+TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
+  const std::string manifest = Simulate("made", {"--noise=0", "--set=mu=60,Kp_theta=1800"});
+  const nlohmann::ordered_json truth = Json(manifest)["synthetic"]["truth"];
+  EXPECT_EQ(truth["mu"], 60.0);
+  EXPECT_TRUE(Contains(run_.out, "1800"));
+  const AppRun fit =
+      RunApp("pushid-fit", {"--recordings=" + manifest, "--preset_priors=false",
+                            "--settling_weight=0", "--model_out=" + Path("model.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  for (const auto& [name, value] : Json(Path("model.json"))["values"].items()) {
+    if (name == "mu_y") continue;  // does not act: friction is isotropic
+    const double expected = truth[name];
+    EXPECT_NEAR(value.get<double>(), expected, 1e-6 * std::abs(expected)) << name;
+  }
+  const AppRun report =
+      RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
+  EXPECT_TRUE(Contains(report.out, "7 of 7 intervals cover the truth"));
+}
+
+TEST_F(SimulateAppTest, TheSameSeedWritesTheSameFiles) {
+  const auto bvh = [this](const std::string& name, const std::string& seed) {
+    const auto first = Json(Simulate(name, {"--people=1", seed}))["recordings"][0];
+    return ReadText(Path(name + "/" + first["bvh"][0].get<std::string>()));
+  };
+  const std::string once = bvh("once", "--seed=7");
+  EXPECT_EQ(bvh("again", "--seed=7"), once);
+  EXPECT_NE(bvh("other", "--seed=8"), once);
+}
+
+TEST_F(SimulateAppTest, ParametersMayVary) {
+  Simulate("made", {"--people=1", "--recording_spread=0.1", "--subject_spread=0.05"});
+  EXPECT_TRUE(Contains(run_.out, "0.1 between recordings, 0.05 between people"));
+}
+
+TEST_F(SimulateAppTest, ReplacesItsOwnOutputOnly) {
+  Simulate("made", {"--people=2"});
+  Simulate("made", {"--people=1"});
+  WriteText("real/manifest.json", R"({"recordings": []})");
+  for (const char* folder : {"real", "manifest.json", "real/manifest.json"}) {
+    SCOPED_TRACE(folder);
+    EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path(folder)}), {Path(folder)}));
+  }
+  EXPECT_EQ(ReadText(Path("real/manifest.json")), R"({"recordings": []})");
+}
+
+class PushAppTest : public AppTest {
+ protected:
+  AppRun MakePush(std::vector<std::string> flags) {
+    flags.insert(flags.end(), {Recordings(), "--id=" + id_, "--out=" + Path("made/push.csv")});
+    std::filesystem::create_directories(Path("made"));
+    return RunApp("pushid-push", flags);
+  }
+
+  // Puts the lines that the program printed into the manifest, as its user does, and fits.
+  AppRun FitWithPrintedLines(const AppRun& made) {
+    const size_t begin = made.out.find("\"push_kind\"");
+    EXPECT_NE(begin, std::string::npos) << made.out;
+    const auto lines = nlohmann::ordered_json::parse("{" + made.out.substr(begin) + "}");
+    const std::string recordings = ChangedManifest([&lines](nlohmann::ordered_json& json) {
+      json["recordings"][0].erase("push_csv");
+      for (const auto& [key, value] : lines.items()) json["recordings"][0][key] = value;
+    });
+    return RunApp("pushid-fit", {recordings});
+  }
+};
+
+TEST_F(PushAppTest, InverseDynamicsGivesLinesForTheManifest) {
+  const AppRun made = MakePush({});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(Contains(made.out, "smoothed over 9 frames"));
+  EXPECT_TRUE(Contains(made.out, "\"net\""));
+  const AppRun fit = FitWithPrintedLines(made);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+}
+
+TEST_F(PushAppTest, TheWindowMayBeNamed) {
+  const AppRun made = MakePush({"--first_frame=2", "--end_frame=9", "--smoothing=0"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(Contains(made.out, "7 rows from frame 2"));
+  EXPECT_TRUE(Contains(made.out, "unsmoothed"));
+  EXPECT_TRUE(Contains(made.out, "\"start_frame\": 2"));
+}
+
+TEST_F(PushAppTest, ASensorsForceGivesLinesForTheManifest) {
+  const std::string sensor =
+      "--sensor=" + WriteText("force.csv", "time,force\n0.1,0\n0.2,200\n0.3,0\n");
+  // Along x + y, so half the square of its 20 N s goes each way.
+  const AppRun made = MakePush({sensor, "--direction=1,1,0", "--height=0.9"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_TRUE(Contains(made.out, "impulse 14.1 N s forwards, 14.1 N s to the left"));
+  EXPECT_TRUE(Contains(made.out, "\"external\""));
+  EXPECT_TRUE(Contains(made.out, "\"csv\": \"made/push.csv\""));
+  const AppRun fit = FitWithPrintedLines(made);
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  // The sensor's clock: the same push at frame 0.
+  EXPECT_TRUE(Contains(MakePush({sensor, "--sensor_start=0.1"}).out, "\"start_frame\": 0"));
+}
+
+TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
+  const std::string sensor = "--sensor=" + WriteText("f.csv", "time,force\n0.1,0\n0.2,9\n0.3,0\n");
+  EXPECT_TRUE(Refused(MakePush({"--height=0.9"}), {"--height", "--sensor"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--smoothing=5"}), {"--smoothing", "--sensor"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--height=1", "--height_m=1"}), {"--height_m"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--height=50"}), {"--height"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--height_m=950"}), {"--height_m", "3 m"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--idle_force=nan"}), {"--idle_force"}));
+  EXPECT_TRUE(Refused(MakePush({"--smoothing=1001"}), {"--smoothing", id_}));
+  EXPECT_FALSE(std::filesystem::exists(Path("made/push.csv")));
+}
+
+}  // namespace
+}  // namespace pushid
