@@ -14,6 +14,7 @@ say() { printf '\n== %s\n' "$*"; }
 
 say "Packages"
 install_packages "${build_packages[@]}"
+skip_unusable_ccache
 echo "nothing is missing"
 
 say "Building the programs into $bin (a minute or two the first time)"

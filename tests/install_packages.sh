@@ -41,3 +41,14 @@ install_packages() {
     return 1
   fi
 }
+
+# ccache fails, and the build with it, where its folder cannot be written (no home, a read-only one):
+# then do without.
+skip_unusable_ccache() {
+  local folder
+  if folder=$(ccache --get-config cache_dir 2>/dev/null) &&
+    mkdir -p "$folder/tmp" 2>/dev/null && [ -w "$folder" ] && [ -w "$folder/tmp" ]; then
+    return 0
+  fi
+  export CCACHE_DISABLE=1
+}

@@ -7,6 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tests/install_packages.sh
 source tests/install_packages.sh
 install_packages "${build_packages[@]}" "${test_packages[@]}"
+skip_unusable_ccache
 
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 generator=()
