@@ -51,7 +51,7 @@ DEFINE_double(stability_weight, 0.0,
 
 DEFINE_string(horizons, "8,16,32,64", "frames of the stages before all frames, comma-separated");
 DEFINE_string(start, "equation_error", "first start: equation_error or nominal");
-DEFINE_int32(starts, 0, "how many starts; the best one is taken (default 0: the preset's)");
+DEFINE_int32(starts, 1, "how many starts; the best one is taken");
 DEFINE_double(start_spread, 5.0, "random starts multiply every gain by up to this, either way");
 DEFINE_uint64(seed, 1, "seed of everything random");
 DEFINE_int32(num_threads, 1, "threads");
@@ -124,7 +124,7 @@ MaybeError CheckNumbers() {
                            CheckPositive("max_iterations", FLAGS_max_iterations),
                            CheckNotNegative("robust", FLAGS_robust),
                            CheckNotNegative("stability_weight", FLAGS_stability_weight),
-                           CheckNotNegative("starts", FLAGS_starts),
+                           CheckPositive("starts", FLAGS_starts),
                            CheckNotNegative("function_tolerance", FLAGS_function_tolerance),
                            CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
                            CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
@@ -179,7 +179,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
               FLAGS_robust};
   o.pooling_sigma = FLAGS_pooling_sigma;
-  o.num_starts = FLAGS_starts > 0 ? FLAGS_starts : preset.value().num_starts;
+  o.num_starts = FLAGS_starts;
   o.start_spread = FLAGS_start_spread;
   o.seed = FLAGS_seed;
   o.num_threads = FLAGS_num_threads;

@@ -34,7 +34,7 @@ class [[nodiscard]] Result {
   bool ok() const { return std::holds_alternative<T>(content_); }
   const T& value() const& { return std::get<T>(content_); }
   T& value() & { return std::get<T>(content_); }
-  T&& value() && { return std::get<T>(std::move(content_)); }
+  T value() && { return std::get<T>(std::move(content_)); }  // by value: safe in a range-for
   const Error& error() const { return std::get<Error>(content_); }
 
  private:

@@ -84,7 +84,6 @@ Preset LdpPreset() {
   // LDP's 200 per frame at 60 Hz.
   table[kKdTheta].nominal = table[kKdPhi].nominal = 200.0 / 60.0;
   for (Parameter id : {kMu, kMuY, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) table[id].free = true;
-  preset.num_starts = 12;  // several basins: some start in the best one
   preset.model.posture = Posture::kUpright;
   preset.model.gain_scaling = GainScaling::kMass;
   preset.model.friction = FrictionKind::kAnisotropic;

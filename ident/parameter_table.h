@@ -59,7 +59,6 @@ struct Preset {
   ModelOptions model;
   ParameterTable table;
   double settling_weight = 0.0;
-  int num_starts = 1;
 };
 Result<Preset> MakePreset(const std::string& name);
 
