@@ -15,7 +15,6 @@ FitOptions OptionsOf(const char* name) {
   options.model = preset.model;
   options.table = preset.table;
   options.settling_weight = preset.settling_weight;
-  options.num_starts = preset.num_starts;
   return options;
 }
 

@@ -123,7 +123,6 @@ TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
   FitOptions options;
   options.model = preset.model;
   options.table = preset.table;
-  options.num_starts = preset.num_starts;
   const FitResult result = Fit(AsPendulums(loaded.value()), options);
   ASSERT_TRUE(result.ok());
   EXPECT_TRUE(result.behaviour.self_propelling);

@@ -54,7 +54,6 @@ inline FitOptions DefaultFit(const SyntheticOptions& study) {
   options.model = study.model;
   options.table = preset.table;
   options.settling_weight = preset.settling_weight;
-  options.num_starts = preset.num_starts;
   for (ParameterSpec& spec : options.table.specs) {
     if (!spec.free) spec.nominal = study.parameters[spec.id];
   }
