@@ -33,6 +33,11 @@ const OptionNames<CartDerivative>& Names(CartDerivative) {
                                                     {"backward", CartDerivative::kBackward}};
   return names;
 }
+const OptionNames<Interaction>& Names(Interaction) {
+  static const OptionNames<Interaction> names = {{"none", Interaction::kNone},
+                                                 {"contact", Interaction::kContact}};
+  return names;
+}
 const OptionNames<SkeletonMapping>& Names(SkeletonMapping) {
   static const OptionNames<SkeletonMapping> names = {{"exact", SkeletonMapping::kExact},
                                                      {"ldp", SkeletonMapping::kLdp}};

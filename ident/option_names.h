@@ -20,6 +20,7 @@ const OptionNames<FrictionKind>& Names(FrictionKind);
 const OptionNames<PushUse>& Names(PushUse);
 const OptionNames<PushTail>& Names(PushTail);
 const OptionNames<CartDerivative>& Names(CartDerivative);
+const OptionNames<Interaction>& Names(Interaction);
 const OptionNames<SkeletonMapping>& Names(SkeletonMapping);
 const OptionNames<SelfForceKind>& Names(SelfForceKind);
 const OptionNames<RecordingWeight>& Names(RecordingWeight);

@@ -49,6 +49,13 @@ ParameterTable BaseTable() {
   add(Spec(kTailTorque, "1", 0.3, -50, 50, 0.3, plain, "tail torque over the push's mean torque"));
   add(Spec(kTailTime, "s", 0.2, 0.005, 5, 0.2, log, "tail's decay time after a push of 0.1 s"));
   add(Spec(kTailExponent, "1", 1, -5, 5, 1, plain, "growth of that time with the push's duration"));
+  add(Spec(kContactStiffness, "N/m", 2000, 1, 1e5, 2000, log,
+           "stiffness of contact between people"));
+  add(Spec(kContactDistance, "m", 0.4, 0.05, 1.5, 0.4, log, "distance at which people touch"));
+  add(Spec(kContactKappa, "1", 0.6, 0.01, 10, 0.6, log, "weight of the sideways distance"));
+  add(Spec(kContactDamping, "N s/m", 100, 1e-3, 1e4, 100, log, "damping of contact"));
+  add(Spec(kContactHeight, "1", 0.5, 0.01, 0.99, 0.5, Transform::kLogit,
+           "height of contact, fraction of the rod"));
   return table;
 }
 

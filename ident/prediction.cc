@@ -41,7 +41,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
-  for (const char* part : {"friction", "balance", "linear", "push", "tail"}) {
+  for (const char* part : {"friction", "balance", "linear", "push", "tail", "interaction"}) {
     for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
       text += std::string(",") + part + "_" + row;
     }
@@ -54,6 +54,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
   };
   const int frames = prediction.status.ok ? prediction.path.num_frames() : prediction.status.frame;
   for (int t = 0; t < frames; ++t) {
+    const std::vector<Vector4<double>> interaction =
+        InteractionForces(recording.scene, model.options, sets, prediction.path, t);
     for (int n = 0; n < recording.scene.num_people(); ++n) {
       const PendulumState<double>& state = prediction.path.At(t, n);
       text += std::to_string(t);
@@ -65,9 +67,9 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double> force =
           NetForceAt(recording.scene, model.options, self[n], sets[n], n, t, state,
-                     prediction.path.At(t > 0 ? t - 1 : 0, n).qd);
-      for (const auto* part :
-           {&force.friction, &force.balance, &force.linear, &force.push, &force.tail}) {
+                     prediction.path.At(t > 0 ? t - 1 : 0, n).qd, interaction[n]);
+      for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
+                               &force.tail, &force.interaction}) {
         for (int i = 0; i < 4; ++i) add((*part)[i]);
       }
       text += "\n";

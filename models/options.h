@@ -34,6 +34,12 @@ enum class CartDerivative {
   kBackward  // (v_t - v_{t-1}) / dt, as LDP's code does
 };
 
+// What people do to each other.
+enum class Interaction {
+  kNone,
+  kContact  // a smooth reciprocal contact force (contact.h)
+};
+
 struct ModelOptions {
   Posture posture = Posture::kInitial;
   GainScaling gain_scaling = GainScaling::kBody;
@@ -41,6 +47,7 @@ struct ModelOptions {
   PushUse push = PushUse::kAdded;
   PushTail push_tail = PushTail::kExponential;
   CartDerivative cart_derivative = CartDerivative::kNone;
+  Interaction interaction = Interaction::kNone;
 };
 
 }  // namespace pushid

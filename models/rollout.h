@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/contact.h"
 #include "models/ipm.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -43,14 +44,16 @@ struct NetForce {
   Vector4<T> linear = Vector4<T>::Zero();
   Vector4<T> push = Vector4<T>::Zero();
   Vector4<T> tail = Vector4<T>::Zero();
+  Vector4<T> interaction = Vector4<T>::Zero();
 
-  Vector4<T> Total() const { return friction + balance + linear + push + tail; }
+  Vector4<T> Total() const { return friction + balance + linear + push + tail + interaction; }
 };
 
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
-                       const PendulumState<T>& state, const Vector4<T>& qd_previous) {
+                       const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                       const Vector4<T>& interaction) {
   NetForce<T> force;
   force.push = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
@@ -65,6 +68,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   }
   force.balance = self.Balance(p, state, qd_previous);
   force.linear = self.Linear(p, state);
+  force.interaction = interaction;
   return force;
 }
 
@@ -111,6 +115,44 @@ std::string_view OutsideDomain(const PendulumState<T>& state) {
 // The self force of everybody in a scene.
 std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
 
+// Two people of a scene as a contact sees them.
+inline ContactPair PairOf(const Scene& scene, int n, int j) {
+  const ScenePerson &a = scene.people[n], &b = scene.people[j];
+  return {a.body, b.body, a.start.q, b.start.q};
+}
+
+// Whether the carts of two people are near enough to touch anywhere on their rods.
+template <typename T>
+bool MayTouch(const ContactPair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+              const PendulumState<T>& j) {
+  // A rod leans its own length at the most.
+  const double lean =
+      RealPart(p[kContactHeight]) * (pair.body_n.rod_length + pair.body_j.rod_length);
+  const double range = RealPart(p[kContactDistance]) + lean;
+  return std::abs(RealPart(n.q[0]) - RealPart(j.q[0])) < range;
+}
+
+// What everybody gets from everybody else at one frame; zero without interaction. The parameters of
+// a pair are those of the first person: contact is shared, never by subject.
+template <typename T>
+std::vector<Vector4<T>> InteractionForces(const Scene& scene, const ModelOptions& options,
+                                          const std::vector<ParameterSet<T>>& parameters,
+                                          const RolloutPath<T>& path, int frame) {
+  std::vector<Vector4<T>> forces(scene.num_people(), Vector4<T>::Zero());
+  if (options.interaction == Interaction::kNone) return forces;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    for (int j = n + 1; j < scene.num_people(); ++j) {
+      const ContactPair pair = PairOf(scene, n, j);
+      const PendulumState<T>&a = path.At(frame, n), &b = path.At(frame, j);
+      if (!MayTouch(pair, parameters[n], a, b)) continue;
+      const ContactForce<T> force = ContactBetween(pair, parameters[n], a, b);
+      forces[n] += force.on_n;
+      forces[j] += force.on_j;
+    }
+  }
+  return forces;
+}
+
 // parameters, initial_velocity: one entry per person. path is overwritten; on failure it holds the
 // frames before the named one.
 template <typename T>
@@ -125,11 +167,13 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
     path->At(0, n).qd = initial_velocity[n];
   }
   for (int t = 0; t + 1 < num_frames; ++t) {
+    const std::vector<Vector4<T>> interaction =
+        InteractionForces(scene, options, parameters, *path, t);
     for (int n = 0; n < scene.num_people(); ++n) {
       const PendulumState<T>& state = path->At(t, n);
       const Vector4<T>& previous = path->At(t > 0 ? t - 1 : 0, n).qd;
       const NetForce<T> force =
-          NetForceAt(scene, options, self[n], parameters[n], n, t, state, previous);
+          NetForceAt(scene, options, self[n], parameters[n], n, t, state, previous, interaction[n]);
       const Vector4<T> qdd = Acceleration(scene.people[n].body, state, force.Total());
       path->At(t + 1, n) = Step(state, qdd, scene.dt);
       const std::string_view outside = OutsideDomain(path->At(t + 1, n));

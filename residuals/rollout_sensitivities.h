@@ -54,6 +54,16 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
                       const PendulumState<double>& state, const Vector4<double>& previous,
                       SelfForce::Jacobian* jacobian);
 
+// d(force on n, force on j) / d(state of n, state of j, contact parameters) of one loaded pair.
+struct ContactJacobian {
+  Eigen::Matrix<double, 8, 16> by_states;    // rows: n then j; columns [q, qd] of n, then of j
+  Eigen::Matrix<double, 8, 5> by_parameter;  // kContactStiffness .. kContactHeight
+  bool loaded = false;
+};
+ContactJacobian ComputeContactJacobian(const ContactPair& pair, const ParameterSet<double>& p,
+                                       const PendulumState<double>& n,
+                                       const PendulumState<double>& j);
+
 // Same path as Rollout<double>, to the last bit.
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
                                        const SensitivityInputs& inputs, int num_frames,

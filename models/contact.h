@@ -1,0 +1,108 @@
+// models: contact between two people, a smooth reciprocal force between points on their rods.
+//
+// The points stand at the fraction s of the rods (s = 0: between the carts). With r = (dx, dy) from
+// j to n,
+//   d = sqrt(dx^2 + kappa^2 dy^2)            distance in which people are deeper than wide (kappa <
+//   1) d* = softmin(d_contact, d_0)             who stood closer than d_contact stood there without
+//   load x = d* - d                               compression, m f = A x^2 / (x + w) + B x / (x +
+//   w) x'   N for x > 0, else 0; w = 0.05 m
+// acts on n along the gradient of d, and its opposite on j. A spring of stiffness A beyond the
+// first centimetres, damping B that fades in with the load; continuous first derivatives
+// everywhere. Generalized forces by virtual work at the points. Rejected: LDP's potential, whose
+// push depends on the neighbour's velocity and is not mutual.
+#pragma once
+
+#include <cmath>
+
+#include "models/ipm.h"
+#include "models/parameters.h"
+
+namespace pushid {
+
+inline constexpr double kContactOnset = 0.05;     // m, w above
+inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
+
+// Two people and how they stood at frame 0.
+struct ContactPair {
+  Body body_n, body_j;
+  Vector4<double> q0_n = Vector4<double>::Zero(), q0_j = Vector4<double>::Zero();
+};
+
+template <typename T>
+struct ContactForce {
+  Vector4<T> on_n = Vector4<T>::Zero(), on_j = Vector4<T>::Zero();
+  bool loaded = false;
+};
+
+// Position (x, y) of the contact point.
+template <typename T>
+Eigen::Matrix<T, 2, 1> ContactPoint(const Body& body, const Vector4<T>& q, const T& height) {
+  using std::cos, std::sin;
+  const T reach = height * body.rod_length;
+  return {q[0] + reach * sin(q[2]), q[1] - reach * cos(q[2]) * sin(q[3])};
+}
+
+template <typename T>
+Eigen::Matrix<T, 2, 1> ContactVelocity(const Body& body, const PendulumState<T>& state,
+                                       const T& height) {
+  using std::cos, std::sin;
+  const T reach = height * body.rod_length;
+  const T s_th = sin(state.q[2]), c_th = cos(state.q[2]);
+  const T s_ph = sin(state.q[3]), c_ph = cos(state.q[3]);
+  return {state.qd[0] + reach * c_th * state.qd[2],
+          state.qd[1] + reach * (s_th * s_ph * state.qd[2] - c_th * c_ph * state.qd[3])};
+}
+
+// A horizontal force at the contact point as a generalized force (virtual work).
+template <typename T>
+Vector4<T> ContactGeneralizedForce(const Body& body, const Vector4<T>& q, const T& height,
+                                   const T& fx, const T& fy) {
+  using std::cos, std::sin;
+  const T reach = height * body.rod_length;
+  return {fx, fy, reach * (fx * cos(q[2]) + fy * sin(q[2]) * sin(q[3])),
+          -reach * fy * cos(q[2]) * cos(q[3])};
+}
+
+template <typename T>
+T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
+  using std::sqrt;
+  constexpr double kTiny = 1e-12;  // m^2: a derivative also where two points coincide
+  return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
+}
+
+template <typename T>
+ContactForce<T> ContactBetween(const ContactPair& pair, const ParameterSet<T>& p,
+                               const PendulumState<T>& n, const PendulumState<T>& j) {
+  using std::sqrt;
+  const T& kappa = p[kContactKappa];
+  const T& height = p[kContactHeight];
+  const Eigen::Matrix<T, 2, 1> r =
+      ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
+  const Eigen::Matrix<T, 2, 1> r0 =
+      ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
+      ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
+  const T d = ContactDistance(r, kappa), d0 = ContactDistance(r0, kappa);
+  const T gap = p[kContactDistance] - d0;
+  const T free =
+      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
+  const T x = free - d;
+  ContactForce<T> force;
+  if (!(x > T(0.0))) return force;
+
+  const Eigen::Matrix<T, 2, 1> along(r[0] / d, kappa * kappa * r[1] / d);
+  const Eigen::Matrix<T, 2, 1> v =
+      ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
+  const T approach = -(along[0] * v[0] + along[1] * v[1]);
+  const T share = x / (x + kContactOnset);
+  const T f = share * (p[kContactStiffness] * x + p[kContactDamping] * approach);
+  const T fx = f * along[0], fy = f * along[1];
+  force.on_n = ContactGeneralizedForce<T>(pair.body_n, n.q, height, fx, fy);
+  force.on_j = ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-fx), T(-fy));
+  force.loaded = true;
+  return force;
+}
+
+// The largest distance along x at which two people can touch; a neighbour search needs no more.
+inline double ContactRange(const ParameterSet<double>& p) { return p[kContactDistance]; }
+
+}  // namespace pushid
