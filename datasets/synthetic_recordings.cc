@@ -66,8 +66,9 @@ RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecord
   const SelfForce self = SelfForces(made->scene, added)[0];
   for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
     const PendulumState<double>& before = made->path.At(t > 0 ? t - 1 : 0, 0);
-    NetForce<double> force = NetForceAt(made->scene, added, self, made->parameters, 0, t,
-                                        made->path.At(t, 0), before.qd, Vector4<double>::Zero());
+    NetForce<double> force =
+        NetForceAt(made->scene, added, self, made->parameters, 0, t, made->path.At(t, 0), before.qd,
+                   Vector4<double>::Zero().eval());
     if (options.push_kind == PushKind::kNetWithoutFriction) force.friction.setZero();
     rows.push_back(force.Total());
   }
