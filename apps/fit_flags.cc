@@ -23,6 +23,8 @@ DEFINE_string(friction, "", "isotropic or anisotropic (default: the preset's)");
 DEFINE_string(push, "", "as_recorded (honour push_kind) or added (default: the preset's)");
 DEFINE_string(push_tail, "", "none or exponential (default: the preset's)");
 DEFINE_string(cart_derivative, "none", "none or backward: lets Kd_x and Kd_y act");
+DEFINE_string(interaction, "none",
+              "what people do to each other: none, or contact (a smooth reciprocal force)");
 DEFINE_string(mapping, "exact", "skeleton to pendulum: exact, or ldp for comparison");
 
 DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
@@ -79,6 +81,7 @@ MaybeError ReadModel(FitOptions* o) {
         Override("friction", FLAGS_friction, &m.friction), Override("push", FLAGS_push, &m.push),
         Override("push_tail", FLAGS_push_tail, &m.push_tail),
         Override("cart_derivative", FLAGS_cart_derivative, &m.cart_derivative),
+        Override("interaction", FLAGS_interaction, &m.interaction),
         Override("recording_weight", FLAGS_recording_weight, &o->recording_weight),
         Override("start", FLAGS_start, &o->start)}) {
     if (error) return error;
@@ -164,6 +167,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   if (MaybeError error = CheckNumbers()) return *error;
 
   FreeSelfForce(o.self_force, &o.table);
+  FreeInteraction(o.model.interaction, &o.table);
   if (!FLAGS_preset_priors) {
     for (ParameterSpec& spec : o.table.specs) spec.prior.reset();
   }

@@ -19,8 +19,8 @@
 DECLARE_uint64(seed);
 
 DEFINE_string(scheme, "stratified",
-              "what is held out: stratified (folds by subject and strength), subject (one at a "
-              "time), strong (all strong pushes)");
+              "what is held out: stratified (folds by setting, strength and subject), "
+              "subject or setting (one at a time), strong (all strong pushes)");
 DEFINE_int32(folds, 4, "folds of the stratified scheme");
 DEFINE_int32(repeats, 5, "repeats of the stratified scheme, each with new folds");
 DEFINE_string(

@@ -2,6 +2,7 @@
 #include "ident/crossvalidation.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <map>
@@ -9,6 +10,7 @@
 #include <thread>
 
 #include "datasets/random.h"
+#include "ident/option_names.h"
 
 namespace pushid {
 namespace {
@@ -26,9 +28,10 @@ void Shuffle(std::vector<int>* items, Random* random) {
 
 std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordings, int num_folds,
                                   int repeats, uint64_t seed) {
-  std::map<std::pair<std::string, std::string>, std::vector<int>> strata;
+  std::map<std::array<std::string, 3>, std::vector<int>> strata;
   for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
-    strata[{recordings[i].magnitude, PushedSubject(recordings[i])}].push_back(i);
+    strata[{recordings[i].setting, recordings[i].magnitude, PushedSubject(recordings[i])}]
+        .push_back(i);
   }
   std::vector<Fold> folds;
   Random random(seed);
@@ -70,28 +73,25 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
     if (repeats < 1) return Error{"--repeats must be at least 1"};
     return StratifiedFolds(recordings, num_folds, repeats, seed);
   }
+  // One fold per subject or setting; one fold of all strong pushes.
   std::map<std::string, Fold> by_name;
   for (int i = 0; i < total; ++i) {
-    if (scheme == FoldScheme::kSubject) {
-      Fold& fold = by_name[PushedSubject(recordings[i])];
-      fold.name = "without " + PushedSubject(recordings[i]);
-      fold.held_out.push_back(i);
-    } else if (recordings[i].magnitude == "strong") {
-      Fold& fold = by_name["strong"];
-      fold.name = "without strong";
-      fold.held_out.push_back(i);
-    }
+    const PendulumRecording& recording = recordings[i];
+    std::string key = PushedSubject(recording);
+    if (scheme == FoldScheme::kSetting) key = recording.setting;
+    if (scheme == FoldScheme::kStrong) key = "strong";
+    if (scheme == FoldScheme::kStrong && recording.magnitude != "strong") continue;
+    by_name[key].name = "without " + key;
+    by_name[key].held_out.push_back(i);
   }
   std::vector<Fold> folds;
   for (auto& [name, fold] : by_name) {
     if (static_cast<int>(fold.held_out.size()) < total) folds.push_back(fold);
   }
   if (folds.empty()) {
-    return Error{
-        scheme == FoldScheme::kSubject
-            ? "leaving subjects out needs recordings of at least two pushed subjects"
-            : "holding out the strong pushes needs recordings whose magnitude is 'strong', "
-              "and others"};
+    return Error{"--scheme=" + NameOf(scheme) +
+                 " leaves nothing to fit: it needs recordings of at least two pushed subjects "
+                 "(subject), of two settings (setting), or strong pushes and others (strong)"};
   }
   return folds;
 }

@@ -1,9 +1,9 @@
 // ident: how well a configuration predicts recordings it has not seen.
 //
-// Folds: stratified by subject and strength, so that every fold holds out its share of each,
-// repeated with new shuffles; leave-one-subject-out; the strong pushes held out together. The
-// standard error of a mean is over recordings (each one's score averaged over the repeats):
-// recordings are the independent units here, not frames and not folds.
+// Folds: stratified by setting, strength and subject, so that every fold holds out its share of
+// each, repeated with new shuffles; leave-one-subject-out and leave-one-setting-out; the strong
+// pushes held out together. The standard error of a mean is over recordings (each one's score
+// averaged over the repeats): recordings are the independent units here, not frames and not folds.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace pushid {
 
-enum class FoldScheme { kStratified, kSubject, kStrong };
+enum class FoldScheme { kStratified, kSubject, kStrong, kSetting };
 
 struct Fold {
   std::string name;  // "repeat 2 fold 3", "without X-05", "strong"

@@ -29,7 +29,9 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
       continue;
     }
     const bool tail = spec.id >= kTailGain && spec.id <= kTailExponent;
-    const bool acts = tail ? options.model.push_tail != PushTail::kNone
+    const bool contact = spec.id >= kContactStiffness && spec.id <= kContactHeight;
+    const bool acts = tail      ? options.model.push_tail != PushTail::kNone
+                      : contact ? options.model.interaction == Interaction::kContact
                       : spec.id == kMuY
                           ? options.model.friction == FrictionKind::kAnisotropic
                           : values[spec.id] != 0.0 || spec.id == kKpX || spec.id == kKpY;

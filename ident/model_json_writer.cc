@@ -68,6 +68,7 @@ Json OptionsJson(const FitOptions& o) {
           {"push", NameOf(o.model.push)},
           {"push_tail", NameOf(o.model.push_tail)},
           {"cart_derivative", NameOf(o.model.cart_derivative)},
+          {"interaction", NameOf(o.model.interaction)},
           {"sigmas",
            {{"hip_m", o.sigmas.hip},
             {"velocity_m_s", o.sigmas.velocity},

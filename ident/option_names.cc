@@ -61,7 +61,8 @@ const OptionNames<FitStart>& Names(FitStart) {
 const OptionNames<FoldScheme>& Names(FoldScheme) {
   static const OptionNames<FoldScheme> names = {{"stratified", FoldScheme::kStratified},
                                                 {"subject", FoldScheme::kSubject},
-                                                {"strong", FoldScheme::kStrong}};
+                                                {"strong", FoldScheme::kStrong},
+                                                {"setting", FoldScheme::kSetting}};
   return names;
 }
 const OptionNames<Transform>& Names(Transform) {

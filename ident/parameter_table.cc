@@ -152,4 +152,13 @@ void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   }
 }
 
+void FreeInteraction(Interaction interaction, ParameterTable* table) {
+  if (interaction == Interaction::kNone) return;
+  for (Parameter id : {kContactStiffness, kContactDistance, kContactKappa, kContactDamping}) {
+    ParameterSpec& spec = (*table)[id];
+    spec.free = true;
+    spec.prior = Prior{spec.nominal, spec.nominal};
+  }
+}
+
 }  // namespace pushid

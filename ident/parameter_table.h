@@ -65,6 +65,10 @@ Result<Preset> MakePreset(const std::string& name);
 // Frees the terms of a self force, where the model's options let them act.
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
 
+// Frees the terms of the interaction, with weak priors as wide as their centres. The contact's
+// height stays fixed: heights from the ankles to the chest fit the group recordings alike.
+void FreeInteraction(Interaction interaction, ParameterTable* table);
+
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value
 //   prior: name:mean:sigma         set:  name=value (also of a fixed one)

@@ -128,7 +128,8 @@ std::string ReportText(const FitResult& result) {
                      Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
                      result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
-                     ", self force " + NameOf(o.self_force) + "\n\n";
+                     ", self force " + NameOf(o.self_force) + ", interaction " +
+                     NameOf(o.model.interaction) + "\n\n";
   text += ParameterTableText(result) + HowSure(result) + "\n" + DerivedText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";

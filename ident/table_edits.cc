@@ -121,6 +121,10 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
     ParameterSpec* spec = table->Find(name);
     if (spec == nullptr) return UnknownName(name, "--pool", *table);
     if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
+    if (spec->id >= kContactStiffness && spec->id <= kContactHeight) {
+      return Error{"--pool names " + name +
+                   ", which two people share: it cannot differ by subject"};
+    }
     spec->pooled = true;
   }
   return std::nullopt;
