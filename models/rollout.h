@@ -53,7 +53,7 @@ template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
                        const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                       const Vector4<T>& interaction) {
+                       const Vector4<T>& interaction = Vector4<T>::Zero()) {
   NetForce<T> force;
   force.push = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);

@@ -31,7 +31,6 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
   SelfForce::Jacobian jacobian;
   int row = 0;
   // Equation error serves the start of a fit: contact is left at its nominal values there.
-  const Vector4<double> no_contact = Vector4<double>::Zero();
   for (int t = 0; t < recording_.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n, row += 4) {
       const Body& body = scene.people[n].body;
@@ -41,8 +40,8 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
       const double angle = 1.0 / (body.point_mass() * body.rod_length);
       const Vector4<double> scale(cart, cart, angle, angle);
       Eigen::Map<Vector4<double>> r(residuals + row);
-      const NetForce<double> force = NetForceAt(scene, options_, self[n], inputs.parameters[n], n,
-                                                t, state, before, no_contact);
+      const NetForce<double> force =
+          NetForceAt(scene, options_, self[n], inputs.parameters[n], n, t, state, before);
       r = scale.cwiseProduct(force.Total() -
                              InverseDynamics(body, state, smoothed_[n][t].acceleration));
       if (jacobians == nullptr) continue;

@@ -25,6 +25,8 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kAx] = -9.0, p[kAy] = -7.0, p[kBx] = 0.3, p[kBy] = 0.2, p[kTx] = -0.2, p[kTy] = -0.1;
   p[kCq] = 0.05, p[kDq] = 0.1;
   p[kTailGain] = 1.1, p[kTailTorque] = 0.35, p[kTailTime] = 0.19, p[kTailExponent] = 1.5;
+  p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.9, p[kContactKappa] = 0.6;
+  p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
   return p;
 }
 
@@ -161,7 +163,8 @@ inline std::vector<ModelOptions> EveryModelOptions() {
         for (PushUse use : {PushUse::kAsRecorded, PushUse::kAdded})
           for (PushTail tail : {PushTail::kNone, PushTail::kExponential})
             for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
-              all.push_back({posture, scaling, friction, use, tail, derivative});
+              for (Interaction interaction : {Interaction::kNone, Interaction::kContact})
+                all.push_back({posture, scaling, friction, use, tail, derivative, interaction});
   return all;
 }
 
@@ -170,7 +173,7 @@ inline std::string Describe(const ModelOptions& options) {
   return "posture " + number(options.posture) + ", scaling " + number(options.gain_scaling) +
          ", friction " + number(options.friction) + ", push use " + number(options.push) +
          ", tail " + number(options.push_tail) + ", cart derivative " +
-         number(options.cart_derivative);
+         number(options.cart_derivative) + ", interaction " + number(options.interaction);
 }
 
 }  // namespace pushid
