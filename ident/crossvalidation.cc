@@ -91,7 +91,8 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
   if (folds.empty()) {
     return Error{"--scheme=" + NameOf(scheme) +
                  " leaves nothing to fit: it needs recordings of at least two pushed subjects "
-                 "(subject), of two settings (setting), or strong pushes and others (strong)"};
+                 "(subject), of two settings (setting), or recordings of magnitude 'strong' and "
+                 "others (strong)"};
   }
   return folds;
 }
