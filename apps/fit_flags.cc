@@ -24,7 +24,9 @@ DEFINE_string(push, "", "as_recorded (honour push_kind) or added (default: the p
 DEFINE_string(push_tail, "", "none or exponential (default: the preset's)");
 DEFINE_string(cart_derivative, "none", "none or backward: lets Kd_x and Kd_y act");
 DEFINE_string(interaction, "none",
-              "what people do to each other: none, or contact (a smooth reciprocal force)");
+              "what people do to each other: none, or comma-separated terms: contact (smooth and "
+              "mutual: spring,damping), ldp (potential,lean), ldp_discrete (to evaluate), drive "
+              "(who was pushed by others steps on)");
 DEFINE_string(mapping, "exact", "skeleton to pendulum: exact, or ldp for comparison");
 
 DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
@@ -143,11 +145,9 @@ MaybeError CheckNumbers() {
 
 // Parameters of terms that the options switched off must not be fitted: they have no effect.
 void FixWhatDoesNotAct(const ModelOptions& model, ParameterTable* table) {
-  if (model.push_tail == PushTail::kNone) {
-    for (Parameter id : {kTailGain, kTailTorque, kTailTime, kTailExponent})
-      (*table)[id].free = false;
+  for (ParameterSpec& spec : table->specs) {
+    if (!Acts(spec.id, model)) spec.free = false;
   }
-  if (model.friction == FrictionKind::kIsotropic) (*table)[kMuY].free = false;
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ int Run() {
                  prediction.status.person, prediction.status.frame);
     return kFitFailed;
   }
-  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, model.value(), recording, prediction)) {
+  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording, prediction)) {
     return Fail(*error);
   }
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),

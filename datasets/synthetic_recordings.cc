@@ -46,10 +46,10 @@ std::vector<Vector4<double>> DrawPush(const SyntheticOptions& options, const Sce
 }
 
 RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
-                   SyntheticRecording* made) {
+                   SyntheticRecording* made, ForceTrace* forces = nullptr) {
   const std::vector<ParameterSet<double>> parameters(1, made->parameters);
   return Rollout(made->scene, model, parameters, InitialVelocities(made->scene), options.frames,
-                 &made->path);
+                 &made->path, forces);
 }
 
 // Where a push stands for other forces too while it lasts, its rows must contain them. They are
@@ -59,16 +59,13 @@ RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecord
   if (model.push == PushUse::kAdded || options.push_kind == PushKind::kExternal) return {};
   ModelOptions added = model;
   added.push = PushUse::kAdded;
-  const RolloutStatus status = Roll(options, added, made);
+  ForceTrace forces;
+  const RolloutStatus status = Roll(options, added, made, &forces);
   if (!status.ok) return status;
   ScenePush& push = made->scene.pushes[0];
   std::vector<Vector4<double>> rows;
-  const SelfForce self = SelfForces(made->scene, added)[0];
   for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
-    const PendulumState<double>& before = made->path.At(t > 0 ? t - 1 : 0, 0);
-    NetForce<double> force =
-        NetForceAt(made->scene, added, self, made->parameters, 0, t, made->path.At(t, 0), before.qd,
-                   Vector4<double>::Zero().eval());
+    NetForce<double> force = forces.At(t, 0);
     if (options.push_kind == PushKind::kNetWithoutFriction) force.friction.setZero();
     rows.push_back(force.Total());
   }

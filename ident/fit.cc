@@ -28,13 +28,10 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
       rows.push_back(uncertainty.estimates[static_cast<size_t>(at - fitted.begin())]);
       continue;
     }
-    const bool tail = spec.id >= kTailGain && spec.id <= kTailExponent;
-    const bool contact = spec.id >= kContactStiffness && spec.id <= kContactHeight;
-    const bool acts = tail      ? options.model.push_tail != PushTail::kNone
-                      : contact ? options.model.interaction == Interaction::kContact
-                      : spec.id == kMuY
-                          ? options.model.friction == FrictionKind::kAnisotropic
-                          : values[spec.id] != 0.0 || spec.id == kKpX || spec.id == kKpY;
+    // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
+    const bool convention = spec.id == kKpX || spec.id == kKpY;
+    const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
+    const bool acts = Acts(spec.id, options.model) && (!zero || convention);
     if (!acts) continue;
     Estimate fixed;
     fixed.name = spec.name;

@@ -91,7 +91,10 @@ FitOptions OptionsFrom(const Json& json) {
   o.model.push = EnumFrom<PushUse>(json, "push");
   o.model.push_tail = EnumFrom<PushTail>(json, "push_tail");
   o.model.cart_derivative = EnumFrom<CartDerivative>(json, "cart_derivative");
-  o.model.interaction = EnumFrom<Interaction>(json, "interaction");
+  if (MaybeError error = ParseName("interaction", json.at("interaction").get<std::string>(),
+                                   &o.model.interaction)) {
+    throw std::runtime_error(error->ToString());
+  }
   const Json& sigmas = json.at("sigmas");
   o.sigmas = {sigmas.at("hip_m"), sigmas.at("velocity_m_s"), sigmas.at("angle_rad"),
               sigmas.at("rate_rad_s"), sigmas.at("robust")};

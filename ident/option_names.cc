@@ -1,6 +1,9 @@
 // ident: the table of option names.
 #include "ident/option_names.h"
 
+#include <algorithm>
+#include <sstream>
+
 namespace pushid {
 
 const OptionNames<Posture>& Names(Posture) {
@@ -31,11 +34,6 @@ const OptionNames<PushTail>& Names(PushTail) {
 const OptionNames<CartDerivative>& Names(CartDerivative) {
   static const OptionNames<CartDerivative> names = {{"none", CartDerivative::kNone},
                                                     {"backward", CartDerivative::kBackward}};
-  return names;
-}
-const OptionNames<Interaction>& Names(Interaction) {
-  static const OptionNames<Interaction> names = {{"none", Interaction::kNone},
-                                                 {"contact", Interaction::kContact}};
   return names;
 }
 const OptionNames<SkeletonMapping>& Names(SkeletonMapping) {
@@ -78,6 +76,55 @@ const OptionNames<EstimateStatus>& Names(EstimateStatus) {
       {"at bound", EstimateStatus::kAtBound},
       {"fixed", EstimateStatus::kFixed}};
   return names;
+}
+
+namespace {
+
+using TermNames = std::vector<std::pair<const char*, bool InteractionTerms::*>>;
+const TermNames& Terms() {
+  static const TermNames names = {{"spring", &InteractionTerms::spring},
+                                  {"damping", &InteractionTerms::damping},
+                                  {"potential", &InteractionTerms::potential},
+                                  {"lean", &InteractionTerms::lean},
+                                  {"ldp_discrete", &InteractionTerms::ldp_discrete},
+                                  {"drive", &InteractionTerms::drive}};
+  return names;
+}
+
+}  // namespace
+
+std::string NameOf(const InteractionTerms& terms) {
+  std::string text;
+  for (const auto& [name, member] : Terms()) {
+    if (terms.*member) text += (text.empty() ? "" : ",") + std::string(name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms) {
+  *terms = {};
+  if (text == "none") return std::nullopt;
+  std::stringstream list(text);
+  for (std::string part; std::getline(list, part, ',');) {
+    if (part == "contact") {
+      terms->spring = terms->damping = true;
+    } else if (part == "ldp") {
+      terms->potential = terms->lean = true;
+    } else {
+      const auto found = std::find_if(Terms().begin(), Terms().end(),
+                                      [&part](const auto& term) { return term.first == part; });
+      if (found == Terms().end()) {
+        return Error{flag + " names '" + part +
+                     "'; it must be none, or some of contact (spring,damping), ldp "
+                     "(potential,lean), spring, damping, potential, lean, ldp_discrete, drive"};
+      }
+      terms->*(found->second) = true;
+    }
+  }
+  if (terms->drive && !terms->Any()) {
+    return Error{flag + ": drive acts on what people receive from others; add contact or ldp"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace pushid

@@ -20,7 +20,6 @@ const OptionNames<FrictionKind>& Names(FrictionKind);
 const OptionNames<PushUse>& Names(PushUse);
 const OptionNames<PushTail>& Names(PushTail);
 const OptionNames<CartDerivative>& Names(CartDerivative);
-const OptionNames<Interaction>& Names(Interaction);
 const OptionNames<SkeletonMapping>& Names(SkeletonMapping);
 const OptionNames<SelfForceKind>& Names(SelfForceKind);
 const OptionNames<RecordingWeight>& Names(RecordingWeight);
@@ -50,5 +49,9 @@ MaybeError ParseName(const std::string& flag, const std::string& text, E* value)
   }
   return Error{flag + " is '" + text + "'; it must be one of " + known};
 }
+
+// Interaction terms: comma-separated pieces; "contact" and "ldp" are short for two of them each.
+std::string NameOf(const InteractionTerms& terms);
+MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms);
 
 }  // namespace pushid

@@ -56,6 +56,14 @@ ParameterTable BaseTable() {
   add(Spec(kContactDamping, "N s/m", 100, 1e-3, 1e4, 100, log, "damping of contact"));
   add(Spec(kContactHeight, "1", 0.5, 0.01, 0.99, 0.5, Transform::kLogit,
            "height of contact, fraction of the rod"));
+  add(Spec(kPotentialStrength, "N m", 150, 0.1, 1e5, 150, log, "strength of LDP's potential"));
+  add(Spec(kPotentialLength, "m", 0.5, 0.02, 5, 0.5, log, "decay length of LDP's potential"));
+  add(Spec(kNeighbourRange, "m", 0.5, 0.1, 3, 0.5, log, "cart distance at which LDP's terms end"));
+  add(Spec(kLeanTheta, "N m", 100, -2000, 2000, 100, plain, "torque against leaning on others, y"));
+  add(Spec(kLeanPhi, "N m", 100, -2000, 2000, 100, plain, "torque against leaning on others, x"));
+  add(Spec(kDriveGain, "1", 0.5, -20, 20, 0.5, plain, "cart force over the contact lately felt"));
+  add(Spec(kDriveTorque, "1", 0.2, -20, 20, 0.2, plain, "torque over the contact lately felt"));
+  add(Spec(kDriveTime, "s", 0.3, 0.01, 5, 0.3, log, "how long contact is felt"));
   return table;
 }
 
@@ -152,12 +160,58 @@ void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   }
 }
 
-void FreeInteraction(Interaction interaction, ParameterTable* table) {
-  if (interaction == Interaction::kNone) return;
-  for (Parameter id : {kContactStiffness, kContactDistance, kContactKappa, kContactDamping}) {
+void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
+  std::vector<Parameter> free;
+  if (terms.Contact()) free = {kContactDistance, kContactKappa};
+  if (terms.spring) free.push_back(kContactStiffness);
+  if (terms.damping) free.push_back(kContactDamping);
+  if (terms.potential) free.insert(free.end(), {kPotentialStrength, kPotentialLength});
+  if (terms.lean) free.insert(free.end(), {kLeanTheta, kLeanPhi});
+  if (terms.potential || terms.lean) free.push_back(kNeighbourRange);
+  if (terms.drive) free.insert(free.end(), {kDriveGain, kDriveTorque, kDriveTime});
+  for (Parameter id : free) {
     ParameterSpec& spec = (*table)[id];
     spec.free = true;
-    spec.prior = Prior{spec.nominal, spec.nominal};
+    spec.prior = Prior{spec.nominal, std::abs(spec.nominal)};
+  }
+}
+
+bool Acts(Parameter id, const ModelOptions& model) {
+  const InteractionTerms& terms = model.interaction;
+  const bool ldp = terms.potential || terms.lean || terms.ldp_discrete;
+  switch (id) {
+    case kMuY:
+      return model.friction == FrictionKind::kAnisotropic;
+    case kKdX:
+    case kKdY:
+      return model.cart_derivative == CartDerivative::kBackward;
+    case kTailGain:
+    case kTailTorque:
+    case kTailTime:
+    case kTailExponent:
+      return model.push_tail == PushTail::kExponential;
+    case kContactStiffness:
+      return terms.spring;
+    case kContactDamping:
+      return terms.damping;
+    case kContactDistance:
+    case kContactKappa:
+    case kContactHeight:
+      return terms.Contact();
+    case kPotentialStrength:
+    case kPotentialLength:
+      return terms.potential || terms.ldp_discrete;
+    case kLeanTheta:
+    case kLeanPhi:
+      return terms.lean || terms.ldp_discrete;
+    case kNeighbourRange:
+      return ldp;
+    case kDriveGain:
+    case kDriveTorque:
+    case kDriveTime:
+      return terms.drive;
+    default:
+      return true;
   }
 }
 

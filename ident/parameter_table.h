@@ -66,8 +66,12 @@ Result<Preset> MakePreset(const std::string& name);
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
 
 // Frees the terms of the interaction, with weak priors as wide as their centres. The contact's
-// height stays fixed: heights from the ankles to the chest fit the group recordings alike.
-void FreeInteraction(Interaction interaction, ParameterTable* table);
+// height stays fixed: heights from the ankles to the chest fit the group recordings alike. Those of
+// LDP's discrete form stay fixed too: it has no derivatives.
+void FreeInteraction(const InteractionTerms& terms, ParameterTable* table);
+
+// Whether a parameter has any effect under the options.
+bool Acts(Parameter id, const ModelOptions& model);
 
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value

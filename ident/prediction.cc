@@ -22,7 +22,8 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
   Prediction prediction;
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
   prediction.status = Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
-                              InitialVelocities(recording.scene), frames, &prediction.path);
+                              InitialVelocities(recording.scene), frames, &prediction.path,
+                              &prediction.forces);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<Vector3<double>> hip;
@@ -34,14 +35,12 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
   return prediction;
 }
 
-MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& model,
-                              const PendulumRecording& recording, const Prediction& prediction) {
-  const std::vector<ParameterSet<double>> sets = PeoplesParameters(model, recording);
-  const std::vector<SelfForce> self = SelfForces(recording.scene, model.options);
+MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
+                              const Prediction& prediction) {
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
-  for (const char* part : {"friction", "balance", "linear", "push", "tail", "interaction"}) {
+  for (const char* part : {"friction", "balance", "linear", "push", "tail", "interaction", "drive"}) {
     for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
       text += std::string(",") + part + "_" + row;
     }
@@ -54,8 +53,6 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
   };
   const int frames = prediction.status.ok ? prediction.path.num_frames() : prediction.status.frame;
   for (int t = 0; t < frames; ++t) {
-    const std::vector<Vector4<double>> interaction =
-        InteractionForces(recording.scene, model.options, sets, prediction.path, t);
     for (int n = 0; n < recording.scene.num_people(); ++n) {
       const PendulumState<double>& state = prediction.path.At(t, n);
       text += std::to_string(t);
@@ -65,11 +62,9 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& mo
       for (int i = 0; i < 4; ++i) add(state.qd[i]);
       const Vector3<double> hip = HipPosition(recording.scene.people[n].body, state.q);
       for (int i = 0; i < 3; ++i) add(hip[i]);
-      const NetForce<double> force =
-          NetForceAt(recording.scene, model.options, self[n], sets[n], n, t, state,
-                     prediction.path.At(t > 0 ? t - 1 : 0, n).qd, interaction[n]);
+      const NetForce<double>& force = prediction.forces.At(t, n);
       for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
-                               &force.tail, &force.interaction}) {
+                               &force.tail, &force.interaction, &force.drive}) {
         for (int i = 0; i < 4; ++i) add((*part)[i]);
       }
       text += "\n";

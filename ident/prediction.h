@@ -13,6 +13,7 @@ namespace pushid {
 struct Prediction {
   RolloutStatus status;
   RolloutPath<double> path;                       // frames before a failure are valid
+  ForceTrace forces;                              // what drove it, part by part
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
 };
 
@@ -22,7 +23,7 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 
 // Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV;
 // after a failure, the frames before it.
-MaybeError WriteTrajectoryCsv(const std::string& path, const IdentifiedModel& model,
-                              const PendulumRecording& recording, const Prediction& prediction);
+MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
+                              const Prediction& prediction);
 
 }  // namespace pushid

@@ -121,7 +121,7 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
     ParameterSpec* spec = table->Find(name);
     if (spec == nullptr) return UnknownName(name, "--pool", *table);
     if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
-    if (spec->id >= kContactStiffness && spec->id <= kContactHeight) {
+    if (IsPairParameter(spec->id)) {
       return Error{"--pool names " + name +
                    ", which two people share: it cannot differ by subject"};
     }

@@ -2,37 +2,25 @@
 //
 // The points stand at the fraction s of the rods (s = 0: between the carts). With r = (dx, dy) from
 // j to n,
-//   d = sqrt(dx^2 + kappa^2 dy^2)            distance in which people are deeper than wide (kappa <
-//   1) d* = softmin(d_contact, d_0)             who stood closer than d_contact stood there without
-//   load x = d* - d                               compression, m f = A x^2 / (x + w) + B x / (x +
-//   w) x'   N for x > 0, else 0; w = 0.05 m
+//   d = sqrt(dx^2 + kappa^2 dy^2)     distance in which people are deeper than wide (kappa < 1)
+//   d* = softmin(d_contact, d_0)      who stood closer than d_contact stood there free of load
+//   load x = d* - d                   compression, m
+//   spring  f = A x^2 / (x + w)       N for x > 0, else 0; w = 0.05 m
+//   damping f = B x / (x + w) x'
 // acts on n along the gradient of d, and its opposite on j. A spring of stiffness A beyond the
 // first centimetres, damping B that fades in with the load; continuous first derivatives
 // everywhere. Generalized forces by virtual work at the points. Rejected: LDP's potential, whose
-// push depends on the neighbour's velocity and is not mutual.
+// push depends on the neighbour's velocity and is not mutual (ldp_interaction.h).
 #pragma once
 
 #include <cmath>
 
-#include "models/ipm.h"
-#include "models/parameters.h"
+#include "models/pair.h"
 
 namespace pushid {
 
 inline constexpr double kContactOnset = 0.05;     // m, w above
 inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
-
-// Two people and how they stood at frame 0.
-struct ContactPair {
-  Body body_n, body_j;
-  Vector4<double> q0_n = Vector4<double>::Zero(), q0_j = Vector4<double>::Zero();
-};
-
-template <typename T>
-struct ContactForce {
-  Vector4<T> on_n = Vector4<T>::Zero(), on_j = Vector4<T>::Zero();
-  bool loaded = false;
-};
 
 // Position (x, y) of the contact point.
 template <typename T>
@@ -70,39 +58,93 @@ T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
   return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
 }
 
+// What the spring and the damper of one contact have in common.
 template <typename T>
-ContactForce<T> ContactBetween(const ContactPair& pair, const ParameterSet<T>& p,
-                               const PendulumState<T>& n, const PendulumState<T>& j) {
-  using std::sqrt;
-  const T& kappa = p[kContactKappa];
-  const T& height = p[kContactHeight];
-  const Eigen::Matrix<T, 2, 1> r =
-      ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
-  const Eigen::Matrix<T, 2, 1> r0 =
-      ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
-      ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
-  const T d = ContactDistance(r, kappa), d0 = ContactDistance(r0, kappa);
-  const T gap = p[kContactDistance] - d0;
-  const T free =
-      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
-  const T x = free - d;
-  ContactForce<T> force;
-  if (!(x > T(0.0))) return force;
+struct ContactLoad {
+  T compression = T(0.0);        // m; no load unless positive
+  T share = T(0.0);              // x / (x + w)
+  Eigen::Matrix<T, 2, 1> along;  // gradient of d by n's point
 
-  const Eigen::Matrix<T, 2, 1> along(r[0] / d, kappa * kappa * r[1] / d);
-  const Eigen::Matrix<T, 2, 1> v =
-      ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
-  const T approach = -(along[0] * v[0] + along[1] * v[1]);
-  const T share = x / (x + kContactOnset);
-  const T f = share * (p[kContactStiffness] * x + p[kContactDamping] * approach);
-  const T fx = f * along[0], fy = f * along[1];
-  force.on_n = ContactGeneralizedForce<T>(pair.body_n, n.q, height, fx, fy);
-  force.on_j = ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-fx), T(-fy));
-  force.loaded = true;
-  return force;
+  ContactLoad(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+              const PendulumState<T>& j) {
+    using std::sqrt;
+    const T& kappa = p[kContactKappa];
+    const T& height = p[kContactHeight];
+    const Eigen::Matrix<T, 2, 1> r =
+        ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
+    const T d = ContactDistance(r, kappa);
+    if (RealPart(d) >= RealPart(p[kContactDistance])) return;  // d* is never larger
+    const Eigen::Matrix<T, 2, 1> r0 =
+        ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
+        ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
+    const T d0 = ContactDistance(r0, kappa);
+    const T gap = p[kContactDistance] - d0;
+    const T free =
+        0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
+    compression = free - d;
+    if (!Loaded()) return;
+    share = compression / (compression + kContactOnset);
+    along = {r[0] / d, kappa * kappa * r[1] / d};
+  }
+
+  bool Loaded() const { return RealPart(compression) > 0.0; }
+};
+
+// Adds f along the gradient of d on n, and its opposite on j.
+template <typename T>
+void AddContactForce(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                     const PendulumState<T>& j, const ContactLoad<T>& load, const T& f,
+                     PairForce<T>* force) {
+  const T& height = p[kContactHeight];
+  const T fx = f * load.along[0], fy = f * load.along[1];
+  force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.q, height, fx, fy);
+  force->on_j += ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-fx), T(-fy));
+  force->acts = true;
 }
 
-// The largest distance along x at which two people can touch; a neighbour search needs no more.
-inline double ContactRange(const ParameterSet<double>& p) { return p[kContactDistance]; }
+// How fast the contact is compressed, m/s.
+template <typename T>
+T ContactApproach(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, const ContactLoad<T>& load) {
+  const T& height = p[kContactHeight];
+  const Eigen::Matrix<T, 2, 1> v =
+      ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
+  return -(load.along[0] * v[0] + load.along[1] * v[1]);
+}
+
+struct SpringTerm {
+  template <typename T>
+  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, PairForce<T>* force) {
+    const ContactLoad<T> load(pair, p, n, j);
+    if (!load.Loaded()) return;
+    const T f = p[kContactStiffness] * load.share * load.compression;
+    AddContactForce(pair, p, n, j, load, f, force);
+  }
+};
+
+struct DampingTerm {
+  template <typename T>
+  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, PairForce<T>* force) {
+    const ContactLoad<T> load(pair, p, n, j);
+    if (!load.Loaded()) return;
+    const T f = p[kContactDamping] * load.share * ContactApproach(pair, p, n, j, load);
+    AddContactForce(pair, p, n, j, load, f, force);
+  }
+};
+
+// Both at once: the same sum, with the geometry worked out once.
+struct ContactTerm {
+  template <typename T>
+  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, PairForce<T>* force) {
+    const ContactLoad<T> load(pair, p, n, j);
+    if (!load.Loaded()) return;
+    const T f = load.share * (p[kContactStiffness] * load.compression +
+                              p[kContactDamping] * ContactApproach(pair, p, n, j, load));
+    AddContactForce(pair, p, n, j, load, f, force);
+  }
+};
 
 }  // namespace pushid

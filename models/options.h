@@ -34,10 +34,17 @@ enum class CartDerivative {
   kBackward  // (v_t - v_{t-1}) / dt, as LDP's code does
 };
 
-// What people do to each other.
-enum class Interaction {
-  kNone,
-  kContact  // a smooth reciprocal contact force (contact.h)
+// What people do to each other: pieces that add up (interaction.h).
+struct InteractionTerms {
+  bool spring = false;        // the elastic part of a smooth reciprocal contact
+  bool damping = false;       // its damping
+  bool potential = false;     // LDP's repulsive potential, smoothed
+  bool lean = false;          // LDP's torques against leaning on each other, smoothed
+  bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
+  bool drive = false;         // whoever was pushed by others steps on for a while (drive.h)
+
+  bool Contact() const { return spring || damping; }
+  bool Any() const { return Contact() || potential || lean || ldp_discrete; }
 };
 
 struct ModelOptions {
@@ -47,7 +54,7 @@ struct ModelOptions {
   PushUse push = PushUse::kAdded;
   PushTail push_tail = PushTail::kExponential;
   CartDerivative cart_derivative = CartDerivative::kNone;
-  Interaction interaction = Interaction::kNone;
+  InteractionTerms interaction;
 };
 
 }  // namespace pushid

@@ -36,8 +36,23 @@ enum Parameter : int {
   kContactKappa,      // weight of the distance along y, 1
   kContactDamping,    // N s/m
   kContactHeight,     // fraction of the rod, 1
+  kPotentialStrength,  // LDP's repulsive potential, N m
+  kPotentialLength,    // its decay length, m
+  kNeighbourRange,     // cart distance beyond which LDP's terms vanish, m
+  kLeanTheta,          // torque that keeps people from leaning on each other, N m
+  kLeanPhi,            // N m
+  kDriveGain,    // cart force from the force lately received by contact, 1
+  kDriveTorque,  // torque from the torque lately received by contact, 1
+  kDriveTime,    // how long "lately" is, s
   kNumParameters
 };
+
+// What two people share: the parameters of the terms between them.
+inline constexpr int kFirstPairParameter = kContactStiffness;
+inline constexpr int kNumPairParameters = kLeanPhi - kContactStiffness + 1;
+constexpr bool IsPairParameter(Parameter id) {
+  return id >= kFirstPairParameter && id < kFirstPairParameter + kNumPairParameters;
+}
 
 inline constexpr std::array<std::string_view, kNumParameters> kParameterNames = {
     "mu",
@@ -66,7 +81,15 @@ inline constexpr std::array<std::string_view, kNumParameters> kParameterNames = 
     "contact_distance",
     "contact_kappa",
     "contact_damping",
-    "contact_height"};
+    "contact_height",
+    "potential_strength",
+    "potential_length",
+    "neighbour_range",
+    "lean_theta",
+    "lean_phi",
+    "drive_gain",
+    "drive_torque",
+    "drive_time"};
 
 template <typename T>
 using ParameterSet = std::array<T, kNumParameters>;

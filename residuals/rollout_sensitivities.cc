@@ -49,10 +49,13 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
   }
 }
 
-ContactJacobian ComputeContactJacobian(const ContactPair& pair, const ParameterSet<double>& p,
-                                       const PendulumState<double>& n,
-                                       const PendulumState<double>& j) {
-  constexpr int kParameters = 5;
+namespace {
+
+// Jets over both states and the first `kParameters` of the pair parameters.
+template <int kParameters>
+PairJacobian PairJacobianOf(const InteractionTerms& terms, const Pair& pair,
+                            const ParameterSet<double>& p, const PendulumState<double>& n,
+                            const PendulumState<double>& j) {
   using Jet = ceres::Jet<double, 16 + kParameters>;
   PendulumState<Jet> a, b;
   for (int i = 0; i < 4; ++i) {
@@ -62,53 +65,115 @@ ContactJacobian ComputeContactJacobian(const ContactPair& pair, const ParameterS
     b.qd[i] = Jet(j.qd[i], 12 + i);
   }
   ParameterSet<Jet> parameters;
-  for (int i = 0; i < kNumParameters; ++i) parameters[i] = Jet(p[i]);
-  for (int i = 0; i < kParameters; ++i) {
-    parameters[kContactStiffness + i] = Jet(p[kContactStiffness + i], 16 + i);
+  for (int i = 0; i < kNumPairParameters; ++i) {
+    Jet& parameter = parameters[kFirstPairParameter + i];
+    parameter = Jet(p[kFirstPairParameter + i]);
+    if (i < kParameters) parameter.v[16 + i] = 1.0;
   }
-  const ContactForce<Jet> force = ContactBetween(pair, parameters, a, b);
-  ContactJacobian jacobian;
-  jacobian.loaded = force.loaded;
+  const PairForce<Jet> force = InteractionBetween(terms, pair, parameters, a, b);
+  PairJacobian jacobian;
+  jacobian.by_parameter.setZero();
   for (int row = 0; row < 4; ++row) {
-    jacobian.by_states.row(row) = force.on_n[row].v.head<16>().transpose();
-    jacobian.by_states.row(4 + row) = force.on_j[row].v.head<16>().transpose();
-    jacobian.by_parameter.row(row) = force.on_n[row].v.tail<kParameters>().transpose();
-    jacobian.by_parameter.row(4 + row) = force.on_j[row].v.tail<kParameters>().transpose();
+    jacobian.by_states.row(row) = force.on_n[row].v.template head<16>().transpose();
+    jacobian.by_states.row(4 + row) = force.on_j[row].v.template head<16>().transpose();
+    jacobian.by_parameter.row(row).template head<kParameters>() =
+        force.on_n[row].v.template tail<kParameters>().transpose();
+    jacobian.by_parameter.row(4 + row).template head<kParameters>() =
+        force.on_j[row].v.template tail<kParameters>().transpose();
   }
   return jacobian;
 }
 
+}  // namespace
+
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PendulumState<double>& n,
+                                 const PendulumState<double>& j) {
+  constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
+  const bool only_contact = !terms.potential && !terms.lean && !terms.ldp_discrete;
+  return only_contact ? PairJacobianOf<kContactParameters>(terms, pair, p, n, j)
+                      : PairJacobianOf<kNumPairParameters>(terms, pair, p, n, j);
+}
+
 namespace {
 
-// Adds what the contacts of one frame pass from person to person.
-void AddContactSensitivities(const Scene& scene, const ModelOptions& options,
-                             const SensitivityInputs& inputs, const RolloutPath<double>& path,
-                             const RolloutSensitivities& sensitivities, int frame,
-                             std::vector<Eigen::Matrix<double, 4, Eigen::Dynamic>>* by_column) {
-  if (options.interaction == Interaction::kNone) return;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    for (int j = n + 1; j < scene.num_people(); ++j) {
-      const ContactPair pair = PairOf(scene, n, j);
-      const ParameterSet<double>& p = inputs.parameters[n];
-      const PendulumState<double>&a = path.At(frame, n), &b = path.At(frame, j);
-      if (!MayTouch(pair, p, a, b) || !ContactBetween(pair, p, a, b).loaded) continue;
-      const ContactJacobian jacobian = ComputeContactJacobian(pair, p, a, b);
+using Columns = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
+// Derivatives of what everybody gets from others, now and lately.
+class ReceivedSensitivities {
+ public:
+  ReceivedSensitivities(const Scene& scene, const ModelOptions& options,
+                        const SensitivityInputs& inputs)
+      : scene_(scene),
+        options_(options),
+        inputs_(inputs),
+        now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
+        lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {}
+
+  // Of the interaction at one frame; forces: updated to it.
+  void Update(const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
+              SceneForces<double>* forces) {
+    if (!options_.interaction.Any()) return;
+    for (Columns& columns : now_) columns.setZero();
+    forces->pairs().ForEachPair([&](int n, int j) {
+      if (!forces->Between(n, j).acts) return;
+      const PairJacobian jacobian =
+          ComputePairJacobian(options_.interaction, PairOf(scene_, n, j), forces->Parameters(0),
+                              path.At(frame, n), path.At(frame, j));
       for (int side = 0; side < 2; ++side) {
-        const int person = side == 0 ? n : j;
-        if (ForcesAt(scene, options.push, person, frame) != ActiveForces::kAll) continue;
-        auto& target = (*by_column)[person];
+        Columns& target = now_[side == 0 ? n : j];
         target += jacobian.by_states.block<4, 8>(4 * side, 0) * sensitivities.At(frame, n);
         target += jacobian.by_states.block<4, 8>(4 * side, 8) * sensitivities.At(frame, j);
-        for (const ColumnEntry& entry : inputs.entries[n]) {
-          if (entry.parameter < kContactStiffness || entry.parameter > kContactHeight) continue;
+        for (const ColumnEntry& entry : inputs_.entries[0]) {
+          if (!IsPairParameter(entry.parameter)) continue;
           target.col(entry.column) +=
               entry.derivative *
-              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kContactStiffness);
+              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter);
         }
+      }
+    });
+  }
+
+  // Adds what person n feels of it.
+  void AddTo(int n, const SceneForces<double>& forces, Columns* by_column) const {
+    if (options_.interaction.Any()) *by_column += now_[n];
+    if (!options_.interaction.drive) return;
+    const ParameterSet<double>& p = forces.Parameters(n);
+    const Vector4<double>& lately = forces.received(n).lately;
+    by_column->topRows<2>() += p[kDriveGain] * lately_[n].topRows<2>();
+    by_column->bottomRows<2>() += p[kDriveTorque] * lately_[n].bottomRows<2>();
+    for (const ColumnEntry& entry : inputs_.entries[n]) {
+      if (entry.parameter == kDriveGain) {
+        by_column->col(entry.column).head<2>() += entry.derivative * lately.head<2>();
+      } else if (entry.parameter == kDriveTorque) {
+        by_column->col(entry.column).tail<2>() += entry.derivative * lately.tail<2>();
       }
     }
   }
-}
+
+  // On to the next frame; forces: still at this one.
+  void Advance(const SceneForces<double>& forces) {
+    if (!options_.interaction.drive) return;
+    for (int n = 0; n < scene_.num_people(); ++n) {
+      const ParameterSet<double>& p = forces.Parameters(n);
+      const Received<double>& received = forces.received(n);
+      const double memory = DriveMemory(p, scene_.dt);
+      lately_[n] = memory * lately_[n] + (1.0 - memory) * now_[n];
+      const double by_time = memory * scene_.dt / (p[kDriveTime] * p[kDriveTime]);
+      for (const ColumnEntry& entry : inputs_.entries[n]) {
+        if (entry.parameter != kDriveTime) continue;
+        lately_[n].col(entry.column) +=
+            entry.derivative * by_time * (received.lately - received.now);
+      }
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  const ModelOptions& options_;
+  const SensitivityInputs& inputs_;
+  std::vector<Columns> now_, lately_;
+};
 
 }  // namespace
 
@@ -117,7 +182,8 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
                                        RolloutPath<double>* path,
                                        RolloutSensitivities* sensitivities) {
   const int people = scene.num_people();
-  const std::vector<SelfForce> self = SelfForces(scene, options);
+  SceneForces<double> forces(scene, options, inputs.parameters);
+  ReceivedSensitivities received(scene, options, inputs);
   *path = RolloutPath<double>(num_frames, people);
   sensitivities->Resize(num_frames, people, inputs.num_columns);
   for (int n = 0; n < people; ++n) {
@@ -129,49 +195,48 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
     }
   }
 
-  std::vector<Eigen::Matrix<double, 4, Eigen::Dynamic>> by_column(
-      people, Eigen::Matrix<double, 4, Eigen::Dynamic>(4, inputs.num_columns));
+  Columns by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
+  std::vector<int> scratch;
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
-    const std::vector<Vector4<double>> interaction =
-        InteractionForces(scene, options, inputs.parameters, *path, t);
+    forces.Update(path->Frame(t));
+    for (int n = 0; n < people; ++n) forces.Interact(n, &scratch);
+    received.Update(*path, *sensitivities, t, &forces);
     for (int n = 0; n < people; ++n) {
       const Body& body = scene.people[n].body;
+      const SelfForce& self = forces.self(n);
       const ParameterSet<double>& p = inputs.parameters[n];
       const PendulumState<double>& state = path->At(t, n);
       const Vector4<double>& previous = path->At(before, n).qd;
-      const NetForce<double> force =
-          NetForceAt(scene, options, self[n], p, n, t, state, previous, interaction[n]);
-      const Vector4<double> a = Acceleration(body, state, force.Total());
+      const Vector4<double> a = Acceleration(body, state, forces.On(n, t, previous).Total());
       path->At(t + 1, n) = Step(state, a, scene.dt);
       const std::string_view outside = OutsideDomain(path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
 
-      NetForceJacobian(scene, options, self[n], p, n, t, state, previous, &jacobian);
+      NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
       const Matrix4<double> rigid = InverseDynamicsJacobian(body, state, a);
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
-      by_column[n].noalias() = jacobian.by_state * sensitivities->At(t, n);
-      if (self[n].cart_derivative) {
-        by_column[n].topRows<2>() +=
+      const auto now = sensitivities->At(t, n);
+      by_column.noalias() = jacobian.by_state * now;
+      if (self.cart_derivative) {
+        by_column.topRows<2>() +=
             jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
       }
       for (const ColumnEntry& entry : inputs.entries[n]) {
-        by_column[n].col(entry.column) +=
+        by_column.col(entry.column) +=
             entry.derivative * jacobian.by_parameter.col(entry.parameter);
       }
-    }
-    AddContactSensitivities(scene, options, inputs, *path, *sensitivities, t, &by_column);
-    for (int n = 0; n < people; ++n) {
-      const auto now = sensitivities->At(t, n);
-      const Matrix4<double> inverse_mass =
-          InverseMassMatrix(scene.people[n].body, path->At(t, n).q);
+      if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
+        received.AddTo(n, forces, &by_column);
+      }
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>().noalias() =
-          now.bottomRows<4>() + scene.dt * (inverse_mass * by_column[n]);
+          now.bottomRows<4>() + scene.dt * (InverseMassMatrix(body, state.q) * by_column);
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
     }
+    received.Advance(forces);
   }
   return {};
 }

@@ -3,8 +3,10 @@
 // With s = [q, qd] of a person and S = ds/d(columns), M a = F - C - G gives
 //   da = M^-1 (dF/ds - d(M a + C + G)/ds at fixed a) S + M^-1 dF/dp dp/d(columns)
 //   S_qd <- S_qd + dt da,   S_q <- S_q + dt S_qd
-// Only d(M a + C + G) needs automatic differentiation, over the four states it depends on; a whole
-// Jet rollout costs as many sweeps as there are columns (measured in tests/benchmarks).
+// Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
+// touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
+// columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too:
+//   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,15 +56,14 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
                       const PendulumState<double>& state, const Vector4<double>& previous,
                       SelfForce::Jacobian* jacobian);
 
-// d(force on n, force on j) / d(state of n, state of j, contact parameters) of one loaded pair.
-struct ContactJacobian {
-  Eigen::Matrix<double, 8, 16> by_states;    // rows: n then j; columns [q, qd] of n, then of j
-  Eigen::Matrix<double, 8, 5> by_parameter;  // kContactStiffness .. kContactHeight
-  bool loaded = false;
+// d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people.
+struct PairJacobian {
+  Eigen::Matrix<double, 8, 16> by_states;  // rows: n then j; columns [q, qd] of n, then of j
+  Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on
 };
-ContactJacobian ComputeContactJacobian(const ContactPair& pair, const ParameterSet<double>& p,
-                                       const PendulumState<double>& n,
-                                       const PendulumState<double>& j);
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PendulumState<double>& n,
+                                 const PendulumState<double>& j);
 
 // Same path as Rollout<double>, to the last bit.
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,

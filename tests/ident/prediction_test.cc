@@ -91,7 +91,7 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
   const PendulumRecording recording = MakePendulums(study)[0];
   const IdentifiedModel model = TruthOf(study);
   const Prediction p = Predict(model, recording);
-  ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), model, recording, p));
+  ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), recording, p));
   std::istringstream file(ReadText(Path("t.csv")));
   std::string line;
   std::getline(file, line);
@@ -129,7 +129,7 @@ TEST_F(TrajectoryCsv, UnwritablePathIsAnError) {
   const PendulumRecording recording = MakePendulums(study)[0];
   const IdentifiedModel model = TruthOf(study);
   const MaybeError error =
-      WriteTrajectoryCsv(Path("none/t.csv"), model, recording, Predict(model, recording));
+      WriteTrajectoryCsv(Path("none/t.csv"), recording, Predict(model, recording));
   ASSERT_TRUE(error);
   EXPECT_TRUE(Contains(error->ToString(), "t.csv"));
 }
@@ -144,7 +144,7 @@ TEST_F(TrajectoryCsv, AFallenPrediction) {
   EXPECT_GT(p.status.frame, 0);
   EXPECT_FALSE(p.status.quantity.empty());
   EXPECT_TRUE(p.hip.empty());
-  ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), TruthOf(study), recording, p));
+  ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), recording, p));
   std::istringstream file(ReadText(Path("t.csv")));
   int lines = 0;
   for (std::string line; std::getline(file, line);) ++lines;

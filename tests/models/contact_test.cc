@@ -1,6 +1,6 @@
 // The contact between two people: mutual, smooth, load-free at the start, without energy of its
 // own.
-#include "models/contact.h"
+#include "models/interaction.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -20,8 +20,16 @@ ParameterSet<double> Parameters(double height) {
   return p;
 }
 
-ContactPair Pair(double distance) {
-  ContactPair pair;
+template <typename T>
+PairForce<T> Contact(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
+                     const PendulumState<T>& j) {
+  InteractionTerms terms;
+  terms.spring = terms.damping = true;
+  return InteractionBetween(terms, pair, p, n, j);
+}
+
+Pair TwoPeople(double distance) {
+  Pair pair;
   pair.body_n = {70.0, 0.95, 0.1};
   pair.body_j = {90.0, 1.02, 0.08};
   pair.q0_n = {0.0, 0.0, 0.0, 0.0};
@@ -40,19 +48,19 @@ PendulumState<double> AtRest(const Vector4<double>& q) { return {q, Vector4<doub
 
 TEST(Contact, NobodyIsLoadedWhereHeStoodAtTheStart) {
   for (double distance : {0.1, 0.3, 0.4, 0.6}) {
-    const ContactPair pair = Pair(distance);
-    const ContactForce<double> force =
-        ContactBetween<double>(pair, Parameters(0.5), AtRest(pair.q0_n), AtRest(pair.q0_j));
-    EXPECT_FALSE(force.loaded) << distance;
+    const Pair pair = TwoPeople(distance);
+    const PairForce<double> force =
+        Contact<double>(pair, Parameters(0.5), AtRest(pair.q0_n), AtRest(pair.q0_j));
+    EXPECT_FALSE(force.acts) << distance;
     EXPECT_EQ(force.on_n.norm(), 0.0);
   }
 }
 
 TEST(Contact, PushesApartAndIsMutual) {
-  const ContactPair pair = Pair(0.6);
-  const ContactForce<double> force =
-      ContactBetween(pair, Parameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
-  ASSERT_TRUE(force.loaded);
+  const Pair pair = TwoPeople(0.6);
+  const PairForce<double> force =
+      Contact(pair, Parameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
+  ASSERT_TRUE(force.acts);
   EXPECT_LT(force.on_n[0], 0.0);  // n stands behind j and is pushed back
   EXPECT_GT(force.on_j[0], 0.0);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(force.on_n[i], -force.on_j[i], 1e-12);
@@ -60,12 +68,12 @@ TEST(Contact, PushesApartAndIsMutual) {
 
 // Whoever is called first, the forces are the same.
 TEST(Contact, DoesNotDependOnTheOrder) {
-  const ContactPair pair = Pair(0.6);
-  const ContactPair swapped{pair.body_j, pair.body_n, pair.q0_j, pair.q0_n};
+  const Pair pair = TwoPeople(0.6);
+  const Pair swapped = pair.Swapped();
   const auto a = Near(0.33, 0.5), b = Near(0.58, -0.2);
-  const ContactForce<double> one = ContactBetween(pair, Parameters(0.7), a, b);
-  const ContactForce<double> other = ContactBetween(swapped, Parameters(0.7), b, a);
-  ASSERT_TRUE(one.loaded);
+  const PairForce<double> one = Contact(pair, Parameters(0.7), a, b);
+  const PairForce<double> other = Contact(swapped, Parameters(0.7), b, a);
+  ASSERT_TRUE(one.acts);
   EXPECT_LT((one.on_n - other.on_j).norm(), 1e-12 * one.on_n.norm());
   EXPECT_LT((one.on_j - other.on_n).norm(), 1e-12 * one.on_j.norm());
 }
@@ -85,8 +93,8 @@ TEST(Contact, SpringHasAPotential) {
     j.q[i] = Jet(b.q[i], 4 + i);
     n.qd[i] = j.qd[i] = Jet(0.0);
   }
-  const ContactForce<Jet> force = ContactBetween(Pair(0.6), parameters, n, j);
-  ASSERT_TRUE(force.loaded);
+  const PairForce<Jet> force = Contact(TwoPeople(0.6), parameters, n, j);
+  ASSERT_TRUE(force.acts);
   Eigen::Matrix<double, 8, 8> stiffness;
   for (int row = 0; row < 4; ++row) {
     stiffness.row(row) = force.on_n[row].v.transpose();
@@ -96,14 +104,14 @@ TEST(Contact, SpringHasAPotential) {
 }
 
 TEST(Contact, ForceAndSlopeVanishAtFirstTouch) {
-  const ContactPair pair = Pair(0.6);
+  const Pair pair = TwoPeople(0.6);
   double before = 0.0;
   // Walk n towards j in steps of 0.1 mm: no step of the force where the contact begins.
   for (int i = 0; i <= 1000; ++i) {
     PendulumState<double> n;
     n.q = {0.15 + 1e-4 * i, 0.0, 0.0, 0.0};
     const PendulumState<double> j = AtRest(pair.q0_j);
-    const double now = ContactBetween(pair, Parameters(0.5), n, j).on_j[0];
+    const double now = Contact(pair, Parameters(0.5), n, j).on_j[0];
     EXPECT_GE(now, before);
     EXPECT_LT(now - before, 0.3);  // 2500 N/m x 0.1 mm and a little
     before = now;
@@ -123,7 +131,7 @@ TEST(Contact, TravelsThroughARow) {
   scene.pushes.push_back(MakeScenePush(0, 0, PushKind::kExternal,
                                        HalfSinePush(scene.people[0].body, 80.0, 12, scene.dt)));
   ModelOptions options;
-  options.interaction = Interaction::kContact;
+  options.interaction.spring = options.interaction.damping = true;
   ParameterSet<double> p = Parameters(0.5);
   p[kMu] = 30.0, p[kKpTheta] = 1800.0, p[kKpPhi] = 1500.0, p[kKdTheta] = p[kKdPhi] = 70.0;
   p[kAx] = -12.0, p[kTailTime] = 0.2;

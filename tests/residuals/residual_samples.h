@@ -27,6 +27,9 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kTailGain] = 1.1, p[kTailTorque] = 0.35, p[kTailTime] = 0.19, p[kTailExponent] = 1.5;
   p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.9, p[kContactKappa] = 0.6;
   p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
+  p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;
+  p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
+  p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.25;
   return p;
 }
 
@@ -154,6 +157,17 @@ inline void AddNoise(double magnitude, Random* random, PendulumRecording* record
   }
 }
 
+// None, each term alone or with what it needs, all smooth ones together.
+inline std::vector<InteractionTerms> SomeInteractions() {
+  std::vector<InteractionTerms> some(6);
+  some[1].spring = some[1].damping = true;
+  some[2].spring = some[2].drive = true;
+  some[3].damping = some[3].potential = true;
+  some[4].lean = some[4].drive = true;
+  some[5].spring = some[5].damping = some[5].potential = some[5].lean = some[5].drive = true;
+  return some;
+}
+
 // Every combination of options that changes a rollout.
 inline std::vector<ModelOptions> EveryModelOptions() {
   std::vector<ModelOptions> all;
@@ -163,9 +177,17 @@ inline std::vector<ModelOptions> EveryModelOptions() {
         for (PushUse use : {PushUse::kAsRecorded, PushUse::kAdded})
           for (PushTail tail : {PushTail::kNone, PushTail::kExponential})
             for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
-              for (Interaction interaction : {Interaction::kNone, Interaction::kContact})
+              for (const InteractionTerms& interaction : SomeInteractions())
                 all.push_back({posture, scaling, friction, use, tail, derivative, interaction});
   return all;
+}
+
+inline std::string DescribeTerms(const InteractionTerms& t) {
+  std::string text;
+  for (bool on : {t.spring, t.damping, t.potential, t.lean, t.ldp_discrete, t.drive}) {
+    text += on ? "1" : "0";
+  }
+  return text;
 }
 
 inline std::string Describe(const ModelOptions& options) {
@@ -173,7 +195,7 @@ inline std::string Describe(const ModelOptions& options) {
   return "posture " + number(options.posture) + ", scaling " + number(options.gain_scaling) +
          ", friction " + number(options.friction) + ", push use " + number(options.push) +
          ", tail " + number(options.push_tail) + ", cart derivative " +
-         number(options.cart_derivative) + ", interaction " + number(options.interaction);
+         number(options.cart_derivative) + ", interaction " + DescribeTerms(options.interaction);
 }
 
 }  // namespace pushid

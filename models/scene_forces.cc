@@ -1,4 +1,4 @@
-// models: which forces act when; the parts of a rollout that do not depend on the scalar.
+// models: which forces act when; what does not depend on the scalar.
 #include "models/rollout.h"
 
 namespace pushid {

@@ -1,0 +1,35 @@
+// models: the sum of the interaction terms a model asks for, between two people.
+#pragma once
+
+#include "models/contact.h"
+#include "models/ldp_interaction.h"
+#include "models/options.h"
+#include "models/pair.h"
+
+namespace pushid {
+
+// Calls visit(term) for every term of the model that acts between two people.
+template <typename Visit>
+void ForEachTerm(const InteractionTerms& terms, Visit&& visit) {
+  if (terms.spring && terms.damping) {
+    visit(ContactTerm{});
+  } else if (terms.spring) {
+    visit(SpringTerm{});
+  } else if (terms.damping) {
+    visit(DampingTerm{});
+  }
+  if (terms.potential) visit(PotentialTerm{});
+  if (terms.lean) visit(LeanTerm{});
+  if (terms.ldp_discrete) visit(LdpDiscreteTerm{});
+}
+
+template <typename T>
+PairForce<T> InteractionBetween(const InteractionTerms& terms, const Pair& pair,
+                                const ParameterSet<T>& p, const PendulumState<T>& n,
+                                const PendulumState<T>& j) {
+  PairForce<T> force;
+  ForEachTerm(terms, [&](auto term) { term.Add(pair, p, n, j, &force); });
+  return force;
+}
+
+}  // namespace pushid

@@ -1,0 +1,109 @@
+// models: the neighbour grid and the canonical order.
+#include "models/neighbours.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace pushid {
+namespace {
+
+// So few are compared with each other directly.
+constexpr std::size_t kFewPeople = 12;
+
+}  // namespace
+
+Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterSet<double>& p,
+                                 double lean) {
+  Eigen::Vector2d reach = Eigen::Vector2d::Zero();
+  if (terms.Contact()) {
+    const double d = p[kContactDistance];
+    reach = {d + 2.0 * lean, d / p[kContactKappa] + 2.0 * lean};
+  }
+  if (terms.potential || terms.lean) {
+    reach = reach.cwiseMax(Eigen::Vector2d::Constant(SmoothLdpReach(p)));
+  }
+  if (terms.ldp_discrete) reach = reach.cwiseMax(Eigen::Vector2d::Constant(p[kNeighbourRange]));
+  return reach;
+}
+
+Eigen::Matrix<std::int64_t, 2, 1> NeighbourGrid::Cell(const Eigen::Vector2d& at) const {
+  return {static_cast<std::int64_t>(std::floor(at[0] / reach_[0])),
+          static_cast<std::int64_t>(std::floor(at[1] / reach_[1]))};
+}
+
+std::size_t NeighbourGrid::Bucket(const Eigen::Matrix<std::int64_t, 2, 1>& cell) const {
+  const auto mixed = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u ^
+                     static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4Fu;
+  return (mixed >> 20) & (first_.size() - 2);  // first_ has a power of two of buckets and one more
+}
+
+void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach) {
+  at_ = at;
+  reach_ = reach;
+  const std::size_t people = at.size();
+  if (people <= kFewPeople) return;
+  std::size_t buckets = 16;
+  while (buckets < 2 * people) buckets *= 2;
+  first_.assign(buckets + 1, 0);
+  cell_.resize(people);
+  member_.resize(people);
+  for (std::size_t n = 0; n < people; ++n) {
+    cell_[n] = Cell(at[n]);
+    ++first_[Bucket(cell_[n]) + 1];
+  }
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  next_.assign(first_.begin(), first_.end() - 1);
+  for (std::size_t n = 0; n < people; ++n) {
+    member_[next_[Bucket(cell_[n])]++] = static_cast<int>(n);
+  }
+}
+
+void NeighbourGrid::Near(int person, std::vector<int>* near) const {
+  near->clear();
+  const auto add_if_near = [&](int other) {
+    const Eigen::Vector2d apart = (at_[other] - at_[person]).cwiseAbs();
+    if (other != person && apart[0] < reach_[0] && apart[1] < reach_[1]) near->push_back(other);
+  };
+  if (at_.size() <= kFewPeople) {
+    for (std::size_t other = 0; other < at_.size(); ++other) add_if_near(static_cast<int>(other));
+  } else {
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+      for (std::int64_t dy = -1; dy <= 1; ++dy) {
+        const Eigen::Matrix<std::int64_t, 2, 1> cell =
+            cell_[person] + Eigen::Matrix<std::int64_t, 2, 1>(dx, dy);
+        const std::size_t bucket = Bucket(cell);
+        for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) {
+          // Several cells may share a bucket.
+          if (cell_[member_[k]] == cell) add_if_near(member_[k]);
+        }
+      }
+    }
+  }
+  std::sort(near->begin(), near->end(),
+            [this](int a, int b) { return rank_[a] < rank_[b]; });
+}
+
+std::vector<int> CanonicalRank(const Scene& scene) {
+  std::vector<int> order(scene.people.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto key = [&scene](int n) {
+    const ScenePerson& person = scene.people[n];
+    const Vector4<double>& q = person.start.q;
+    return std::make_tuple(q[0], q[1], q[2], q[3], person.body.mass, person.body.rod_length);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key(a) < key(b); });
+  std::vector<int> rank(order.size());
+  for (std::size_t r = 0; r < order.size(); ++r) rank[order[r]] = static_cast<int>(r);
+  return rank;
+}
+
+PairFinder::PairFinder(const Scene& scene, const InteractionTerms& terms)
+    : scene_(&scene), terms_(terms), order_(scene.people.size()), at_(scene.people.size()) {
+  std::vector<int> rank = CanonicalRank(scene);
+  for (std::size_t n = 0; n < rank.size(); ++n) order_[rank[n]] = static_cast<int>(n);
+  grid_ = NeighbourGrid(std::move(rank));
+}
+
+}  // namespace pushid

@@ -1,0 +1,150 @@
+// models: the net force on everybody in a scene, frame by frame.
+//
+//   F_net = self force + push + tail + interaction + drive, where by push kind and PushUse (DESIGN
+//   section 3) a `net` push may replace all other forces, and a `net_without_friction` push all but
+//   the friction, while it lasts.
+//
+// Templated, so that the same lines serve doubles and automatic differentiation.
+#pragma once
+
+#include <vector>
+
+#include "models/drive.h"
+#include "models/interaction.h"
+#include "models/neighbours.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "models/scene.h"
+#include "models/self_force.h"
+
+namespace pushid {
+
+// Which forces act on a person during one step.
+enum class ActiveForces { kAll, kPushAndFriction, kPushOnly };
+
+ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame);
+
+// The force of all pushes on a person in one step, without tails. Constant in the parameters.
+Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
+
+// The parts of F_net on one person in one step.
+template <typename T>
+struct NetForce {
+  Vector4<T> friction = Vector4<T>::Zero();
+  Vector4<T> balance = Vector4<T>::Zero();
+  Vector4<T> linear = Vector4<T>::Zero();
+  Vector4<T> push = Vector4<T>::Zero();
+  Vector4<T> tail = Vector4<T>::Zero();
+  Vector4<T> interaction = Vector4<T>::Zero();
+  Vector4<T> drive = Vector4<T>::Zero();
+
+  Vector4<T> Total() const {
+    return friction + balance + linear + push + tail + interaction + drive;
+  }
+};
+
+// What a person gets from others: now, and lately (drive.h).
+template <typename T>
+struct Received {
+  Vector4<T> now = Vector4<T>::Zero(), lately = Vector4<T>::Zero();
+};
+
+template <typename T>
+NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
+                       const ParameterSet<T>& p, int person, int frame,
+                       const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                       const Received<T>& received = {}) {
+  NetForce<T> force;
+  force.push = PushForceAt(scene, person, frame).template cast<T>();
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  if (active == ActiveForces::kPushOnly) return force;
+  force.friction = self.Friction(p, state.qd);
+  if (active == ActiveForces::kPushAndFriction) return force;
+  // Only here: a push that is the whole force includes the tail of an earlier one.
+  if (options.push_tail == PushTail::kExponential) {
+    for (const ScenePush& push : scene.pushes) {
+      if (push.person == person) force.tail += TailForce(push, p, frame, scene.dt);
+    }
+  }
+  force.balance = self.Balance(p, state, qd_previous);
+  force.linear = self.Linear(p, state);
+  force.interaction = received.now;
+  if (options.interaction.drive) force.drive = DriveForce(p, received.lately);
+  return force;
+}
+
+// The self force of everybody in a scene.
+std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
+
+// Everything a step needs besides the states, allocated once. Frame by frame: Update, then On for
+// each person, in any order and from any thread (each with a scratch of its own).
+template <typename T>
+class SceneForces {
+ public:
+  // parameters: one entry per person, or a single one for everybody. What two people share (the
+  // pair parameters) is taken from the first. All arguments must outlive the object.
+  SceneForces(const Scene& scene, const ModelOptions& options,
+              const std::vector<ParameterSet<T>>& parameters)
+      : scene_(&scene),
+        options_(&options),
+        parameters_(&parameters),
+        self_(SelfForces(scene, options)),
+        finder_(scene, options.interaction),
+        received_(scene.people.size()) {}
+
+  // states: of everybody at the next frame, the first one at the first call.
+  void Update(const PendulumState<T>* states) {
+    if (options_->interaction.drive && started_) {
+      for (size_t n = 0; n < received_.size(); ++n) {
+        received_[n].lately = NextReceived(Parameters(static_cast<int>(n)), received_[n].lately,
+                                           received_[n].now, scene_->dt);
+      }
+    }
+    started_ = true;
+    states_ = states;
+    finder_.Update(Parameters(0), states);
+  }
+
+  // What everybody does to one person. Each person adds up in canonical order (neighbours.h).
+  void Interact(int person, std::vector<int>* scratch) {
+    finder_.Near(person, scratch);
+    Vector4<T> sum = Vector4<T>::Zero();
+    for (int other : *scratch) {
+      const bool first = finder_.Rank(person) < finder_.Rank(other);
+      const int n = first ? person : other, j = first ? other : person;
+      const PairForce<T> force = Between(n, j);
+      if (force.acts) sum += first ? force.on_n : force.on_j;
+    }
+    received_[person].now = sum;
+  }
+
+  PairForce<T> Between(int n, int j) const {
+    return InteractionBetween(options_->interaction, PairOf(*scene_, n, j), Parameters(0),
+                              states_[n], states_[j]);
+  }
+
+  // The parts of the net force; qd_previous: the velocity one frame earlier.
+  NetForce<T> On(int person, int frame, const Vector4<T>& qd_previous) const {
+    return NetForceAt(*scene_, *options_, self_[person], Parameters(person), person, frame,
+                      states_[person], qd_previous, received_[person]);
+  }
+
+  const ParameterSet<T>& Parameters(int person) const {
+    return (*parameters_)[parameters_->size() == 1 ? 0 : person];
+  }
+  const SelfForce& self(int person) const { return self_[person]; }
+  const Received<T>& received(int person) const { return received_[person]; }
+  PairFinder& pairs() { return finder_; }
+
+ private:
+  const Scene* scene_;
+  const ModelOptions* options_;
+  const std::vector<ParameterSet<T>>* parameters_;
+  std::vector<SelfForce> self_;
+  PairFinder finder_;
+  std::vector<Received<T>> received_;
+  const PendulumState<T>* states_ = nullptr;
+  bool started_ = false;
+};
+
+}  // namespace pushid
