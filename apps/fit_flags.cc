@@ -50,6 +50,11 @@ DEFINE_double(
     settling_weight, -1.0,
     "weight of the demonstrations that a pushed person stands again; 0: off (default: the "
     "preset's)");
+DEFINE_double(
+    mode_weight, -1.0,
+    "weight of the hinge that makes a person's free modes at rest decay; 0: off (default: "
+    "30 with --self_force=linear, else 0)");
+DEFINE_double(mode_margin, 0.2, "slowest decay the hinge allows, 1/s");
 DEFINE_double(stability_weight, 0.0,
               "weight of the rollouts continued past the data, with the push and 1.4 times it");
 
@@ -91,6 +96,8 @@ MaybeError ReadModel(FitOptions* o) {
   return std::nullopt;
 }
 
+// A linear self force can feed a mode that the demonstrations do not excite.
+constexpr double kLinearModeWeight = 30.0;
 constexpr long kLongestHorizon = 1000000;  // frames
 
 MaybeError ReadHorizons(FitOptions* o) {
@@ -135,7 +142,9 @@ MaybeError CheckNumbers() {
                            CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
     if (error) return error;
   }
-  // Below zero stands for the preset's weight.
+  // Below zero stands for the default weight.
+  if (!std::isfinite(FLAGS_mode_weight)) return Error{"--mode_weight must be a number"};
+  if (!std::isfinite(FLAGS_mode_margin)) return Error{"--mode_margin must be a number"};
   if (!std::isfinite(FLAGS_settling_weight)) return Error{"--settling_weight must be a number"};
   if (!(FLAGS_start_spread >= 1.0 && FLAGS_start_spread <= 1000.0)) {
     return Error{"--start_spread must lie between 1 and 1000"};
@@ -166,6 +175,9 @@ Result<FitOptions> FitOptionsFromFlags() {
   if (MaybeError error = ReadHorizons(&o)) return *error;
   if (MaybeError error = CheckNumbers()) return *error;
 
+  const double hinge = o.self_force == SelfForceKind::kLinear ? kLinearModeWeight : 0.0;
+  o.mode_weight = FLAGS_mode_weight >= 0.0 ? FLAGS_mode_weight : hinge;
+  o.mode_margin = FLAGS_mode_margin;
   FreeSelfForce(o.self_force, &o.table);
   FreeInteraction(o.model.interaction, &o.table);
   if (!FLAGS_preset_priors) {

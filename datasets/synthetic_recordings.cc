@@ -47,9 +47,8 @@ std::vector<Vector4<double>> DrawPush(const SyntheticOptions& options, const Sce
 
 RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
                    SyntheticRecording* made, ForceTrace* forces = nullptr) {
-  const std::vector<ParameterSet<double>> parameters(1, made->parameters);
-  return Rollout(made->scene, model, parameters, InitialVelocities(made->scene), options.frames,
-                 &made->path, forces);
+  return Rollout(made->scene, model, made->parameters, InitialVelocities(made->scene),
+                 options.frames, &made->path, forces);
 }
 
 // Where a push stands for other forces too while it lasts, its rows must contain them. They are
@@ -73,15 +72,15 @@ RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecord
   return {};
 }
 
-Recording Observe(const SyntheticOptions& options, const SyntheticRecording& made,
-                  const Subject& subject, Random* noise) {
+RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRecording& made,
+                             const Subject& subject, int n, Random* noise) {
   RecordedPerson person;
   person.subject_id = subject.id;
   person.mass_kg = subject.mass_kg;
   person.file = "synthetic";
-  const Body& body = made.scene.people[0].body;
+  const Body& body = made.scene.people[n].body;
   for (int t = 0; t < options.frames; ++t) {
-    const Vector4<double>& q = made.path.At(t, 0).q;
+    const Vector4<double>& q = made.path.At(t, n).q;
     const double sigma = t == 0 && !options.noise_at_first_frame ? 0.0 : options.joint_noise_m;
     const auto observed = [&](const Vector3<double>& position) {
       const double x = noise->Normal(), y = noise->Normal(), z = noise->Normal();
@@ -92,14 +91,44 @@ Recording Observe(const SyntheticOptions& options, const SyntheticRecording& mad
     person.left_ankle.push_back(observed(cart + subject.skeleton.HalfStance()));
     person.right_ankle.push_back(observed(cart - subject.skeleton.HalfStance()));
   }
-  Recording recording;
-  recording.setting = "single";
-  recording.fps = options.fps;
-  recording.push_kind = options.push_kind;
-  recording.people.push_back(std::move(person));
-  const ScenePush& push = made.scene.pushes[0];
-  recording.pushes.push_back({0, push.start_frame, push.force, "synthetic"});
-  return recording;
+  return person;
+}
+
+std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
+  std::vector<Subject> subjects;
+  for (int s = 0; s < options.subjects; ++s) {
+    // To 0.1 kg, as scales show it.
+    const double mass =
+        std::round(10.0 * people->Uniform(options.min_mass_kg, options.max_mass_kg)) / 10.0;
+    const SyntheticSkeleton skeleton(people->Uniform(options.min_rod_m, options.max_rod_m));
+    subjects.push_back({"S" + TwoDigits(s + 1), mass, skeleton,
+                        Spread(options.parameters, options.subject_spread, spread)});
+  }
+  return subjects;
+}
+
+// The row of people of one recording, the pushed one first, in the posture and place they start in.
+void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>& row,
+              Random* motion, Random* spread, SyntheticRecording* made) {
+  double x = 0.0;
+  for (const Subject* subject : row) {
+    made->skeletons.push_back(subject->skeleton);
+    made->parameters.push_back(Spread(subject->parameters, options.recording_spread, spread));
+    ScenePerson person;
+    person.body = {subject->mass_kg, subject->skeleton.rod_length(),
+                   subject->skeleton.cart_height()};
+    double y = 0.0;
+    if (row.size() > 1) {
+      y = motion->Normal(0.0, options.sideways_sigma_m);
+      if (!made->scene.people.empty()) {
+        x += motion->Uniform(options.min_spacing_m, options.max_spacing_m);
+      }
+    }
+    const double theta = motion->Normal(0.0, options.lean_sigma_rad);
+    const double phi = motion->Normal(0.0, options.lean_sigma_rad);
+    person.start.q = {x, y, theta, phi};
+    made->scene.people.push_back(person);
+  }
 }
 
 }  // namespace
@@ -170,6 +199,9 @@ MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
         range("height", o.min_height, o.max_height, -1, 3),
         range("recording_spread", o.recording_spread, o.recording_spread, 0, 2),
         range("subject_spread", o.subject_spread, o.subject_spread, 0, 2),
+        range("people_in_row", o.people_in_row, o.people_in_row, 1, o.subjects),
+        range("spacing_m", o.min_spacing_m, o.max_spacing_m, 0.05, 100),
+        range("sideways_sigma_m", o.sideways_sigma_m, o.sideways_sigma_m, 0, 10),
         range("joint_noise_m", o.joint_noise_m, o.joint_noise_m, 0, 0.1)}) {
     if (wrong) return wrong;
   }
@@ -183,28 +215,21 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
   const uint64_t own_noise = root.Fork();
   Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
 
+  const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
   std::vector<SyntheticRecording> result;
   for (int s = 0; s < options.subjects; ++s) {
-    // To 0.1 kg, as scales show it.
-    const double mass =
-        std::round(10.0 * people.Uniform(options.min_mass_kg, options.max_mass_kg)) / 10.0;
-    const SyntheticSkeleton skeleton(people.Uniform(options.min_rod_m, options.max_rod_m));
-    const Subject subject{"S" + TwoDigits(s + 1), mass, skeleton,
-                          Spread(options.parameters, options.subject_spread, &spread)};
+    std::vector<const Subject*> row;
+    for (int n = 0; n < options.people_in_row; ++n) {
+      row.push_back(&subjects[(s + n) % subjects.size()]);
+    }
     for (int r = 0; r < options.recordings_per_subject; ++r) {
       const PushStrength& strength = options.strengths[r % options.strengths.size()];
-      const std::string id = subject.id + "_" + TwoDigits(r) + "_" + strength.name;
+      const std::string id = row[0]->id + "_" + TwoDigits(r) + "_" + strength.name;
       SyntheticRecording made;
-      made.skeleton = skeleton;
-      made.parameters = Spread(subject.parameters, options.recording_spread, &spread);
       made.scene.dt = 1.0 / options.fps;
-      ScenePerson person;
-      person.body = {mass, skeleton.rod_length(), skeleton.cart_height()};
-      const double theta = motion.Normal(0.0, options.lean_sigma_rad);
-      const double phi = motion.Normal(0.0, options.lean_sigma_rad);
-      person.start.q = {0.0, 0.0, theta, phi};
-      made.scene.people.push_back(person);
-      std::vector<Vector4<double>> rows = DrawPush(options, person, strength.acceleration, &motion);
+      PlaceRow(options, row, &motion, &spread, &made);
+      std::vector<Vector4<double>> rows =
+          DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
       const size_t room = options.frames - 1 - options.push_start_frame;
       if (rows.size() > room) rows.resize(room);
       made.scene.pushes.push_back(
@@ -217,9 +242,18 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
                      std::to_string(status.frame) + " (" + std::string(status.quantity) +
                      "): choose weaker pushes, firmer gains or less spread"};
       }
-      made.recording = Observe(options, made, subject, &noise);
-      made.recording.id = id;
-      made.recording.magnitude = strength.name;
+      Recording& recording = made.recording;
+      for (size_t n = 0; n < row.size(); ++n) {
+        recording.people.push_back(
+            ObservePerson(options, made, *row[n], static_cast<int>(n), &noise));
+      }
+      recording.id = id;
+      recording.magnitude = strength.name;
+      recording.setting = row.size() > 1 ? "row" : "single";
+      recording.fps = options.fps;
+      recording.push_kind = options.push_kind;
+      const ScenePush& push = made.scene.pushes[0];
+      recording.pushes.push_back({0, push.start_frame, push.force, "synthetic"});
       result.push_back(std::move(made));
     }
   }

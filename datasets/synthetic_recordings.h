@@ -7,8 +7,9 @@
 //   MaybeError failed = WriteSyntheticRecordings("out", options, made.value());  //
 //   out/manifest.json
 //
-// Every recording is one person who stands, is pushed mostly forwards and partly to the side, and
-// moves as Rollout says. The same options and seed give the same bytes everywhere. Noise, gain
+// Every recording is one person, or a row of them one behind the other, who stand; the last in the
+// row (the first along +x) is pushed mostly forwards and partly to the side; all move as Rollout
+// says. The same options and seed give the same bytes everywhere. Noise, gain
 // variation and motion draw from separate streams: changing one leaves the others as they were.
 #pragma once
 
@@ -42,7 +43,12 @@ struct SyntheticOptions {
   ParameterSet<double> parameters = PublishedTailParameters();
 
   int subjects = 4;
-  int recordings_per_subject = 6;  // the strengths in turn
+  int recordings_per_subject = 6;  // with this subject pushed; the strengths in turn
+  // People in a row in every recording: the pushed subject and the ones after it. More than one
+  // make sense with model.interaction.
+  int people_in_row = 1;
+  double min_spacing_m = 0.40, max_spacing_m = 0.50;  // between neighbours' carts
+  double sideways_sigma_m = 0.03;                     // of everybody's place
   std::vector<PushStrength> strengths = {{"weak", 2.0}, {"medium", 3.0}, {"strong", 4.0}};
   double fps = 60.0;
   int frames = 90;  // per recording
@@ -81,11 +87,11 @@ struct SyntheticOptions {
 MaybeError CheckSyntheticOptions(const SyntheticOptions& options);
 
 struct SyntheticRecording {
-  Recording recording;              // with noise
-  ParameterSet<double> parameters;  // the truth of this very recording
-  Scene scene;                      // what was rolled out
-  RolloutPath<double> path;         // the motion without noise
-  SyntheticSkeleton skeleton{kReferenceRod};
+  Recording recording;                           // with noise
+  std::vector<ParameterSet<double>> parameters;  // the truth of each person in this very recording
+  Scene scene;                                   // what was rolled out
+  RolloutPath<double> path;                      // the motion without noise
+  std::vector<SyntheticSkeleton> skeletons;      // one per person
 };
 
 // Fails on unsound options, and when somebody falls (names recording, frame and quantity).
@@ -94,8 +100,9 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
 // The recordings alone.
 std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic);
 
-// Writes folder/manifest.json, folder/bvh/<id>.bvh (mm) and folder/push/<id>.csv, making the
-// folders. The manifest's key `synthetic` holds seed, noise and the true parameters by name.
+// Writes folder/manifest.json, folder/bvh/<id>.bvh (mm; <id>_<n>.bvh for person n of a row) and
+// folder/push/<id>.csv, making the folders. The manifest's key `synthetic` holds seed, noise and
+// the true parameters by name.
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings);
 

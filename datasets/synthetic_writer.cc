@@ -11,32 +11,34 @@ namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
 
-BvhMotion Motion(const SyntheticRecording& made) {
+BvhMotion Motion(const SyntheticRecording& made, int n) {
   BvhMotion motion;
-  motion.skeleton = made.skeleton.Bvh(kUnit);
+  motion.skeleton = made.skeletons[n].Bvh(kUnit);
   motion.length_unit = kUnit;
   motion.frame_time_s = 1.0 / made.recording.fps;
-  const RecordedPerson& person = made.recording.people[0];
+  const RecordedPerson& person = made.recording.people[n];
   for (int t = 0; t < made.recording.num_frames(); ++t) {
-    const Vector4<double>& q = made.path.At(t, 0).q;
-    made.skeleton.AppendFrame(
+    const Vector4<double>& q = made.path.At(t, n).q;
+    made.skeletons[n].AppendFrame(
         {q[2], q[3], person.hip[t], person.left_ankle[t], person.right_ankle[t]}, kUnit,
         &motion.values);
   }
   return motion;
 }
 
-ManifestRecording Entry(const SyntheticRecording& made, const std::string& bvh,
+ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
                         const std::string& csv) {
   const Recording& recording = made.recording;
-  const std::vector<BvhJoint> joints = made.skeleton.Bvh(kUnit).joints;
+  const std::vector<BvhJoint> joints = made.skeletons[0].Bvh(kUnit).joints;
   ManifestRecording entry;
   entry.id = recording.id;
   entry.setting = recording.setting;
   entry.fps = recording.fps;
-  entry.subjects = {{recording.people[0].subject_id, recording.people[0].mass_kg}};
+  for (const RecordedPerson& person : recording.people) {
+    entry.subjects.push_back({person.subject_id, person.mass_kg});
+  }
   entry.pushed_person = recording.pushed_person;
-  entry.bvh = {bvh};
+  entry.bvh = bvh;
   entry.push_kind = recording.push_kind;
   entry.magnitude = recording.magnitude;
   entry.initial_velocity = recording.initial_velocity;
@@ -74,9 +76,16 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
     about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
   }
   for (const SyntheticRecording& made : recordings) {
-    const std::string bvh = "bvh/" + made.recording.id + ".bvh";
     const std::string csv = "push/" + made.recording.id + ".csv";
-    if (MaybeError failed = WriteBvh(folder + "/" + bvh, Motion(made), kUnit)) return failed;
+    const int people = made.scene.num_people();
+    std::vector<std::string> bvh;
+    for (int n = 0; n < people; ++n) {
+      const std::string suffix = people > 1 ? "_" + std::to_string(n) : "";
+      bvh.push_back("bvh/" + made.recording.id + suffix + ".bvh");
+      if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n), kUnit)) {
+        return failed;
+      }
+    }
     if (MaybeError failed = WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force)) {
       return failed;
     }

@@ -12,31 +12,37 @@ namespace {
 
 constexpr double kMasses[] = {60.0, 80.0, 100.0};
 constexpr double kImpulses[] = {4.0, 25.0, 80.0};
+constexpr double kLineMass = 80.0;
+constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};
 constexpr double kWaitSeconds = 2.0;
 constexpr double kSettledSpeed = 0.1;
 constexpr double kSettledLean = 0.05;
 
 Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double>& parameters,
-                          double mass, double impulse) {
+                          double mass, double impulse, int people) {
   Demonstration result;
+  result.people = people;
   result.mass = mass;
   result.impulse = impulse;
-  const Scene scene = DemonstrationScene(mass, impulse);
+  const Scene scene = DemonstrationScene(mass, impulse, people);
   const int frames =
       scene.LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / scene.dt)) + 1;
   RolloutPath<double> path;
   const RolloutStatus status =
       Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
   const int last = status.ok ? frames - 1 : status.frame - 1;
-  for (int t = 0; t <= last; ++t) {
-    const Vector4<double>& q = path.At(t, 0).q;
-    if (q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) result.fell = true;
+  result.fell = !status.ok;
+  for (int n = 0; n < people; ++n) {
+    for (int t = 0; t <= last; ++t) {
+      const double lean = path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();
+      result.fell = result.fell || lean > kFallAngle;
+    }
+    const PendulumState<double>& end = path.At(last, n);
+    const Vector4<double> moved = end.q - scene.people[n].start.q;
+    result.speed = std::max(result.speed, end.qd.head<2>().norm());
+    result.lean = std::max(result.lean, end.q.tail<2>().cwiseAbs().maxCoeff());
+    result.distance += moved.head<2>().norm() / people;
   }
-  const PendulumState<double>& end = path.At(last, 0);
-  result.fell = result.fell || !status.ok;
-  result.speed = end.qd.head<2>().norm();
-  result.lean = end.q.tail<2>().cwiseAbs().maxCoeff();
-  result.distance = end.q.head<2>().norm();
   result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
   return result;
 }
@@ -71,17 +77,28 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
   Behaviour behaviour;
-  behaviour.settles = true;
+  std::vector<Demonstration>& all = behaviour.demonstrations;
   for (double mass : kMasses) {
     for (double impulse : kImpulses) {
-      behaviour.demonstrations.push_back(Demonstrate(options, parameters, mass, impulse));
-      behaviour.settles = behaviour.settles && behaviour.demonstrations.back().settled;
+      all.push_back(Demonstrate(options, parameters, mass, impulse, 1));
+    }
+  }
+  if (options.interaction.Any()) {
+    const size_t first = all.size();
+    for (double impulse : kLineImpulses) {
+      all.push_back(Demonstrate(options, parameters, kLineMass, impulse, kLinePeople));
+    }
+    for (size_t i = first + 1; i < all.size(); ++i) {
+      behaviour.harder_moves_farther =
+          behaviour.harder_moves_farther && all[i - 1].distance < all[i].distance;
     }
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);
+  behaviour.settles = true;
   behaviour.self_propelling =
       behaviour.fastest_growth > 0.0 || parameters[kMu] + parameters[kKpX] < 0.0;
-  for (const Demonstration& d : behaviour.demonstrations) {
+  for (const Demonstration& d : all) {
+    behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;
   }
   return behaviour;

@@ -1,4 +1,4 @@
-// ident: what a model does with a person who is pushed and left alone: does she stand again?
+// ident: what a model does with people who are pushed and left alone: do they stand again?
 // A fit can score well and never stop walking; this tells.
 #pragma once
 
@@ -9,23 +9,29 @@
 
 namespace pushid {
 
-// The demonstration person two seconds after the last push.
+inline constexpr int kLinePeople = 5;  // in a line, where people touch
+
+// The demonstration people two seconds after the last push.
 struct Demonstration {
+  int people = 1;         // more than one: in a line, the first one pushed
   double mass = 0.0;      // kg
   double impulse = 0.0;   // N s
-  double speed = 0.0;     // m/s, of the cart
+  double speed = 0.0;     // m/s, of the fastest cart
   double lean = 0.0;      // rad, largest deviation from the rest posture
-  double distance = 0.0;  // m, how far the cart went
+  double distance = 0.0;  // m, how far the carts went on average
   bool fell = false;      // beyond 1.0 rad at any time
   bool settled = false;   // slower than 0.1 m/s and within 0.05 rad
 };
 
 struct Behaviour {
-  std::vector<Demonstration> demonstrations;  // 60, 80, 100 kg after 4, 25, 80 N s
+  // One person of 60, 80, 100 kg after 4, 25, 80 N s; where people touch, also five of 80 kg in a
+  // line after 4, 20, 80 N s.
+  std::vector<Demonstration> demonstrations;
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
   double fastest_growth = 0.0;
-  bool settles = false;  // every demonstration settled
+  bool settles = false;              // every demonstration settled
+  bool harder_moves_farther = true;  // each line went farther than the one pushed more weakly
   // The person drives herself: an unstable free mode, negative damping of the cart, or a fall. One
   // who is merely slow to stand again does not.
   bool self_propelling = false;

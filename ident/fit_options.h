@@ -35,6 +35,10 @@ struct FitOptions {
   // Weight of the demonstrations (80 kg after 4, 25, 80 N s) in the cost; 0 where recovery of known
   // parameters is measured, more where a fit keeps walking.
   double settling_weight = 0.0;
+  // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
+  // for models with no term that could feed a mode.
+  double mode_weight = 0.0;
+  double mode_margin = 0.2;
   // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
   double stability_weight = 0.0;
   // Standard deviation of a subject's deviation from the shared value, on the fitted scale (0.2 on

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <set>
 
+#include "ident/behaviour.h"
 #include "residuals/equation_error_residual.h"
+#include "residuals/mode_residual.h"
 #include "residuals/prior_residual.h"
 #include "residuals/rest_residual.h"
 
@@ -13,7 +15,8 @@ namespace pushid {
 namespace {
 
 constexpr double kDemonstrationMass = 80.0;                     // kg
-constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s
+constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
+constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};           // N s, on the first in a line
 constexpr int kFramesPastTheEnd = 40;
 constexpr double kStrongerPush = 1.4;
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
@@ -177,11 +180,22 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
         {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
   };
   if (options_.settling_weight > 0.0) {
-    for (double impulse : kDemonstrationImpulses) {
-      add(SettlingProblem(kDemonstrationMass, impulse, options_.model, map_, options_.sigmas,
-                          options_.settling_weight),
+    const auto settle = [&](double impulse, int people) {
+      const Scene scene = DemonstrationScene(kDemonstrationMass, impulse, people);
+      add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight),
           {point->shared.data()});
+    };
+    for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
+    if (options_.model.interaction.Any()) {
+      for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
     }
+  }
+  if (options_.mode_weight > 0.0) {
+    const Body body = DemonstrationScene(kDemonstrationMass, 0.0).people[0].body;
+    auto* cost =
+        new ModeResidual(options_.model, body, map_, options_.mode_margin, options_.mode_weight);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(cost, nullptr, point->shared.data()), kPriorCluster});
   }
   if (options_.stability_weight > 0.0) {
     for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {

@@ -100,6 +100,8 @@ FitOptions OptionsFrom(const Json& json) {
               sigmas.at("rate_rad_s"), sigmas.at("robust")};
   o.recording_weight = EnumFrom<RecordingWeight>(json, "recording_weight");
   o.settling_weight = json.at("settling_weight");
+  o.mode_weight = json.at("mode_weight");
+  o.mode_margin = json.at("mode_margin_per_s");
   o.stability_weight = json.at("stability_weight");
   o.pooling_sigma = json.at("pooling_sigma");
   o.horizons = json.at("horizons").get<std::vector<int>>();
@@ -119,10 +121,11 @@ Behaviour BehaviourFrom(const Json& json) {
   b.settles = json.at("settles");
   b.self_propelling = json.at("self_propelling");
   b.fastest_growth = json.at("fastest_growth_per_s");
+  b.harder_moves_farther = json.at("harder_moves_farther");
   for (const Json& d : json.at("demonstrations")) {
-    b.demonstrations.push_back({d.at("mass_kg"), d.at("impulse_Ns"), d.at("speed_m_s"),
-                                d.at("lean_rad"), d.at("distance_m"), d.at("fell"),
-                                d.at("settled")});
+    b.demonstrations.push_back({d.at("people"), d.at("mass_kg"), d.at("impulse_Ns"),
+                                d.at("speed_m_s"), d.at("lean_rad"), d.at("distance_m"),
+                                d.at("fell"), d.at("settled")});
   }
   return b;
 }

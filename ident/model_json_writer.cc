@@ -77,6 +77,8 @@ Json OptionsJson(const FitOptions& o) {
             {"robust", o.sigmas.robust}}},
           {"recording_weight", NameOf(o.recording_weight)},
           {"settling_weight", o.settling_weight},
+          {"mode_weight", o.mode_weight},
+          {"mode_margin_per_s", o.mode_margin},
           {"stability_weight", o.stability_weight},
           {"pooling_sigma", o.pooling_sigma},
           {"horizons", o.horizons},
@@ -93,7 +95,8 @@ Json OptionsJson(const FitOptions& o) {
 Json BehaviourJson(const Behaviour& b) {
   Json demonstrations = Json::array();
   for (const Demonstration& d : b.demonstrations) {
-    demonstrations.push_back({{"mass_kg", d.mass},
+    demonstrations.push_back({{"people", d.people},
+                              {"mass_kg", d.mass},
                               {"impulse_Ns", d.impulse},
                               {"speed_m_s", d.speed},
                               {"lean_rad", d.lean},
@@ -104,6 +107,7 @@ Json BehaviourJson(const Behaviour& b) {
   return {{"settles", b.settles},
           {"self_propelling", b.self_propelling},
           {"fastest_growth_per_s", b.fastest_growth},
+          {"harder_moves_farther", b.harder_moves_farther},
           {"demonstrations", demonstrations}};
 }
 

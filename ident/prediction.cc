@@ -21,9 +21,9 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
                    int num_frames) {
   Prediction prediction;
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
-  prediction.status = Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
-                              InitialVelocities(recording.scene), frames, &prediction.path,
-                              &prediction.forces);
+  prediction.status =
+      Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
+              InitialVelocities(recording.scene), frames, &prediction.path, &prediction.forces);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<Vector3<double>> hip;
@@ -40,7 +40,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
-  for (const char* part : {"friction", "balance", "linear", "push", "tail", "interaction", "drive"}) {
+  for (const char* part :
+       {"friction", "balance", "linear", "push", "tail", "interaction", "drive"}) {
     for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
       text += std::string(",") + part + "_" + row;
     }

@@ -81,24 +81,37 @@ std::string CorrelationText(const FitResult& result) {
   return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
 }
 
+std::string DemonstrationName(const Demonstration& d) {
+  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
+  return who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+}
+
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
-  std::string text;
+  std::string text, line;
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.people == 1) continue;
+    line += "  " + DemonstrationName(d) + ": they move on by " + Significant(d.distance, 2) +
+            " m on average\n";
+  }
   if (b.settles) {
     text =
         "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within two "
-        "seconds\n";
+        "seconds" +
+        std::string(line.empty() ? "\n" : "; so do\n" + line);
   } else {
     text = "NOT SETTLING, two seconds after a push:\n";
     for (const Demonstration& d : b.demonstrations) {
       if (d.settled) continue;
-      text += "  " + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s: " +
+      text += "  " + DemonstrationName(d) + ": " +
               (d.fell ? "fell"
                       : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
                             " rad from rest") +
               "\n";
     }
+    text += line;
   }
+  if (!b.harder_moves_farther) text += "a harder push does NOT move the line farther\n";
   text += "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
           (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
   return text;

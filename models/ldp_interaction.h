@@ -70,8 +70,8 @@ struct LdpDiscreteTerm {
     const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
     const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
     const T d = r.norm();
-    const bool moving = RealPart(j.qd.template head<2>().squaredNorm()) >
-                        kLdpMovingSpeed * kLdpMovingSpeed;
+    const bool moving =
+        RealPart(j.qd.template head<2>().squaredNorm()) > kLdpMovingSpeed * kLdpMovingSpeed;
     if (!(RealPart(d) < RealPart(p[kNeighbourRange])) || !moving) return;
     const auto potential = [&](const Eigen::Matrix<T, 2, 1>& at) -> T {
       return p[kPotentialStrength] * exp(-LdpEllipse(at, v) / p[kPotentialLength]);

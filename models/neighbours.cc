@@ -81,8 +81,7 @@ void NeighbourGrid::Near(int person, std::vector<int>* near) const {
       }
     }
   }
-  std::sort(near->begin(), near->end(),
-            [this](int a, int b) { return rank_[a] < rank_[b]; });
+  std::sort(near->begin(), near->end(), [this](int a, int b) { return rank_[a] < rank_[b]; });
 }
 
 std::vector<int> CanonicalRank(const Scene& scene) {

@@ -63,7 +63,8 @@ class PairFinder {
       at_[n] = {RealPart(q[0]), RealPart(q[1])};
       if (!terms_.Contact()) continue;
       const Vector4<double> angles(0.0, 0.0, RealPart(q[2]), RealPart(q[3]));
-      const auto offset = ContactPoint<double>(scene_->people[n].body, angles, real[kContactHeight]);
+      const auto offset =
+          ContactPoint<double>(scene_->people[n].body, angles, real[kContactHeight]);
       lean = std::max(lean, offset.norm());
     }
     grid_.Build(at_, InteractionReach(terms_, real, lean));

@@ -7,15 +7,16 @@
 
 namespace pushid {
 
-RestProblem SettlingProblem(double mass, double impulse, const ModelOptions& options,
+RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
                             const ParameterMap& map, const ResidualSigmas& sigmas, double weight) {
   RestProblem problem;
-  problem.scene = DemonstrationScene(mass, impulse);
+  problem.scene = demonstration;
   problem.options = options;
   problem.map = map;
   // Nobody in particular: only the shared block.
   problem.map.num_deviations = 0;
-  problem.layout = BlockLayout(problem.map, {"demonstration"}, false);
+  const std::vector<std::string> nobody(demonstration.people.size(), "demonstration");
+  problem.layout = BlockLayout(problem.map, nobody, false);
   problem.sigmas = sigmas;
   problem.weight = weight;
   return problem;
@@ -57,7 +58,7 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
                                              inputs.initial_velocity, p.last_frame, &path);
   if (!status.ok) return false;
 
-  const double w = p.weight / std::sqrt(p.last_frame - p.first_frame);
+  const double w = p.weight / std::sqrt((p.last_frame - p.first_frame) * p.scene.num_people());
   // Component by component: index into [q, qd] and its scale.
   struct Component {
     int state;

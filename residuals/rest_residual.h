@@ -1,11 +1,11 @@
 // residuals: somebody who was pushed shall stand again (settling), and shall not fall soon after
 // the recording ends (stability).
 //
-//   r = weight * sqrt(1 / frames) [ cart velocity / s_velocity   2 (settling only)
+//   r = weight * sqrt(1 / (frames people)) [ cart velocity / s_velocity   2 (settling only)
 //                                   (angles - rest) / s_angle    2
 //                                   angular rates / s_rate       2 ]   for frames first .. last - 1
 // in the sigmas of frame_residual.h; `rest` is the upright or initial posture the balance aims at.
-// Settling: the demonstration person (models/scene.h), frames 110 to 180 (1.8 to 3 s at 60 Hz).
+// Settling: the demonstration people (models/scene.h), frames 110 to 180 (1.8 to 3 s at 60 Hz).
 // Stability: a recording's rollout continued beyond the data, with its push times a factor.
 // Both are non-zero at the truth of synthetic data, so they bias a fit: leave them out where
 // recovery or coverage is measured.
@@ -33,8 +33,8 @@ struct RestProblem {
   int residuals_per_frame() const { return penalize_velocity ? 6 : 4; }
 };
 
-// A demonstration person of `mass` kg pushed with `impulse` N s; uses the shared parameters only.
-RestProblem SettlingProblem(double mass, double impulse, const ModelOptions& options,
+// A demonstration (models/scene.h); uses the shared parameters only.
+RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
                             const ParameterMap& map, const ResidualSigmas& sigmas, double weight);
 
 // The recording rolled out `extra_frames` past its end, its push multiplied by `factor`.

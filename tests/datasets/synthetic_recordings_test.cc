@@ -63,7 +63,7 @@ void ExpectMotionOf(const SyntheticRecording& made, const Recording& observed, d
     const PendulumState<double>& truth = made.path.At(t, 0);
     EXPECT_LT((pendulum.states[0][t].q - truth.q).norm(), tolerance) << t;
     EXPECT_LT((pendulum.states[0][t].qd - truth.qd).norm(), 120 * tolerance) << t;
-    EXPECT_NEAR(pendulum.rod_length[0][t], made.skeleton.rod_length(), tolerance) << t;
+    EXPECT_NEAR(pendulum.rod_length[0][t], made.skeletons[0].rod_length(), tolerance) << t;
   }
   ASSERT_EQ(pendulum.scene.pushes.size(), 1u);
   EXPECT_EQ(pendulum.scene.pushes[0].kind, made.scene.pushes[0].kind);
@@ -185,10 +185,10 @@ TEST_F(SyntheticRecordings, SpreadMultipliesTheTruth) {
   double sum = 0.0, squares = 0.0;
   const std::vector<SyntheticRecording> many = Make(options);
   for (const SyntheticRecording& made : many) {
-    const double factor = std::log(made.parameters[kMu] / options.parameters[kMu]);
+    const double factor = std::log(made.parameters[0][kMu] / options.parameters[kMu]);
     sum += factor;
     squares += factor * factor;
-    EXPECT_EQ(made.parameters[kAy], 0.0);  // absent terms stay absent
+    EXPECT_EQ(made.parameters[0][kAy], 0.0);  // absent terms stay absent
   }
   EXPECT_NEAR(sum / many.size(), 0.0, 0.05);
   EXPECT_NEAR(std::sqrt(squares / many.size()), 0.2, 0.03);
@@ -216,7 +216,7 @@ TEST_F(SyntheticRecordings, PushesExciteBothAxes) {
 // stay level.
 TEST_F(SyntheticRecordings, SkeletonIsRigid) {
   const std::vector<SyntheticRecording> made = Make({});
-  const SyntheticSkeleton& skeleton = made[0].skeleton;
+  const SyntheticSkeleton& skeleton = made[0].skeletons[0];
   const BvhSkeleton bvh = skeleton.Bvh(LengthUnit::kMetre);
   ASSERT_EQ(bvh.joints.size(), static_cast<size_t>(kSkeletonJoints));
   EXPECT_EQ(bvh.Find("LeftAnkle"), kLeftAnkleJoint);

@@ -1,10 +1,9 @@
 // The contact between two people: mutual, smooth, load-free at the start, without energy of its
 // own.
-#include "models/interaction.h"
-
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "models/interaction.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -58,8 +57,7 @@ TEST(Contact, NobodyIsLoadedWhereHeStoodAtTheStart) {
 
 TEST(Contact, PushesApartAndIsMutual) {
   const Pair pair = TwoPeople(0.6);
-  const PairForce<double> force =
-      Contact(pair, Parameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
+  const PairForce<double> force = Contact(pair, Parameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
   ASSERT_TRUE(force.acts);
   EXPECT_LT(force.on_n[0], 0.0);  // n stands behind j and is pushed back
   EXPECT_GT(force.on_j[0], 0.0);

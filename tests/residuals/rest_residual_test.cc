@@ -40,7 +40,8 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
       SCOPED_TRACE(impulse);
       ModelOptions options;
       options.posture = posture;
-      RestProblem problem = SettlingProblem(80.0, impulse, options, map, {}, 3.0);
+      RestProblem problem =
+          SettlingProblem(DemonstrationScene(80.0, impulse), options, map, {}, 3.0);
       const RestResidual residual(problem);
       ASSERT_EQ(residual.parameter_block_sizes(), (std::vector<int>{kNumParameters}));
       EXPECT_EQ(residual.num_residuals(), 70 * 6);
@@ -54,7 +55,8 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
   ParameterMap map = EveryParameterMap({});
   for (double mass : {60.0, 80.0, 100.0}) {
     for (double impulse : {4.0, 25.0, 80.0}) {
-      const RestProblem problem = SettlingProblem(mass, impulse, {}, map, {}, 1.0);
+      const RestProblem problem =
+          SettlingProblem(DemonstrationScene(mass, impulse), {}, map, {}, 1.0);
       // Half a mean square in sigmas; DESIGN's settled person is within 0.1 m/s and 0.05 rad.
       EXPECT_LT(Cost(problem, {SharedBlock(map, SensibleGains())}), 0.02)
           << mass << ", " << impulse;
@@ -62,7 +64,8 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
       ParameterSet<double> self_propelling = SensibleGains();
       self_propelling[kMu] = -60.0;
       for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
-      const RestProblem walking = SettlingProblem(mass, impulse, {}, map, {}, 1.0);
+      const RestProblem walking =
+          SettlingProblem(DemonstrationScene(mass, impulse), {}, map, {}, 1.0);
       const Evaluation evaluation =
           EvaluateCost(RestResidual(walking), {SharedBlock(map, self_propelling)}, {});
       if (evaluation.ok) {
@@ -77,8 +80,9 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
 
 TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
   const ParameterMap map = EveryParameterMap({});
-  const Evaluation evaluation = EvaluateCost(RestResidual(SettlingProblem(80, 0.0, {}, map, {}, 3)),
-                                             {SharedBlock(map, SensibleGains())}, {true});
+  const Evaluation evaluation =
+      EvaluateCost(RestResidual(SettlingProblem(DemonstrationScene(80.0, 0.0), {}, map, {}, 3)),
+                   {SharedBlock(map, SensibleGains())}, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_EQ(evaluation.residuals.norm(), 0.0);
   EXPECT_EQ(evaluation.jacobians[0].norm(), 0.0);
@@ -88,7 +92,7 @@ TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
 TEST(Settling, WeightIsThatOfAMeanSquare) {
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
-  RestProblem problem = SettlingProblem(80.0, 25.0, {}, map, {}, 1.0);
+  RestProblem problem = SettlingProblem(DemonstrationScene(80.0, 25.0), {}, map, {}, 1.0);
   const double cost = Cost(problem, blocks);
   EXPECT_GT(cost, 0.0);
   problem.weight = 3.0;
@@ -106,7 +110,7 @@ TEST(Settling, FallingReturnsFalse) {
   ParameterMap map;
   map.values = SensibleGains();
   map.fitted = {{kKpTheta, Transform::kIdentity, -1}};
-  const RestResidual residual(SettlingProblem(80.0, 80.0, {}, map, {}, 3.0));
+  const RestResidual residual(SettlingProblem(DemonstrationScene(80.0, 80.0), {}, map, {}, 3.0));
   EXPECT_TRUE(EvaluateCost(residual, {{1560.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {}).ok);
@@ -165,7 +169,7 @@ TEST(Stability, LooksAtTheFramesBehindTheData) {
   ASSERT_TRUE(
       Rollout(scene, {}, std::vector(2, SensibleGains()), InitialVelocities(scene), 40, &path).ok);
   const Vector4<double>& q0 = scene.people[1].start.q;
-  const double w = 2.0 / std::sqrt(10.0);
+  const double w = 2.0 / std::sqrt(10.0 * 2);
   // Person 1 in the last frame: theta, phi, their rates.
   const Vector4<double> last = evaluation.residuals.tail<4>();
   EXPECT_NEAR(last[0], w * (path.At(39, 1).q[2] - q0[2]) / sigmas.angle, 1e-12);

@@ -1,0 +1,87 @@
+// The polynomial of the free modes against the eigenvalues of the linearized equations of motion,
+// and the Routh-Hurwitz conditions against the roots.
+#include "models/free_modes.h"
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <complex>
+
+#include "tests/models/model_samples.h"
+
+namespace pushid {
+namespace {
+
+ParameterSet<double> Gains(Random* random) {
+  ParameterSet<double> p{};
+  p[kMu] = random->Uniform(-30, 60), p[kMuY] = random->Uniform(10, 60);
+  p[kKpX] = random->Uniform(0, 10), p[kKpY] = random->Uniform(0, 10);
+  p[kKpTheta] = random->Uniform(500, 2500), p[kKpPhi] = random->Uniform(500, 2500);
+  p[kKdTheta] = random->Uniform(20, 100), p[kKdPhi] = random->Uniform(20, 100);
+  for (Parameter id : {kAx, kAy}) p[id] = random->Uniform(-20, 5);
+  for (Parameter id : {kBx, kBy, kTx, kTy}) p[id] = random->Uniform(-1, 1);
+  return p;
+}
+
+// Eigenvalues of the equations of motion linearized by Jets: [theta, phi, qd], six of them.
+Eigen::VectorXcd Eigenvalues(const ModelOptions& options, const Body& body,
+                             const ParameterSet<double>& p) {
+  using Jet = ceres::Jet<double, 6>;
+  ParameterSet<Jet> parameters;
+  for (int i = 0; i < kNumParameters; ++i) parameters[i] = Jet(p[i]);
+  PendulumState<Jet> state;
+  state.q = {Jet(0.0), Jet(0.0), Jet(0.0, 0), Jet(0.0, 1)};
+  for (int i = 0; i < 4; ++i) state.qd[i] = Jet(0.0, 2 + i);
+  const SelfForce self(options, body, Vector4<double>::Zero(), 1.0 / 60.0);
+  const Vector4<Jet> force = self.Total(parameters, state, state.qd);
+  const Vector4<Jet> a = Acceleration(body, state, force);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(6, 6);
+  matrix(0, 4) = matrix(1, 5) = 1.0;
+  for (int i = 0; i < 4; ++i) matrix.row(2 + i) = a[i].v.transpose();
+  return matrix.eigenvalues();
+}
+
+TEST(FreeModes, RootsAreTheEigenvalues) {
+  Random random(4);
+  for (int trial = 0; trial < 200; ++trial) {
+    ModelOptions options;
+    options.friction = trial % 2 == 0 ? FrictionKind::kIsotropic : FrictionKind::kAnisotropic;
+    const Body body = RandomBody(&random);
+    const ParameterSet<double> p = Gains(&random);
+    const Eigen::VectorXcd eigenvalues = Eigenvalues(options, body, p);
+    bool stable = true, both = true;
+    for (int i = 0; i < 6; ++i) {
+      const std::complex<double> z = eigenvalues[i];
+      stable = stable && z.real() < 0.0;
+      double smallest = 1e300;
+      for (int plane = 0; plane < 2; ++plane) {
+        const ModePolynomial<double> c = FreeModes<double>(options, body, p, plane);
+        smallest = std::min(smallest, std::abs(((z + c.c2) * z + c.c1) * z + c.c0));
+      }
+      // The quadratic damping is not quite zero at rest; p's c_q and d_q are.
+      EXPECT_LT(smallest, 1e-7 * std::pow(1.0 + std::abs(z), 3));
+    }
+    for (int plane = 0; plane < 2; ++plane) {
+      for (double condition : FreeModes<double>(options, body, p, plane).Conditions()) {
+        both = both && condition > 0.0;
+      }
+    }
+    EXPECT_EQ(both, stable);
+  }
+}
+
+TEST(FreeModes, ShiftingMovesTheRoots) {
+  const ModePolynomial<double> c{6.0, 11.0, 6.0};  // roots -1, -2, -3
+  const auto decays = [&c](double margin) {
+    bool all = true;
+    for (double condition : c.Shifted(margin).Conditions()) all = all && condition > 0.0;
+    return all;
+  };
+  EXPECT_TRUE(decays(0.0));
+  EXPECT_TRUE(decays(0.99));
+  EXPECT_FALSE(decays(1.01));
+}
+
+}  // namespace
+}  // namespace pushid
