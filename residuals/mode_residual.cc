@@ -37,7 +37,8 @@ Eigen::Matrix<T, ModeResidual::kResiduals, 1> ModeResidual::Hinges(const Paramet
 bool ModeResidual::Evaluate(double const* const* blocks, double* residuals,
                             double** jacobians) const {
   const ParameterSet<double> p = map_.Apply<double>(blocks[0], nullptr);
-  Eigen::Map<Eigen::Matrix<double, kResiduals, 1>>(residuals) = Hinges(p);
+  Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
+  values = Hinges(p);
   if (jacobians == nullptr || jacobians[0] == nullptr) return true;
   using Jet = ceres::Jet<double, kNumParameters>;
   ParameterSet<Jet> jets;
