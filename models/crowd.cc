@@ -1,0 +1,59 @@
+// models: stepping a crowd.
+#include "models/crowd.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace pushid {
+namespace {
+
+// Below this, starting a thread costs more than it saves.
+constexpr int kPeoplePerThread = 500;
+
+}  // namespace
+
+Crowd::Crowd(Scene scene, const ModelOptions& options, std::vector<ParameterSet<double>> parameters,
+             int num_threads)
+    : scene_(std::move(scene)),
+      options_(options),
+      parameters_(std::move(parameters)),
+      num_threads_(std::max(1, num_threads)),
+      forces_(scene_, options_, parameters_) {
+  for (const ScenePerson& person : scene_.people) now_.push_back(person.start);
+  before_ = next_ = now_;
+}
+
+void Crowd::AdvanceSome(int first, int last) {
+  std::vector<int> scratch;
+  for (int n = first; n < last; ++n) {
+    forces_.Interact(n, &scratch);
+    const Vector4<double> force = forces_.On(n, frame_, before_[n].qd).Total();
+    next_[n] = Step(now_[n], Acceleration(scene_.people[n].body, now_[n], force), scene_.dt);
+  }
+}
+
+RolloutStatus Crowd::Advance() {
+  forces_.Update(now_.data());
+  const int people = scene_.num_people();
+  const int threads = std::clamp(people / kPeoplePerThread, 1, num_threads_);
+  const auto share = [&](int i) {
+    return static_cast<int>(static_cast<long long>(people) * i / threads);
+  };
+  std::vector<std::thread> others;
+  for (int i = 1; i < threads; ++i) {
+    others.emplace_back(
+        [this, first = share(i), last = share(i + 1)] { AdvanceSome(first, last); });
+  }
+  AdvanceSome(0, share(1));
+  for (std::thread& other : others) other.join();
+  for (int n = 0; n < people; ++n) {
+    const std::string_view outside = OutsideDomain(next_[n]);
+    if (!outside.empty()) return {false, frame_ + 1, n, outside};
+  }
+  std::swap(before_, now_);
+  std::swap(now_, next_);
+  ++frame_;
+  return {};
+}
+
+}  // namespace pushid
