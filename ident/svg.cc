@@ -16,7 +16,7 @@ constexpr char kStyle[] =
     ".paper{fill:#fff}.ink,.axis{fill:#222}.faint{fill:#666}"
     "line,polyline{fill:none}polyline{stroke-linejoin:round}"
     "line.axis,polyline.ink{stroke:#222}line.grid{stroke:#ddd}polyline.ink{fill:none}"
-    ".ring{fill:none;stroke:#222}"
+    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}polyline.net{stroke-width:3}"
     "@media(prefers-color-scheme:dark){.paper{fill:#15181c}.ink,.axis{fill:#e8e8e8}"
     ".faint{fill:#a0a0a0}line.axis,polyline.ink{stroke:#e8e8e8}line.grid{stroke:#3a3f46}"
     "polyline.ink{fill:none}.ring{stroke:#e8e8e8}}";
