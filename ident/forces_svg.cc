@@ -102,7 +102,7 @@ class ForcesPicture {
 
   void Panel(int person, int column) {
     const SvgScale value = Value(person, column);
-    for (double tick : value.Ticks(3)) {
+    for (double tick : value.Ticks(4)) {
       svg_.Line(kLeft[column], value(tick), kLeft[column] + kPanelWidth, value(tick),
                 tick == 0.0 ? "axis" : "grid");
       svg_.Text(kLeft[column] - 5, value(tick) + 3.5, SvgNumber(tick), "faint small end");

@@ -52,6 +52,7 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   for (int t = 0; t < run.num_frames(); ++t) {
     if (path.At(t, person).q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) return Outcome::kFell;
   }
+  if (onset_frame < 0) return Outcome::kUnmoved;
   const Scene& scene = run.recording.scene;
   const int judged = std::max(scene.LastPushEnd(), onset_frame) +
                      static_cast<int>(std::lround(kWaitSeconds / scene.dt));
@@ -83,6 +84,8 @@ std::string_view Name(Outcome outcome) {
   switch (outcome) {
     case Outcome::kSettled:
       return "settled";
+    case Outcome::kUnmoved:
+      return "unmoved";
     case Outcome::kMoving:
       return "moving";
     case Outcome::kFell:

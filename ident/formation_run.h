@@ -17,7 +17,8 @@ inline constexpr double kOnsetDistance = 0.02;  // m of hip motion by which a pe
 // push arrives later than it ends: whom it has not reached yet has not settled.
 enum class Outcome {
   kSettled,   // slower than 0.1 m/s and within 0.05 rad of the rest posture
-  kMoving,    // neither settled nor fallen
+  kUnmoved,   // no onset
+  kMoving,    // none of these
   kFell,      // theta or phi beyond 1.0 rad at any time
   kNotJudged  // the run ends before the two seconds are over
 };

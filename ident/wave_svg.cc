@@ -107,7 +107,7 @@ class WavePicture {
       svg_.Rect({kSide + kLength * k / kColours, kTop + 10, kLength / kColours, 12},
                 "fill:" + ColourOf(k / (kColours - 1.0)));
     }
-    for (double v : SvgScale(0.0, fastest_, 0.0, 1.0).Ticks(4)) {
+    for (double v : SvgScale(0.0, fastest_, 0.0, 1.0).Ticks(5)) {
       const double x = kSide + kLength * Fraction(v);
       svg_.Line(x, kTop + 22, x, kTop + 26, "axis");
       svg_.Text(x, kTop + 38, SvgNumber(v), "ink small middle");
