@@ -14,18 +14,20 @@ DEFINE_string(
     formation, "",
     "line, diamond or grid: instead of recordings, roll --model out on --people who stand "
     "together");
-DEFINE_double(spacing, 0.45, "between neighbours of a formation, cart to cart, m");
+DEFINE_double(spacing, 0.45, "formation: between neighbours, cart to cart, m");
+DEFINE_string(pushed, "0",
+              "formation: who is pushed, comma-separated; people count from 0, from the back "
+              "forwards and in a "
+              "row from right to left");
 DEFINE_string(
-    pushed, "0",
-    "who is pushed, comma-separated; people count from 0, from the back forwards and in a "
-    "row from right to left");
-DEFINE_string(push, "80",
-              "pushes at the hip along +x, comma-separated, N s or N s@start in s, as in "
-              "80@0,80@1,112@2; every push acts on everybody of --pushed");
-DEFINE_double(push_duration, 0.2, "of every push, a half-sine, s");
-DEFINE_double(mass, 80.0, "of everybody in a formation, kg");
-DEFINE_double(rod_length, pushid::kReferenceRod, "of everybody in a formation, m");
-DEFINE_double(duration, 0.0, "what is simulated, s; 0: until 6 s after the last push");
+    push, "80",
+    "formation: pushes at the hip along +x, comma-separated, N s or N s@start in s, as in "
+    "80@0,80@1,112@2; every push acts on everybody of --pushed");
+DEFINE_double(push_duration, 0.2, "formation: of every push, a half-sine, s");
+DEFINE_double(mass, 80.0, "formation: of everybody, kg");
+DEFINE_double(rod_length, pushid::kReferenceRod,
+              "formation: rod from ankles to hip, of everybody, m");
+DEFINE_double(duration, 0.0, "formation: how long, s; 0: until 6 s after the last push");
 
 namespace pushid {
 namespace {
