@@ -145,10 +145,8 @@ double SvgScale::operator()(double value) const {
 std::vector<double> SvgScale::Ticks(int wanted) const {
   const double raw = (to_ - from_) / std::max(1, wanted);
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  double step = 10.0 * power;
-  for (double multiple : {5.0, 2.0, 1.0}) {
-    if (multiple * power >= raw * (1.0 - 1e-9)) step = multiple * power;
-  }
+  const double lead = raw / power;  // 1 .. 10
+  const double step = power * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
   std::vector<double> ticks;
   const double slack = 1e-9 * (to_ - from_);
   for (long k = std::lround(std::ceil((from_ - slack) / step)); k * step <= to_ + slack; ++k) {

@@ -51,7 +51,9 @@ class WavePicture {
       const int level = Level(person, begin);
       while (end < run_.num_frames() && Level(person, end) == level) ++end;
       const double x = time_(run_.Seconds(begin));
-      svg_.Rect({x, RowTop(person), time_(run_.Seconds(end)) - x, row_},
+      // Overlaps the next one, for rounded numbers would leave gaps.
+      const double overlap = end < run_.num_frames() ? 0.5 : 0.0;
+      svg_.Rect({x, RowTop(person), time_(run_.Seconds(end)) - x + overlap, row_},
                 "fill:" + ColourOf(level / (kColours - 1.0)));
     }
   }

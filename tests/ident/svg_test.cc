@@ -31,6 +31,7 @@ TEST(Svg, NumbersAreShort) {
 TEST(Svg, TicksAreRoundAndInside) {
   EXPECT_EQ(SvgScale(0, 3, 0, 1).Ticks(3), std::vector<double>({0, 1, 2, 3}));
   EXPECT_EQ(SvgScale(-600, 600, 1, 0).Ticks(3), std::vector<double>({-500, 0, 500}));
+  EXPECT_EQ(SvgScale(-49, 49, 1, 0).Ticks(4), std::vector<double>({-40, -20, 0, 20, 40}));
   EXPECT_EQ(SvgScale(0, 0, 0, 1).Ticks(2).size(), 3u);  // an empty range is drawn as 0 .. 1
   EXPECT_NEAR(SvgScale(0, 10, 100, 0)(2.5), 75.0, 1e-12);
 }
