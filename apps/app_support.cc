@@ -11,6 +11,8 @@
 #include <set>
 #include <vector>
 
+#include "datasets/number_text.h"
+
 DEFINE_bool(quiet, false, "no progress on stderr");
 
 namespace pushid {
@@ -28,10 +30,17 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
   return own;
 }
 
+// gflags prints 0.2 as 0.20000000000000001.
+std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
+  double value = 0.0;
+  if (flag.type != "double" || !ParseDouble(flag.default_value, &value)) return flag.default_value;
+  return DoubleText(value);
+}
+
 void PrintHelp(const std::string& usage) {
   std::printf("%s\n\nflags:\n", usage.c_str());
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const std::string value = flag.default_value.empty() ? "" : "=" + flag.default_value;
+    const std::string value = flag.default_value.empty() ? "" : "=" + DefaultText(flag);
     std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
   }
   std::printf("  --flagfile=FILE\n      read flags from a file, one a line\n");

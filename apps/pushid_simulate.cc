@@ -1,13 +1,15 @@
-// apps: pushid-simulate: synthetic recordings of people with known parameters.
+// apps: pushid-simulate: synthetic recordings of people with known parameters; with --formation, a
+// model on people who stand together.
 #include <gflags/gflags.h>
 
 #include <cstdio>
 #include <filesystem>
-#include <sstream>
 
 #include "apps/app_support.h"
+#include "apps/formation_flags.h"
 #include "apps/model_flags.h"
-#include "datasets/json_file.h"
+#include "apps/output_folder.h"
+#include "apps/simulate_formation.h"
 #include "datasets/recording_names.h"
 #include "datasets/synthetic_recordings.h"
 #include "ident/report_text.h"
@@ -16,7 +18,7 @@
 DECLARE_string(set);
 
 DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");
-DEFINE_int32(people, 4, "how many people, of random mass and size");
+DEFINE_int32(people, 4, "how many people: of random mass and size, or in the formation");
 DEFINE_int32(recordings_per_person, 6, "pushes of each person: weak, medium and strong in turn");
 DEFINE_int32(frames, 90, "frames of each recording");
 DEFINE_double(fps, 60.0, "frames a second");
@@ -47,15 +49,6 @@ Result<IdentifiedModel> Truth() {
   return model;
 }
 
-// Written so that NaN fails.
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return std::nullopt;
-  std::ostringstream text;
-  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
-       << highest;
-  return Error{text.str()};
-}
-
 // The library checks them too, but knows no flags.
 MaybeError CheckNumbers() {
   for (MaybeError error :
@@ -68,21 +61,6 @@ MaybeError CheckNumbers() {
     if (error) return error;
   }
   return std::nullopt;
-}
-
-// Earlier output of this program may be replaced; somebody's real recordings may not.
-MaybeError CheckFolder(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(folder, ignored)) return std::nullopt;
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    return Error{"--out names " + folder.string() + ", which is a file; name a folder"};
-  }
-  const std::filesystem::path manifest = folder / "manifest.json";
-  if (!std::filesystem::exists(manifest, ignored)) return std::nullopt;
-  const Result<JsonDocument> document = ReadJsonDocument(manifest.string());
-  if (document.ok() && document.value().content.contains("synthetic")) return std::nullopt;
-  return Error{"is no output of pushid-simulate and would be overwritten; name another --out",
-               manifest.string()};
 }
 
 void PrintTruth(const IdentifiedModel& truth) {
@@ -102,10 +80,14 @@ void PrintTruth(const IdentifiedModel& truth) {
 }
 
 int Run() {
+  if (!FLAGS_formation.empty()) return SimulateFormation();
+  if (const char* flag = GivenFormationFlag()) {
+    return Fail(std::string("--") + flag + " needs --formation: line, diamond or grid");
+  }
   if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) {
     return Fail(*missing);
   }
-  if (MaybeError error = CheckFolder(FLAGS_out)) return Fail(*error);
+  if (MaybeError error = CheckOutputFolder("out", FLAGS_out)) return Fail(*error);
   if (MaybeError error = CheckNumbers()) return Fail(*error);
   const Result<IdentifiedModel> truth = Truth();
   if (!truth.ok()) return Fail(truth.error());
@@ -143,6 +125,9 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(argc, argv,
                         "pushid-simulate makes recordings of synthetic people whose parameters are "
-                        "known.\n\n  pushid-simulate --out=synthetic --people=4 --seed=1",
+                        "known,\nor rolls an identified model out on a formation.\n\n"
+                        "  pushid-simulate --out=synthetic --people=4 --seed=1\n"
+                        "  pushid-simulate --model=model.json --formation=line --people=10 "
+                        "--push=80 --svg_out=wave.svg",
                         Run);
 }

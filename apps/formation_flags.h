@@ -1,0 +1,34 @@
+// apps: the flags that describe a formation and the pushes on it.
+#pragma once
+
+#include <gflags/gflags.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/result.h"
+#include "models/formation.h"
+
+DECLARE_string(formation);
+
+namespace pushid {
+
+struct FormationPlan {
+  std::string title;  // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
+  Scene scene;
+  int frames = 0;
+};
+
+// Errors name the flag.
+Result<FormationPlan> PlanOfFlags();
+
+// The first given flag that means nothing without --formation; nullptr when there is none.
+const char* GivenFormationFlag();
+
+// Whether a flag was given at all, even with its default's value.
+bool Given(const char* flag);
+
+// "--spacing is -1; it must lie between ...". Written so that NaN fails.
+MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
+
+}  // namespace pushid

@@ -1,0 +1,151 @@
+// apps: from flags to a run, from a run to files and a table.
+#include "apps/simulate_formation.h"
+
+#include <cstdio>
+
+#include "apps/app_support.h"
+#include "apps/formation_flags.h"
+#include "apps/model_flags.h"
+#include "apps/output_folder.h"
+#include "datasets/atomic_file.h"
+#include "ident/formation_files.h"
+#include "ident/formation_pictures.h"
+#include "ident/formation_run.h"
+#include "ident/report_text.h"
+#include "ident/text_table.h"
+
+DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");
+DEFINE_string(forces_out, "", "formation: net forces, one row a frame, person and part (CSV)");
+DEFINE_string(bvh_out, "",
+              "formation: folder for the pendulums as BVH, with manifest.json and the pushes");
+DEFINE_string(svg_out, "",
+              "formation: picture of the wave (SVG): time across, person down, colour speed");
+DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
+
+namespace pushid {
+namespace {
+
+MaybeError CheckOutputs(int people) {
+  if (!FLAGS_svg_out.empty() && people > kMostPeopleInWave) {
+    return Error{"--svg_out shows at most " + std::to_string(kMostPeopleInWave) +
+                 " people; leave it out or lower --people"};
+  }
+  if (!FLAGS_forces_svg_out.empty() && people > kMostPeopleInForces) {
+    return Error{"--forces_svg_out shows at most " + std::to_string(kMostPeopleInForces) +
+                 " people; leave it out or lower --people"};
+  }
+  for (const std::string& file :
+       {FLAGS_csv_out, FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out}) {
+    if (file.empty()) continue;
+    if (MaybeError error = CheckWritable(file)) return error;
+  }
+  if (FLAGS_bvh_out.empty()) return std::nullopt;
+  return CheckOutputFolder("bvh_out", FLAGS_bvh_out);
+}
+
+MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
+                        const std::string& title) {
+  MaybeError error;
+  if (!FLAGS_bvh_out.empty()) error = WriteFormationRecording(FLAGS_bvh_out, run);
+  if (!error && !FLAGS_csv_out.empty()) {
+    error = WriteTrajectoryCsv(FLAGS_csv_out, model, run.recording, run.prediction);
+  }
+  if (!error && !FLAGS_forces_out.empty()) error = WriteForcesCsv(FLAGS_forces_out, run);
+  if (!error && !FLAGS_svg_out.empty()) {
+    error = WriteFileAtomically(FLAGS_svg_out, WaveSvg(run, title));
+  }
+  if (!error && !FLAGS_forces_svg_out.empty()) {
+    error = WriteFileAtomically(FLAGS_forces_svg_out, ForcesSvg(run, title));
+  }
+  return error;
+}
+
+std::string Fixed(double value, int decimals) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  return text;
+}
+
+void PrintPeople(const FormationRun& run) {
+  TextTable table({"person", "x m", "y m", "onset s", "peak m/s", "displaced m", "outcome"},
+                  {false, false, false, false, false, false, true});
+  for (int n = 0; n < run.num_people(); ++n) {
+    const PersonSummary& person = run.summaries[n];
+    const Vector4<double>& q = run.recording.scene.people[n].start.q;
+    table.Add({std::to_string(n), Fixed(q[0], 2), Fixed(q[1], 2),
+               person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame), 2),
+               Fixed(person.peak_speed, 2), Fixed(person.displacement, 2),
+               std::string(Name(person.outcome))});
+  }
+  std::printf("%s", table.ToString().c_str());
+}
+
+// How fast the onset went from the first person who moved to the foremost one who did.
+void PrintWave(const FormationRun& run) {
+  int first = -1, foremost = -1, moved = 0;
+  for (int n = 0; n < run.num_people(); ++n) {
+    const int onset = run.summaries[n].onset_frame;
+    if (onset < 0) continue;
+    ++moved;
+    if (first < 0 || onset < run.summaries[first].onset_frame) first = n;
+    foremost = n;  // people are numbered forwards
+  }
+  std::printf("%d of %d people moved by 2 cm or more", moved, run.num_people());
+  if (moved > 1) {
+    const auto& people = run.recording.scene.people;
+    const double metres = people[foremost].start.q[0] - people[first].start.q[0];
+    const double seconds =
+        run.Seconds(run.summaries[foremost].onset_frame - run.summaries[first].onset_frame);
+    if (metres > 0.0 && seconds > 0.0) {
+      std::printf("; from person %d to %d the onset went %s m in %s s: %s m/s", first, foremost,
+                  Significant(metres, 3).c_str(), Significant(seconds, 3).c_str(),
+                  Significant(metres / seconds, 3).c_str());
+    }
+  }
+  std::printf("\n");
+}
+
+int LeftDomain(const RolloutStatus& status) {
+  std::fprintf(stderr,
+               "pushid-simulate: %s of person %d leaves the model's domain at frame %d; nothing is "
+               "written\n",
+               std::string(status.quantity).c_str(), status.person, status.frame);
+  return kFitFailed;
+}
+
+}  // namespace
+
+int SimulateFormation() {
+  if (MaybeError missing = Require(
+          "model", FLAGS_model, "--formation rolls out a file that pushid-fit --model_out wrote")) {
+    return Fail(*missing);
+  }
+  for (const char* flag : {"out", "recordings_per_person", "frames", "noise", "push_kind",
+                           "recording_spread", "subject_spread", "seed"}) {
+    if (Given(flag)) {
+      return Fail(std::string("--") + flag + " belongs to recordings of single people, not to " +
+                  "--formation");
+    }
+  }
+  const Result<FormationPlan> plan = PlanOfFlags();
+  if (!plan.ok()) return Fail(plan.error());
+  const Result<IdentifiedModel> model = LoadFlaggedModel();
+  if (!model.ok()) return Fail(model.error());
+  if (MaybeError error = CheckOutputs(plan.value().scene.num_people())) return Fail(*error);
+  if (model.value().options.interaction == Interaction::kNone &&
+      plan.value().scene.num_people() > 1) {
+    Warn(FLAGS_model +
+         " was fitted without interaction: people will not touch; fit one with "
+         "pushid-fit --setting=groups --interaction=contact");
+  }
+  const FormationRun run = RunFormation(model.value(), plan.value().scene, plan.value().frames);
+  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
+  if (MaybeError error = WriteOutputs(model.value(), run, plan.value().title)) return Fail(*error);
+  std::printf("%s; %s s\n", plan.value().title.c_str(),
+              Significant(run.Seconds(run.num_frames() - 1), 3).c_str());
+  PrintPeople(run);
+  PrintWave(run);
+  return kDone;
+}
+
+}  // namespace pushid

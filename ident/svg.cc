@@ -1,0 +1,174 @@
+// ident: SVG text.
+#include "ident/svg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace pushid {
+namespace {
+
+// Viewers that do not know prefers-color-scheme show the light picture.
+constexpr char kStyle[] =
+    "text{font:12px system-ui,sans-serif}.small{font-size:10px}.bold{font-weight:600}"
+    ".middle{text-anchor:middle}.end{text-anchor:end}"
+    ".paper{fill:#fff}.ink,.axis{fill:#222}.faint{fill:#666}"
+    "line,polyline{fill:none}polyline{stroke-linejoin:round}"
+    "line.axis,polyline.ink{stroke:#222}line.grid{stroke:#ddd}polyline.ink{fill:none}"
+    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}polyline.net{stroke-width:3}"
+    "@media(prefers-color-scheme:dark){.paper{fill:#15181c}.ink,.axis{fill:#e8e8e8}"
+    ".faint{fill:#a0a0a0}line.axis,polyline.ink{stroke:#e8e8e8}line.grid{stroke:#3a3f46}"
+    "polyline.ink{fill:none}.ring{stroke:#e8e8e8}}";
+
+}  // namespace
+
+std::string EscapeXml(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return escaped;
+}
+
+std::string SvgNumber(double value) {
+  char number[64];
+  std::snprintf(number, sizeof number, "%.2f", value);
+  std::string text = number;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+SvgPicture::SvgPicture(double width, double height, std::string_view title)
+    : width_(width), height_(height) {
+  body_ = "<title>" + EscapeXml(title) + "</title>\n";
+  Rect({0, 0, width, height}, "paper");
+}
+
+void SvgPicture::Open(std::string_view element) {
+  body_ += '<';
+  body_ += element;
+}
+
+void SvgPicture::Number(std::string_view name, double value) {
+  body_ += ' ';
+  body_ += name;
+  body_ += "=\"" + SvgNumber(value) + '"';
+}
+
+void SvgPicture::Look(std::string_view look) {
+  const bool css = look.find(':') != std::string_view::npos;
+  body_ += (css ? " style=\"" : " class=\"") + EscapeXml(look) + '"';
+}
+
+void SvgPicture::Rect(const SvgBox& box, std::string_view look, std::string_view tooltip) {
+  Open("rect");
+  Number("x", box.x);
+  Number("y", box.y);
+  Number("width", box.width);
+  Number("height", box.height);
+  Look(look);
+  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></rect>\n";
+}
+
+void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_view look) {
+  Open("line");
+  Number("x1", x1);
+  Number("y1", y1);
+  Number("x2", x2);
+  Number("y2", y2);
+  Look(look);
+  body_ += "/>\n";
+}
+
+void SvgPicture::Circle(double x, double y, double radius, std::string_view look) {
+  Open("circle");
+  Number("cx", x);
+  Number("cy", y);
+  Number("r", radius);
+  Look(look);
+  body_ += "/>\n";
+}
+
+void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
+                          std::string_view look) {
+  if (points.size() < 2) return;
+  Open("polyline");
+  Look(look);
+  body_ += " points=\"";
+  for (const auto& [x, y] : points) body_ += SvgNumber(x) + ',' + SvgNumber(y) + ' ';
+  body_.back() = '"';
+  body_ += "/>\n";
+}
+
+void SvgPicture::Text(double x, double y, std::string_view text, std::string_view look) {
+  Open("text");
+  Number("x", x);
+  Number("y", y);
+  Look(look);
+  body_ += '>' + EscapeXml(text) + "</text>\n";
+}
+
+std::string SvgPicture::ToString() const {
+  const std::string width = SvgNumber(width_), height = SvgNumber(height_);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+         "\" viewBox=\"0 0 " + width + ' ' + height + "\" role=\"img\">\n<style>" + kStyle +
+         "</style>\n" + body_ + "</svg>\n";
+}
+
+SvgScale::SvgScale(double from, double to, double from_pixel, double to_pixel)
+    : from_(from), to_(to > from ? to : from + 1.0), from_pixel_(from_pixel), to_pixel_(to_pixel) {}
+
+double SvgScale::operator()(double value) const {
+  return from_pixel_ + (value - from_) / (to_ - from_) * (to_pixel_ - from_pixel_);
+}
+
+std::vector<double> SvgScale::Ticks(int wanted) const {
+  const double raw = (to_ - from_) / std::max(1, wanted);
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double lead = raw / power;  // 1 .. 10
+  const double step = power * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
+  std::vector<double> ticks;
+  const double slack = 1e-9 * (to_ - from_);
+  for (long k = std::lround(std::ceil((from_ - slack) / step)); k * step <= to_ + slack; ++k) {
+    ticks.push_back(k * step);
+  }
+  return ticks;
+}
+
+std::string ColourOf(double fraction) {
+  using Rgb = std::array<double, 3>;
+  static constexpr std::array<Rgb, 6> kStops = {
+      {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
+  const double at = std::clamp(fraction, 0.0, 1.0) * (kStops.size() - 1);
+  const size_t low = std::min(static_cast<size_t>(at), kStops.size() - 2);
+  std::array<int, 3> rgb{};
+  for (int i = 0; i < 3; ++i) {
+    rgb[i] = static_cast<int>(
+        std::lround(kStops[low][i] + (at - low) * (kStops[low + 1][i] - kStops[low][i])));
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+  return text;
+}
+
+}  // namespace pushid

@@ -1,0 +1,71 @@
+// ident: pictures as SVG text: a few shapes and labels, nothing that needs a library.
+//
+//   SvgPicture svg(640, 200, "hip speed");
+//   svg.Rect({10, 10, 20, 8}, "fill:#440154");
+//   svg.Text(10, 190, "time (s)", "axis middle");
+//   WriteFileAtomically(path, svg.ToString());
+//
+// Lengths are pixels, y grows downwards. The classes paper, ink, axis, grid and faint follow the
+// reader's light or dark setting; colours of data are given in full. Texts are escaped.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace pushid {
+
+// `&`, `<`, `>` and quotes for text and attributes; control characters become spaces.
+std::string EscapeXml(std::string_view text);
+
+// Shortest of two decimals: enough for a pixel.
+std::string SvgNumber(double value);
+
+struct SvgBox {
+  double x, y, width, height;
+};
+
+class SvgPicture {
+ public:
+  // title: what a screen reader says and a browser's tab shows.
+  SvgPicture(double width, double height, std::string_view title);
+
+  // `look`: a CSS declaration ("fill:#fff;opacity:0.5") where it has a colon, else class names.
+  void Rect(const SvgBox& box, std::string_view look, std::string_view tooltip = "");
+  void Line(double x1, double y1, double x2, double y2, std::string_view look);
+  void Circle(double x, double y, double radius, std::string_view look);
+  // Fewer than two points draw nothing.
+  void Polyline(const std::vector<std::pair<double, double>>& points, std::string_view look);
+  // Classes middle and end set the anchor, small and bold the font.
+  void Text(double x, double y, std::string_view text, std::string_view look = "ink");
+
+  std::string ToString() const;
+
+ private:
+  void Open(std::string_view element);
+  void Number(std::string_view name, double value);
+  void Look(std::string_view look);
+
+  double width_, height_;
+  std::string body_;
+};
+
+// A linear axis from data to pixels, with round ticks.
+class SvgScale {
+ public:
+  // from_pixel may exceed to_pixel: the vertical axis of a plot.
+  SvgScale(double from, double to, double from_pixel, double to_pixel);
+  double operator()(double value) const;
+  // Multiples of 1, 2 or 5 times a power of ten within the range, about `wanted` of them.
+  std::vector<double> Ticks(int wanted) const;
+
+ private:
+  double from_, to_, from_pixel_, to_pixel_;
+};
+
+// "#rrggbb" of a fraction in [0, 1] (clamped): dark blue, green, yellow, of even steps in lightness
+// (viridis), so that it reads in grey and by the colour-blind.
+std::string ColourOf(double fraction);
+
+}  // namespace pushid

@@ -1,0 +1,176 @@
+// pushid-simulate --formation: from a model to tables, CSV, BVH and pictures; what it refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class SimulateFormationTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    alone_ = FitModel("alone.json");
+    // The synthetic people of the fixture stand alone: give their model a contact by hand.
+    nlohmann::ordered_json json = Json(alone_);
+    json["model"]["interaction"] = "contact";
+    json["values"]["contact_stiffness"] = 2800.0;
+    json["values"]["contact_distance"] = 0.42;
+    json["values"]["contact_kappa"] = 0.58;
+    json["values"]["contact_damping"] = 270.0;
+    json["values"]["contact_height"] = 0.5;
+    model_ = "--model=" + WriteText("touching.json", json.dump(1));
+  }
+
+  AppRun Simulate(std::vector<std::string> flags) {
+    flags.insert(flags.begin(), model_);
+    return RunApp("pushid-simulate", flags, 60);
+  }
+
+  std::string alone_;  // path
+  std::string model_;  // flag
+};
+
+// The onsets of the table on stdout, "-" for none: the lines between its header and the last line.
+std::vector<std::string> Onsets(const std::string& out) {
+  std::istringstream lines(out.substr(out.find("person   x")));
+  std::vector<std::string> onsets;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line) && line.find("people moved") == std::string::npos) {
+    std::istringstream words(line);
+    std::string person, x, y, onset;
+    words >> person >> x >> y >> onset;
+    onsets.push_back(onset);
+  }
+  return onsets;
+}
+
+TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
+  const AppRun run =
+      Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
+                "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
+                "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg"),
+                "--forces_svg_out=" + Path("forces.svg")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  const std::vector<std::string> onsets = Onsets(run.out);
+  ASSERT_EQ(onsets.size(), 4u) << run.out;
+  for (int n = 1; n < 4; ++n) EXPECT_GT(std::stod(onsets[n]), std::stod(onsets[n - 1])) << run.out;
+  EXPECT_TRUE(Contains(run.out, "4 of 4 people moved"));
+
+  const std::string csv = ReadText(Path("line.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
+  EXPECT_NE(ReadText(Path("forces.csv")).find(",interaction,"), std::string::npos);
+  for (const char* svg : {"wave.svg", "forces.svg"}) {
+    const std::string text = ReadText(Path(svg));
+    EXPECT_EQ(text.find("<svg"), 0u);
+    const std::string title = "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0";
+    EXPECT_NE(text.find(title), std::string::npos);
+    EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
+  }
+  // What was written is a recording that the model predicts exactly.
+  const AppRun scores = RunApp(
+      "pushid-evaluate",
+      {model_, "--recordings=" + Path("line/manifest.json"), "--json_out=" + Path("scores.json")});
+  ASSERT_EQ(scores.exit_code, 0) << scores.err;
+  EXPECT_LT(Json(Path("scores.json"))["mean"]["hipADE_m"].get<double>(), 1e-9) << scores.out;
+}
+
+TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
+  const AppRun run = Simulate({"--formation=diamond", "--people=13", "--pushed=0,1,3"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "13 people in a diamond"));
+  EXPECT_EQ(Onsets(run.out).size(), 13u);
+}
+
+TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
+  const AppRun run = Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5",
+                               "--fps=120", "--bvh_out=" + Path("three")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto pushes = Json(Path("three/manifest.json"))["recordings"][0]["pushes"];
+  ASSERT_EQ(pushes.size(), 3u);
+  EXPECT_EQ(pushes[1]["start_frame"], 120);
+  EXPECT_EQ(pushes[2]["start_frame"], 300);
+  // Its own output may be replaced, somebody's recordings may not.
+  EXPECT_EQ(Simulate({"--formation=line", "--bvh_out=" + Path("three")}).exit_code, 0);
+  WriteText("real/manifest.json", R"({"recordings": []})");
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--bvh_out=" + Path("real")}),
+                      {Path("real/manifest.json"), "--bvh_out"}));
+}
+
+TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
+  const AppRun run = RunApp("pushid-simulate", {"--model=" + alone_, "--formation=line"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.err, "people will not touch"));
+  EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
+  const AppRun one =
+      RunApp("pushid-simulate", {"--model=" + alone_, "--formation=grid", "--people=1"});
+  EXPECT_EQ(one.err, "");
+}
+
+TEST_F(SimulateFormationTest, WhoLeavesTheDomainIsNamedAndNothingIsWritten) {
+  const AppRun run = Simulate({"--formation=line", "--push=2000", "--csv_out=" + Path("out.csv"),
+                               "--bvh_out=" + Path("out"), "--svg_out=" + Path("out.svg")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.out, "");
+  EXPECT_TRUE(Contains(run.err, "of person 0 leaves the model's domain at frame"));
+  for (const char* out : {"out.csv", "out", "out.svg"}) {
+    EXPECT_FALSE(std::filesystem::exists(Path(out))) << out;
+  }
+}
+
+TEST_F(SimulateFormationTest, BadUsage) {
+  const struct {
+    std::vector<std::string> flags;
+    std::vector<std::string> says;
+  } cases[] = {
+      {{"--formation=circle"}, {"--formation", "'circle'", "line, diamond or grid"}},
+      {{"--formation=line", "--people=0"}, {"--people is 0"}},
+      {{"--formation=line", "--spacing=0"}, {"--spacing is 0"}},
+      {{"--formation=line", "--spacing=-1"}, {"--spacing is -1"}},
+      {{"--formation=line", "--spacing=nan"}, {"--spacing is nan"}},
+      {{"--formation=line", "--mass=0"}, {"--mass is 0"}},
+      {{"--formation=line", "--rod_length=95"}, {"--rod_length is 95"}},
+      {{"--formation=line", "--duration=-1"}, {"--duration is -1"}},
+      {{"--formation=line", "--duration=0.01"}, {"--duration", "two frames"}},
+      {{"--formation=line", "--push_duration=0"}, {"--push_duration is 0"}},
+      {{"--formation=line", "--push_duration=nan"}, {"--push_duration is nan"}},
+      {{"--formation=line", "--people=10000", "--duration=60"}, {"too many"}},
+      {{"--formation=line", "--pushed=4"}, {"--pushed", "person 4", "0 to 3"}},
+      {{"--formation=line", "--pushed=-1"}, {"--pushed", "person -1"}},
+      {{"--formation=line", "--pushed=one"}, {"--pushed", "'one'"}},
+      {{"--formation=line", "--pushed=0,,1"}, {"--pushed", "''"}},
+      {{"--formation=line", "--pushed=1,1"}, {"--pushed", "twice"}},
+      {{"--formation=line", "--pushed="}, {"--pushed is empty"}},
+      {{"--formation=line", "--push="}, {"--push is empty"}},
+      {{"--formation=line", "--push=hard"}, {"--push", "'hard'", "80@1.5"}},
+      {{"--formation=line", "--push=80@"}, {"--push", "'80@'"}},
+      {{"--formation=line", "--push=80@-1"}, {"--push", "'80@-1'", "starts"}},
+      {{"--formation=line", "--push=0"}, {"--push", "'0'", "impulse"}},
+      {{"--formation=line", "--push=nan"}, {"--push", "'nan'"}},
+      {{"--formation=line", "--set=mew=1"}, {"--set", "'mew'"}},
+      {{"--formation=line", "--out=x"}, {"--out", "--formation"}},
+      {{"--formation=line", "--noise=0.1"}, {"--noise", "--formation"}},
+      {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
+      {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},
+      {{"--formation=line", "--people=41", "--forces_svg_out=x"}, {"--forces_svg_out", "40"}},
+      {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
+      {{"--out=" + Path("made"), "--spacing=1"}, {"--spacing needs --formation"}},
+      {{"--out=" + Path("made"), "--svg_out=x"}, {"--svg_out needs --formation"}},
+  };
+  const int files = CountFiles();
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.flags.back());
+    EXPECT_TRUE(Refused(Simulate(one.flags), one.says));
+  }
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--formation=line"}), {"--model", "pushid-fit"}));
+  EXPECT_EQ(CountFiles(), files) << "something was written";
+}
+
+}  // namespace
+}  // namespace pushid
