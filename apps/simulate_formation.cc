@@ -43,12 +43,11 @@ MaybeError CheckOutputs(int people) {
   return CheckOutputFolder("bvh_out", FLAGS_bvh_out);
 }
 
-MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
-                        const std::string& title) {
+MaybeError WriteOutputs(const FormationRun& run, const std::string& title) {
   MaybeError error;
   if (!FLAGS_bvh_out.empty()) error = WriteFormationRecording(FLAGS_bvh_out, run);
   if (!error && !FLAGS_csv_out.empty()) {
-    error = WriteTrajectoryCsv(FLAGS_csv_out, model, run.recording, run.prediction);
+    error = WriteTrajectoryCsv(FLAGS_csv_out, run.recording, run.prediction);
   }
   if (!error && !FLAGS_forces_out.empty()) error = WriteForcesCsv(FLAGS_forces_out, run);
   if (!error && !FLAGS_svg_out.empty()) {
@@ -132,15 +131,14 @@ int SimulateFormation() {
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = CheckOutputs(plan.value().scene.num_people())) return Fail(*error);
-  if (model.value().options.interaction == Interaction::kNone &&
-      plan.value().scene.num_people() > 1) {
+  if (!model.value().options.interaction.Any() && plan.value().scene.num_people() > 1) {
     Warn(FLAGS_model +
          " was fitted without interaction: people will not touch; fit one with "
          "pushid-fit --setting=groups --interaction=contact");
   }
   const FormationRun run = RunFormation(model.value(), plan.value().scene, plan.value().frames);
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
-  if (MaybeError error = WriteOutputs(model.value(), run, plan.value().title)) return Fail(*error);
+  if (MaybeError error = WriteOutputs(run, plan.value().title)) return Fail(*error);
   std::printf("%s; %s s\n", plan.value().title.c_str(),
               Significant(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);

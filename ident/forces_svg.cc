@@ -21,7 +21,8 @@ using Points = std::vector<std::pair<double, double>>;
 std::string PartColour(std::string_view part) {
   static const std::map<std::string_view, const char*> colours = {
       {"push", "#d55e00"},    {"tail", "#cc79a7"},   {"friction", "#e69f00"},
-      {"balance", "#56b4e9"}, {"linear", "#009e73"}, {"interaction", "#3b82f6"}};
+      {"balance", "#56b4e9"}, {"linear", "#009e73"}, {"interaction", "#3b82f6"},
+      {"drive", "#8b5cf6"}};
   const auto found = colours.find(part);
   return found == colours.end() ? "#999999" : found->second;
 }
@@ -80,7 +81,8 @@ class ForcesPicture {
       lowest = std::min(lowest, force);
       highest = std::max(highest, force);
     };
-    for (const NetForce<double>& force : run_.forces[person]) {
+    for (int t = 0; t < run_.num_frames(); ++t) {
+      const NetForce<double>& force = run_.Force(person, t);
       include(force.Total()[row]);
       for (const ForcePart& part : parts_) include((force.*part.value)[row]);
     }
@@ -112,7 +114,7 @@ class ForcesPicture {
       bool acts = false;
       const SvgScale time = Time(column);
       for (int t = 0; t < run_.num_frames(); ++t) {
-        const double force = force_at(run_.forces[person][t])[kRows[column]];
+        const double force = force_at(run_.Force(person, t))[kRows[column]];
         acts = acts || force != 0.0;
         points.emplace_back(time(run_.Seconds(t)), value(force));
       }

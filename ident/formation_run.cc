@@ -30,23 +30,6 @@ PendulumRecording AsRecording(const Scene& scene) {
   return recording;
 }
 
-// The one place that takes the model's forces apart.
-std::vector<std::vector<NetForce<double>>> Forces(const IdentifiedModel& model, const Scene& scene,
-                                                  const RolloutPath<double>& path) {
-  const std::vector<ParameterSet<double>> sets(scene.num_people(), model.parameters);
-  const std::vector<SelfForce> self = SelfForces(scene, model.options);
-  std::vector<std::vector<NetForce<double>>> forces(scene.num_people());
-  for (int t = 0; t < path.num_frames(); ++t) {
-    const std::vector<Vector4<double>> interaction =
-        InteractionForces(scene, model.options, sets, path, t);
-    for (int n = 0; n < scene.num_people(); ++n) {
-      forces[n].push_back(NetForceAt(scene, model.options, self[n], sets[n], n, t, path.At(t, n),
-                                     path.At(t > 0 ? t - 1 : 0, n).qd, interaction[n]));
-    }
-  }
-  return forces;
-}
-
 Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   const RolloutPath<double>& path = run.prediction.path;
   for (int t = 0; t < run.num_frames(); ++t) {
@@ -100,19 +83,21 @@ const std::vector<ForcePart>& ForceParts() {
   static const std::vector<ForcePart> parts = {
       {"push", &NetForce<double>::push},         {"tail", &NetForce<double>::tail},
       {"friction", &NetForce<double>::friction}, {"balance", &NetForce<double>::balance},
-      {"linear", &NetForce<double>::linear},     {"interaction", &NetForce<double>::interaction}};
+      {"linear", &NetForce<double>::linear},     {"interaction", &NetForce<double>::interaction},
+      {"drive", &NetForce<double>::drive}};
   return parts;
 }
 
 std::vector<ForcePart> ActingParts(const FormationRun& run) {
   std::vector<ForcePart> acting;
   for (const ForcePart& part : ForceParts()) {
-    const auto acts = [&part](const std::vector<NetForce<double>>& person) {
-      return std::any_of(person.begin(), person.end(), [&part](const NetForce<double>& force) {
-        return !(force.*part.value).isZero(0.0);
-      });
-    };
-    if (std::any_of(run.forces.begin(), run.forces.end(), acts)) acting.push_back(part);
+    bool acts = false;
+    for (int t = 0; t < run.num_frames() && !acts; ++t) {
+      for (int n = 0; n < run.num_people(); ++n) {
+        acts = acts || !(run.Force(n, t).*part.value).isZero(0.0);
+      }
+    }
+    if (acts) acting.push_back(part);
   }
   return acting;
 }
@@ -125,7 +110,6 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
   shared.by_subject.clear();
   run.prediction = Predict(shared, run.recording, num_frames);
   if (!run.prediction.status.ok) return run;
-  run.forces = Forces(shared, scene, run.prediction.path);
   for (int n = 0; n < run.num_people(); ++n) run.summaries.push_back(Summarize(run, n));
   return run;
 }

@@ -34,11 +34,13 @@ struct PersonSummary {
 struct FormationRun {
   PendulumRecording recording;  // the scene under the names that files give its people
   Prediction prediction;
-  std::vector<std::vector<NetForce<double>>> forces;  // [person][frame]
   std::vector<PersonSummary> summaries;
 
   int num_people() const { return recording.scene.num_people(); }
   int num_frames() const { return prediction.path.num_frames(); }
+  const NetForce<double>& Force(int person, int frame) const {
+    return prediction.forces.At(frame, person);
+  }
   double Seconds(int frame) const { return frame * recording.scene.dt; }
 };
 
@@ -52,7 +54,7 @@ const std::vector<ForcePart>& ForceParts();
 // Those that are not zero throughout.
 std::vector<ForcePart> ActingParts(const FormationRun& run);
 
-// When the prediction leaves the model's domain, forces and summaries stay empty.
+// When the prediction leaves the model's domain, the summaries stay empty.
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames);
 
 // |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.

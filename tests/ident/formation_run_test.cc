@@ -25,13 +25,12 @@ TEST(FormationRun, ForcesAreThoseThatMovePeople) {
   ASSERT_TRUE(run.prediction.status.ok);
   const double dt = run.recording.scene.dt;
   for (int n = 0; n < run.num_people(); ++n) {
-    ASSERT_EQ(run.forces[n].size(), static_cast<size_t>(kFrames));
     for (int t = 0; t + 1 < kFrames; ++t) {
       const PendulumState<double>& state = run.prediction.path.At(t, n);
       const Vector4<double> qdd = (run.prediction.path.At(t + 1, n).qd - state.qd) / dt;
       const Vector4<double> needed =
           InverseDynamics(run.recording.scene.people[n].body, state, qdd);
-      ASSERT_LT((needed - run.forces[n][t].Total()).norm(), 1e-8) << "person " << n << ", " << t;
+      ASSERT_LT((needed - run.Force(n, t).Total()).norm(), 1e-8) << "person " << n << ", " << t;
     }
   }
 }
@@ -41,9 +40,9 @@ TEST(FormationRun, ContactPassesMomentumOnAndMakesNone) {
   double passed = 0.0;
   for (int t = 0; t < kFrames; ++t) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (const auto& person : run.forces) sum += person[t].interaction.head<2>();
+    for (int n = 0; n < run.num_people(); ++n) sum += run.Force(n, t).interaction.head<2>();
     EXPECT_LT(sum.norm(), 1e-9);
-    passed += run.forces[4][t].interaction[0] * run.recording.scene.dt;
+    passed += run.Force(4, t).interaction[0] * run.recording.scene.dt;
   }
   EXPECT_GT(passed, 1.0);  // N s
 }
@@ -79,8 +78,8 @@ TEST(FormationRun, SuccessivePushesActOneByOne) {
   const FormationRun run = RunFormation(ContactModel(), scene, kFrames);
   for (int t = 0; t < kFrames; ++t) {
     const bool pushed = t % 60 < 12 && t < 180;
-    EXPECT_EQ(run.forces[0][t].push[0] > 0.0, pushed) << t;
-    EXPECT_EQ(run.forces[1][t].push.norm(), 0.0);
+    EXPECT_EQ(run.Force(0, t).push[0] > 0.0, pushed) << t;
+    EXPECT_EQ(run.Force(1, t).push.norm(), 0.0);
   }
   EXPECT_EQ(run.summaries[0].outcome, Outcome::kSettled);
 }
@@ -93,12 +92,11 @@ TEST(FormationRun, OutcomesAreNamed) {
   const FormationRun left = RunFormation(ContactModel(), violent, kFrames);
   EXPECT_FALSE(left.prediction.status.ok);
   EXPECT_TRUE(left.summaries.empty());
-  EXPECT_TRUE(left.forces.empty());
 }
 
 TEST(FormationRun, WithoutInteractionNobodyElseMoves) {
   IdentifiedModel model = ContactModel();
-  model.options.interaction = Interaction::kNone;
+  model.options.interaction = {};
   const FormationRun run =
       RunFormation(model, SampleFormation(FormationShape::kLine, 3, {0}), kFrames);
   EXPECT_EQ(run.summaries[1].onset_frame, -1);

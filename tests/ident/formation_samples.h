@@ -10,7 +10,7 @@ namespace pushid {
 inline IdentifiedModel ContactModel() {
   IdentifiedModel model;
   model.options = MakePreset("tail").value().model;
-  model.options.interaction = Interaction::kContact;
+  model.options.interaction.spring = model.options.interaction.damping = true;
   model.parameters = PublishedTailParameters();
   model.parameters[kContactStiffness] = 2800.0;
   model.parameters[kContactDistance] = 0.42;
