@@ -127,6 +127,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     fold.name = folds[f].name;
     fold.held_out = static_cast<int>(folds[f].held_out.size());
     int scored = 0;
+    std::vector<const PropagationScore*> propagation;
     for (size_t k = 0; k < scores[f].size(); ++k) {
       const RecordingScore& score = scores[f][k];
       RecordingScore& sum = mean[folds[f].held_out[k]];
@@ -143,6 +144,8 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       ++count[folds[f].held_out[k]];
       sum.hip_ade += score.hip_ade;
       sum.hip_fde += score.hip_fde;
+      sum.propagation.Add(score.propagation);
+      propagation.push_back(&score.propagation);
       fold.hip_ade += score.hip_ade;
       fold.hip_fde += score.hip_fde;
     }
@@ -150,6 +153,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       fold.hip_ade /= scored;
       fold.hip_fde /= scored;
     }
+    fold.propagation = SummarizePropagation(propagation);
     result.failures += fold.failures;
     result.falls += fold.falls;
     result.folds.push_back(fold);
@@ -162,6 +166,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     if (count[i] > 0) {
       mean[i].hip_ade /= count[i];
       mean[i].hip_fde /= count[i];
+      mean[i].propagation.Divide(count[i]);
     }
     held.push_back(recordings[i]);
     held_scores.push_back(mean[i]);

@@ -42,6 +42,7 @@ struct FoldScore {
   int held_out = 0;
   double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
   int failures = 0, falls = 0;
+  PropagationSummary propagation;
 };
 
 struct CrossValidation {

@@ -48,6 +48,7 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
     score.hip_ade += sum / (score.frames - 1) / people;
     score.hip_fde += (predicted[n].back() - recording.hip[n].back()).norm() / people;
   }
+  score.propagation = ScorePropagation(recording, predicted);
   return score;
 }
 
@@ -84,6 +85,7 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
     return score;
   }
   RecordingScore score = ScoreHip(recording, prediction.hip);
+  AddContactFigures(model, recording, prediction.path, &score.propagation);
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     for (int n = 0; n < recording.num_people(); ++n) {
       const double lean = prediction.path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();
@@ -108,6 +110,16 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
     magnitude[recording.magnitude].push_back(&score);
     subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
     setting[recording.setting].push_back(&score);
+  }
+  auto propagation = [](const Group& group) {
+    std::vector<const PropagationScore*> of_group;
+    for (const RecordingScore* score : group) of_group.push_back(&score->propagation);
+    return SummarizePropagation(of_group);
+  };
+  summary.propagation = propagation(all);
+  for (const auto& [key, group] : setting) {
+    const PropagationSummary of_setting = propagation(group);
+    if (of_setting.recordings > 0) summary.propagation_by_setting[key] = of_setting;
   }
   summary.mean = Mean(all, false);
   summary.frame_weighted = Mean(all, true);

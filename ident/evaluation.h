@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ident/prediction.h"
+#include "ident/propagation.h"
 
 namespace pushid {
 
@@ -20,6 +21,7 @@ struct RecordingScore {
   double hip_ade = 0.0, hip_fde = 0.0;  // m
   std::string failure;                  // why there is no score; such a recording is in no mean
   bool fell = false;                    // somebody leaned beyond 1.0 rad
+  PropagationScore propagation = {};    // empty for a single person and after a failure
 };
 
 struct MeanScore {
@@ -32,6 +34,8 @@ struct ScoreSummary {
   std::vector<RecordingScore> recordings;
   MeanScore mean, frame_weighted;
   std::map<std::string, MeanScore> by_magnitude, by_subject, by_setting;
+  PropagationSummary propagation;  // over recordings of more than one person
+  std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
 };
 
 // Hip positions over time: [person][frame].

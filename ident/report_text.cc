@@ -185,6 +185,9 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
                  Significant(evaluation.constant_velocity.recordings[i].hip_ade, 3), r.failure});
     }
     text += table.ToString() + "\n";
+    if (evaluation.model.propagation.recordings > 0) {
+      text += OnsetsText(evaluation.model.recordings) + "\n";
+    }
   }
   TextTable table({"hipADE / hipFDE in m", "recordings", "model", "static", "constant velocity"},
                   {true, false, true, true, true});
@@ -204,18 +207,38 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   if (m.by_magnitude.size() > 1) groups("strength ", &ScoreSummary::by_magnitude);
   if (m.by_subject.size() > 1) groups("subject ", &ScoreSummary::by_subject);
   if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
-  return text + table.ToString();
+  text += table.ToString();
+  if (m.propagation.recordings == 0) return text;
+  std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
+  if (m.propagation_by_setting.size() > 1) {
+    for (const auto& [name, setting] : m.propagation_by_setting)
+      columns.push_back({name, &setting});
+  }
+  columns.push_back({"constant velocity", &v.propagation});
+  return text + "\n" + PropagationText(columns);
 }
 
 std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   std::string text;
   if (rivals.empty()) return text;
-  TextTable folds({"fold", "held out", "hipADE m", "hipFDE m", "failed", "fell"},
-                  {true, false, false, false, false, false});
+  const bool groups = rivals[0].summary.propagation.recordings > 0;
+  std::vector<std::string> header = {"fold", "held out", "hipADE m", "hipFDE m", "failed", "fell"};
+  if (groups) header.insert(header.end(), {"onset error", "missed movers", "false movers"});
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  TextTable folds(header, left);
   for (const FoldScore& fold : rivals[0].folds) {
-    folds.Add({fold.name, std::to_string(fold.held_out), Significant(fold.hip_ade, 3),
-               Significant(fold.hip_fde, 3), std::to_string(fold.failures),
-               std::to_string(fold.falls)});
+    std::vector<std::string> row = {fold.name,
+                                    std::to_string(fold.held_out),
+                                    Significant(fold.hip_ade, 3),
+                                    Significant(fold.hip_fde, 3),
+                                    std::to_string(fold.failures),
+                                    std::to_string(fold.falls)};
+    if (groups) {
+      const std::vector<std::string> cells = FoldPropagationCells(fold.propagation);
+      row.insert(row.end(), cells.begin(), cells.end());
+    }
+    folds.Add(row);
   }
   text += folds.ToString() + "\n";
   TextTable table({"held out", "hipADE m", "hipFDE m", "frame-weighted",
@@ -234,7 +257,13 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
                         : "",
                std::to_string(rival.failures), std::to_string(rival.falls)});
   }
-  return text + table.ToString();
+  text += table.ToString();
+  if (!groups) return text;
+  std::vector<PropagationColumn> columns;
+  for (const CrossValidation& rival : rivals) {
+    columns.push_back({rival.predictor, &rival.summary.propagation});
+  }
+  return text + "\n" + PropagationText(columns);
 }
 
 }  // namespace pushid

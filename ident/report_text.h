@@ -13,6 +13,17 @@ namespace pushid {
 std::string ReportText(const FitResult& result);
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
+// One column per summary: all recordings, one setting, one rival.
+struct PropagationColumn {
+  std::string name;
+  const PropagationSummary* summary;
+};
+std::string PropagationText(const std::vector<PropagationColumn>& columns);
+// Onset error, missed and false movers of one fold.
+std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary);
+// A line per recording of several people.
+std::string OnsetsText(const std::vector<RecordingScore>& scores);
+
 std::string CrossValidationText(const std::vector<CrossValidation>& rivals);
 
 // "0.341", "1.86e+03": four significant digits.

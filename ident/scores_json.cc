@@ -36,6 +36,7 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
         row["failure"] = r.failure;
       }
       row["fell"] = r.fell;
+      if (!r.propagation.people.empty()) row["people"] = PeopleJson(r.propagation);
       json["recordings"].push_back(row);
     }
   }
@@ -44,6 +45,12 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
   json["by_magnitude"] = GroupsJson(summary.by_magnitude);
   json["by_subject"] = GroupsJson(summary.by_subject);
   json["by_setting"] = GroupsJson(summary.by_setting);
+  if (summary.propagation.recordings > 0) {
+    json["propagation"] = ToJson(summary.propagation);
+    for (const auto& [name, setting] : summary.propagation_by_setting) {
+      json["propagation"]["by_setting"][name] = ToJson(setting);
+    }
+  }
   return json;
 }
 
@@ -67,6 +74,8 @@ Json ToJson(const CrossValidation& validation) {
                              {"hipFDE_m", fold.hip_fde},
                              {"failures", fold.failures},
                              {"falls", fold.falls}});
+    if (fold.propagation.recordings == 0) continue;
+    json["folds"].back()["propagation"] = ToJson(fold.propagation);
   }
   return json;
 }
