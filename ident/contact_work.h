@@ -12,11 +12,6 @@
 
 namespace pushid {
 
-// [frame][person]: the interaction force that acted. The one place that asks the model for it.
-std::vector<std::vector<Vector4<double>>> InteractionAlong(
-    const Scene& scene, const ModelOptions& options,
-    const std::vector<ParameterSet<double>>& parameters, const RolloutPath<double>& path);
-
 struct ContactBooks {
   std::vector<double> work;               // J, on each person
   std::vector<Vector4<double>> impulse;   // integral of the generalized force
@@ -25,11 +20,10 @@ struct ContactBooks {
   double TotalWork() const { return returned - absorbed; }
 };
 
-ContactBooks KeepBooks(const RolloutPath<double>& path,
-                       const std::vector<std::vector<Vector4<double>>>& forces, double dt);
+// forces: those that drove the path (Rollout's trace); its last frame must hold them too.
+ContactBooks KeepBooks(const RolloutPath<double>& path, const ForceTrace& forces, double dt);
 
 // The integral of all pushes on a person, tails included, over the path's steps.
-Vector4<double> PushImpulse(const Scene& scene, const ModelOptions& options,
-                            const ParameterSet<double>& parameters, int person, int num_frames);
+Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt);
 
 }  // namespace pushid

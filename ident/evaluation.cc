@@ -85,7 +85,7 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
     return score;
   }
   RecordingScore score = ScoreHip(recording, prediction.hip);
-  AddContactFigures(model, recording, prediction.path, &score.propagation);
+  AddContactFigures(model, recording, prediction, &score.propagation);
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     for (int n = 0; n < recording.num_people(); ++n) {
       const double lean = prediction.path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "ident/propagation.h"
+
 namespace pushid {
 namespace {
 
@@ -52,10 +54,8 @@ PersonSummary Summarize(const FormationRun& run, int person) {
   PersonSummary summary;
   for (int t = 0; t < run.num_frames(); ++t) {
     summary.peak_speed = std::max(summary.peak_speed, HipSpeed(run, person, t));
-    if (summary.onset_frame < 0 && (hip[t] - hip[0]).norm() >= kOnsetDistance) {
-      summary.onset_frame = t;
-    }
   }
+  summary.onset_frame = OnsetFrame(hip);
   summary.displacement = hip.back().x() - hip.front().x();
   summary.outcome = Judge(run, person, summary.onset_frame);
   return summary;

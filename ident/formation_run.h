@@ -11,8 +11,6 @@
 
 namespace pushid {
 
-inline constexpr double kOnsetDistance = 0.02;  // m of hip motion by which a person has started
-
 // What became of a person, judged two seconds after the last push, or after the onset where the
 // push arrives later than it ends: whom it has not reached yet has not settled.
 enum class Outcome {
@@ -25,7 +23,7 @@ enum class Outcome {
 std::string_view Name(Outcome outcome);
 
 struct PersonSummary {
-  int onset_frame = -1;       // -1: never
+  int onset_frame = -1;       // of 2 cm of hip motion (propagation.h); -1: never
   double peak_speed = 0.0;    // m/s, of the hip
   double displacement = 0.0;  // m along x, of the hip at the end
   Outcome outcome = Outcome::kNotJudged;

@@ -6,6 +6,7 @@
 #include "datasets/atomic_file.h"
 
 namespace pushid {
+namespace {
 
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording) {
@@ -13,6 +14,8 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   for (const std::string& subject : recording.subject_ids) sets.push_back(model.For(subject));
   return sets;
 }
+
+}  // namespace
 
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames) {

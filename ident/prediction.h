@@ -17,10 +17,6 @@ struct Prediction {
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
 };
 
-// One parameter set per person of the recording.
-std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
-                                                    const PendulumRecording& recording);
-
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0);

@@ -186,12 +186,10 @@ PropagationScore ScorePropagation(const PendulumRecording& recording,
 }
 
 void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
-                       const RolloutPath<double>& path, PropagationScore* score) {
-  if (score->people.empty() || model.options.interaction == Interaction::kNone) return;
-  const Scene& scene = recording.scene;
-  const std::vector<ParameterSet<double>> sets = PeoplesParameters(model, recording);
-  const ContactBooks books =
-      KeepBooks(path, InteractionAlong(scene, model.options, sets, path), scene.dt);
+                       const Prediction& prediction, PropagationScore* score) {
+  if (score->people.empty() || !model.options.interaction.Any()) return;
+  const double dt = recording.scene.dt;
+  const ContactBooks books = KeepBooks(prediction.path, prediction.forces, dt);
   const Vector2d along = PushDirection(recording);
   const std::vector<int> order = ByRank(score->people);
   double crossed = 0.0;  // from the last in rank to the first
@@ -201,9 +199,7 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
     person.contact_work = books.work[order[k]];
     crossed += books.impulse[order[k]].head<2>().dot(along);
   }
-  const int pushed = recording.pushed_person;
-  const Vector4<double> push =
-      PushImpulse(scene, model.options, sets[pushed], pushed, path.num_frames());
+  const Vector4<double> push = PushImpulse(prediction.forces, recording.pushed_person, dt);
   auto& f = score->figures;
   f[kPushPassedOn] = {score->people[order[0]].impulse_on, push.head<2>().dot(along)};
   for (size_t k = 1; k + 1 < order.size(); ++k) {  // the last in rank has nobody to pass it to

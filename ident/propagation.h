@@ -96,7 +96,7 @@ PropagationScore ScorePropagation(const PendulumRecording& recording,
 
 // What the model's forces tell, added to the score of the same prediction.
 void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
-                       const RolloutPath<double>& path, PropagationScore* score);
+                       const Prediction& prediction, PropagationScore* score);
 
 struct PropagationMean {
   double value = 0.0, error = 0.0;  // the error is 0 for a single recording

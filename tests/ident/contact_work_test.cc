@@ -30,7 +30,7 @@ ParameterSet<double> Contact(double damping) {
 
 ModelOptions WithContact() {
   ModelOptions options;
-  options.interaction = Interaction::kContact;
+  options.interaction.spring = options.interaction.damping = true;
   options.posture = Posture::kUpright;
   return options;
 }
@@ -49,7 +49,19 @@ struct Bounce {
   }
   ContactBooks Books(double damping) const {
     const auto p = Contact(damping);
-    return KeepBooks(path, InteractionAlong(scene, WithContact(), {p, p}, path), scene.dt);
+    const ModelOptions options = WithContact();
+    const std::vector<ParameterSet<double>> parameters = {p};
+    SceneForces<double> forces(scene, options, parameters);
+    ForceTrace trace(path.num_frames(), 2);
+    std::vector<int> scratch;
+    for (int t = 0; t < path.num_frames(); ++t) {
+      forces.Update(path.Frame(t));
+      for (int n : {0, 1}) {
+        forces.Interact(n, &scratch);
+        trace.At(t, n).interaction = forces.received(n).now;
+      }
+    }
+    return KeepBooks(path, trace, scene.dt);
   }
   static constexpr int kHalf = 30;
   Scene scene;
@@ -87,10 +99,11 @@ TEST(ContactWork, IsTheChangeOfEnergy) {
   for (double damping : {0.0, 200.0}) {
     const auto p = Contact(damping);
     RolloutPath<double> path;
-    ASSERT_TRUE(
-        Rollout<double>(scene, WithContact(), {p, p}, InitialVelocities(scene), 30001, &path).ok);
-    const ContactBooks books =
-        KeepBooks(path, InteractionAlong(scene, WithContact(), {p, p}, path), scene.dt);
+    ForceTrace forces;
+    ASSERT_TRUE(Rollout<double>(scene, WithContact(), {p}, InitialVelocities(scene), 30001, &path,
+                                &forces)
+                    .ok);
+    const ContactBooks books = KeepBooks(path, forces, scene.dt);
     double change = 0.0;
     for (int n : {0, 1}) {
       change += Energy(scene.people[n].body, path.At(30000, n)) -
@@ -112,7 +125,7 @@ TEST(ContactFigures, MomentumCrossesFromOneToTheNext) {
   scene.pushes.push_back(MakeScenePush(0, 0, PushKind::kExternal,
                                        HalfSinePush(scene.people[0].body, 100.0, 12, scene.dt)));
   IdentifiedModel model;
-  model.options.interaction = Interaction::kContact;
+  model.options.interaction.spring = model.options.interaction.damping = true;
   model.parameters = Contact(150.0);
   model.parameters[kMu] = 30.0, model.parameters[kAx] = -12.0;
   model.parameters[kKpTheta] = 1800.0, model.parameters[kKpPhi] = 1500.0;
@@ -121,7 +134,7 @@ TEST(ContactFigures, MomentumCrossesFromOneToTheNext) {
   ASSERT_TRUE(prediction.status.ok);
   recording.hip = prediction.hip;
   PropagationScore score = ScorePropagation(recording, prediction.hip);
-  AddContactFigures(model, recording, prediction.path, &score);
+  AddContactFigures(model, recording, prediction, &score);
 
   EXPECT_NEAR(score.figures[kPushPassedOn].weight, 100.0, 1e-9);  // the push has no tail
   double before = 100.0;

@@ -202,7 +202,7 @@ TEST(Propagation, EvaluationListsEveryPersonsOnsets) {
   IdentifiedModel model;
   model.parameters[kKpTheta] = model.parameters[kKpPhi] = 2000.0;
   model.parameters[kTailTime] = 0.2;
-  model.options.interaction = Interaction::kNone;
+  model.options.interaction = {};
   const Evaluation evaluation = Evaluate(model, {row});
   const nlohmann::ordered_json json = ToJson(evaluation);
   ASSERT_EQ(json["recordings"][0]["people"].size(), 3u);
