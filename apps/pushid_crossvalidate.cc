@@ -11,6 +11,7 @@
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
+#include "ident/frontier_svg.h"
 #include "ident/option_names.h"
 #include "ident/predictors.h"
 #include "ident/report_text.h"
@@ -28,6 +29,8 @@ DEFINE_string(
     "rival configurations, semicolon-separated: name: --flag=value ... added to the flags "
     "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
 DEFINE_bool(yardsticks, true, "also static, constant velocity and ridge regression");
+DEFINE_string(frontier_out, "",
+              "draw accuracy against settling, a point for each configuration, here (SVG)");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace {
@@ -83,8 +86,9 @@ int Run() {
         std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
   }
   if (MaybeError error = CheckNames(predictors)) return Fail(*error);
-  if (!FLAGS_json_out.empty()) {
-    if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
+  for (const std::string& file : {FLAGS_json_out, FLAGS_frontier_out}) {
+    if (file.empty()) continue;
+    if (MaybeError error = CheckWritable(file)) return Fail(*error);
   }
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
@@ -106,6 +110,10 @@ int Run() {
   }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());
+  if (!FLAGS_frontier_out.empty()) {
+    const std::string svg = FrontierSvg(validations);
+    if (MaybeError error = WriteFileAtomically(FLAGS_frontier_out, svg)) return Fail(*error);
+  }
   if (!FLAGS_json_out.empty()) {
     nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
     for (const CrossValidation& validation : validations) {

@@ -101,13 +101,13 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const FoldProgress& progress) {
   const int total = static_cast<int>(recordings.size());
-  std::vector<std::vector<RecordingScore>> scores(folds.size());
+  std::vector<FoldPrediction> predictions(folds.size());
   std::atomic<size_t> next{0};
   std::mutex mutex;
   int done = 0;
   auto work = [&]() {
     for (size_t f = next++; f < folds.size(); f = next++) {
-      scores[f] =
+      predictions[f] =
           predictor.FitAndScore(recordings, Others(folds[f].held_out, total), folds[f].held_out);
       const std::lock_guard<std::mutex> lock(mutex);
       if (progress) progress(++done, static_cast<int>(folds.size()));
@@ -128,8 +128,8 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     fold.held_out = static_cast<int>(folds[f].held_out.size());
     int scored = 0;
     std::vector<const PropagationScore*> propagation;
-    for (size_t k = 0; k < scores[f].size(); ++k) {
-      const RecordingScore& score = scores[f][k];
+    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
+      const RecordingScore& score = predictions[f].scores[k];
       RecordingScore& sum = mean[folds[f].held_out[k]];
       sum.id = score.id;
       sum.frames = score.frames;
@@ -154,6 +154,14 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       fold.hip_fde /= scored;
     }
     fold.propagation = SummarizePropagation(propagation);
+    fold.behaviour = predictions[f].behaviour;
+    if (fold.behaviour) {
+      ++result.fits;
+      result.settling += fold.behaviour->settles && fold.behaviour->harder_moves_farther;
+      for (const Demonstration& d : fold.behaviour->demonstrations) {
+        result.slowest_to_settle = std::max(result.slowest_to_settle, d.speed);
+      }
+    }
     result.failures += fold.failures;
     result.falls += fold.falls;
     result.folds.push_back(fold);

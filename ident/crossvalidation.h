@@ -7,9 +7,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ident/behaviour.h"
 #include "ident/evaluation.h"
 
 namespace pushid {
@@ -26,14 +28,20 @@ struct Fold {
 Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
 
+// What became of one fold.
+struct FoldPrediction {
+  std::vector<RecordingScore> scores;  // one per test recording
+  std::optional<Behaviour> behaviour;  // of the model fitted on the others, if one was
+};
+
 // Predicted hips of the held-out recordings after fitting on the others.
 class Predictor {
  public:
   virtual ~Predictor() = default;
-  // train and test: indices into recordings. One score per test recording.
-  virtual std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                                  const std::vector<int>& train,
-                                                  const std::vector<int>& test) const = 0;
+  // train and test: indices into recordings.
+  virtual FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                     const std::vector<int>& train,
+                                     const std::vector<int>& test) const = 0;
   std::string name;
 };
 
@@ -42,6 +50,7 @@ struct FoldScore {
   int held_out = 0;
   double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
   int failures = 0, falls = 0;
+  std::optional<Behaviour> behaviour;
   PropagationSummary propagation;
 };
 
@@ -51,6 +60,11 @@ struct CrossValidation {
   // Each recording's score averaged over the repeats that held it out.
   ScoreSummary summary;
   int failures = 0, falls = 0;  // over all folds
+  // Over all folds whose model was fitted: how many, how many of them settle in every demonstration
+  // and move a line the farther the harder they are pushed, and the fastest anybody still is two
+  // seconds after a push.
+  int fits = 0, settling = 0;
+  double slowest_to_settle = 0.0;  // m/s
 };
 
 using FoldProgress = std::function<void(int done, int total)>;

@@ -92,25 +92,6 @@ Json OptionsJson(const FitOptions& o) {
           {"parameter_tolerance", o.parameter_tolerance}};
 }
 
-Json BehaviourJson(const Behaviour& b) {
-  Json demonstrations = Json::array();
-  for (const Demonstration& d : b.demonstrations) {
-    demonstrations.push_back({{"people", d.people},
-                              {"mass_kg", d.mass},
-                              {"impulse_Ns", d.impulse},
-                              {"speed_m_s", d.speed},
-                              {"lean_rad", d.lean},
-                              {"distance_m", d.distance},
-                              {"fell", d.fell},
-                              {"settled", d.settled}});
-  }
-  return {{"settles", b.settles},
-          {"self_propelling", b.self_propelling},
-          {"fastest_growth_per_s", b.fastest_growth},
-          {"harder_moves_farther", b.harder_moves_farther},
-          {"demonstrations", demonstrations}};
-}
-
 Json UncertaintyJson(const Uncertainty& u) {
   Json names = Json::array(), nulls = Json::array();
   for (const Estimate& e : u.estimates) names.push_back(e.name);
@@ -167,6 +148,25 @@ Json EstimatesJson(const std::vector<Estimate>& estimates) {
 
 }  // namespace
 
+nlohmann::ordered_json ToJson(const Behaviour& b) {
+  Json demonstrations = Json::array();
+  for (const Demonstration& d : b.demonstrations) {
+    demonstrations.push_back({{"people", d.people},
+                              {"mass_kg", d.mass},
+                              {"impulse_Ns", d.impulse},
+                              {"speed_m_s", d.speed},
+                              {"lean_rad", d.lean},
+                              {"distance_m", d.distance},
+                              {"fell", d.fell},
+                              {"settled", d.settled}});
+  }
+  return {{"settles", b.settles},
+          {"self_propelling", b.self_propelling},
+          {"fastest_growth_per_s", b.fastest_growth},
+          {"harder_moves_farther", b.harder_moves_farther},
+          {"demonstrations", demonstrations}};
+}
+
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), values = Json::object();
@@ -195,7 +195,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
           {"nuisance", EstimatesJson(result.nuisance)},
           {"subjects", subjects},
           {"values", values},
-          {"behaviour", BehaviourJson(result.behaviour)},
+          {"behaviour", ToJson(result.behaviour)},
           {"uncertainty", UncertaintyJson(result.uncertainty)},
           {"warnings", result.warnings},
           {"fit",

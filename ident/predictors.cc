@@ -13,53 +13,56 @@ ModelPredictor::ModelPredictor(std::string label, FitOptions options)
   options_.num_threads = 1;  // the folds run in parallel
 }
 
-std::vector<RecordingScore> ModelPredictor::FitAndScore(
-    const std::vector<PendulumRecording>& recordings, const std::vector<int>& train,
-    const std::vector<int>& test) const {
+FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<int>& train,
+                                           const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
   const FitProblem problem(training, options_);
   const Solution solution = Solve(problem);
-  std::vector<RecordingScore> scores;
+  FoldPrediction prediction;
   IdentifiedModel model;
   model.options = options_.model;
-  if (solution.best >= 0) model.parameters = problem.Parameters(solution.Best().to, "");
+  if (solution.best >= 0) {
+    model.parameters = problem.Parameters(solution.Best().to, "");
+    prediction.behaviour = ComputeBehaviour(options_.model, model.parameters);
+  }
   for (int i : test) {
     if (solution.best < 0) {
       RecordingScore failed;
       failed.id = recordings[i].id;
       failed.frames = recordings[i].num_frames();
       failed.failure = "the fit without it found no usable optimum";
-      scores.push_back(failed);
+      prediction.scores.push_back(failed);
       continue;
     }
     for (const auto& [subject, deviations] : solution.Best().to.subject) {
       model.by_subject[subject] = problem.Parameters(solution.Best().to, subject);
     }
-    scores.push_back(ScoreModel(model, recordings[i]));
+    prediction.scores.push_back(ScoreModel(model, recordings[i]));
   }
-  return scores;
+  return prediction;
 }
 
 BaselinePredictor::BaselinePredictor(std::string label, Baseline baseline) : baseline_(baseline) {
   name = std::move(label);
 }
 
-std::vector<RecordingScore> BaselinePredictor::FitAndScore(
-    const std::vector<PendulumRecording>& recordings, const std::vector<int>&,
-    const std::vector<int>& test) const {
-  std::vector<RecordingScore> scores;
-  for (int i : test) scores.push_back(ScoreHip(recordings[i], baseline_(recordings[i])));
-  return scores;
+FoldPrediction BaselinePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                              const std::vector<int>&,
+                                              const std::vector<int>& test) const {
+  FoldPrediction prediction;
+  for (int i : test) prediction.scores.push_back(ScoreHip(recordings[i], baseline_(recordings[i])));
+  return prediction;
 }
 
 RidgePredictor::RidgePredictor(std::string label, double strength) : strength_(strength) {
   name = std::move(label);
 }
 
-std::vector<RecordingScore> RidgePredictor::FitAndScore(
-    const std::vector<PendulumRecording>& recordings, const std::vector<int>& train,
-    const std::vector<int>& test) const {
+FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<int>& train,
+                                           const std::vector<int>& test) const {
   int longest = 0;
   for (const PendulumRecording& r : recordings) longest = std::max(longest, r.num_frames());
   auto features = [](const PendulumRecording& r) {
@@ -92,7 +95,7 @@ std::vector<RecordingScore> RidgePredictor::FitAndScore(
   const Eigen::Matrix4d gram = x.transpose() * x + strength_ * Eigen::Matrix4d::Identity();
   const Eigen::MatrixXd weights = gram.ldlt().solve(x.transpose() * targets);
 
-  std::vector<RecordingScore> scores;
+  FoldPrediction prediction;
   for (int i : test) {
     const PendulumRecording& r = recordings[i];
     const Eigen::RowVector4d f = (features(r).transpose() - center).array() / spread.array();
@@ -102,9 +105,9 @@ std::vector<RecordingScore> RidgePredictor::FitAndScore(
       paths[r.pushed_person][t] += move.segment<3>(3 * t).transpose();
     }
     for (auto& path : paths) path.resize(r.num_frames());
-    scores.push_back(ScoreHip(r, paths));
+    prediction.scores.push_back(ScoreHip(r, paths));
   }
-  return scores;
+  return prediction;
 }
 
 }  // namespace pushid

@@ -10,9 +10,9 @@ namespace pushid {
 class ModelPredictor : public Predictor {
  public:
   ModelPredictor(std::string label, FitOptions options);
-  std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                          const std::vector<int>& train,
-                                          const std::vector<int>& test) const override;
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
 
  private:
   FitOptions options_;
@@ -23,9 +23,9 @@ class BaselinePredictor : public Predictor {
  public:
   using Baseline = HipPaths (*)(const PendulumRecording&);
   BaselinePredictor(std::string label, Baseline baseline);
-  std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                          const std::vector<int>& train,
-                                          const std::vector<int>& test) const override;
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
 
  private:
   Baseline baseline_;
@@ -37,9 +37,9 @@ class BaselinePredictor : public Predictor {
 class RidgePredictor : public Predictor {
  public:
   explicit RidgePredictor(std::string label, double strength = 1.0);
-  std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                          const std::vector<int>& train,
-                                          const std::vector<int>& test) const override;
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
 
  private:
   double strength_;  // on standardized features

@@ -242,8 +242,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   }
   text += folds.ToString() + "\n";
   TextTable table({"held out", "hipADE m", "hipFDE m", "frame-weighted",
-                   "hipADE - " + rivals[0].predictor, "failed", "fell"},
-                  {true, true, true, true, true, false, false});
+                   "hipADE - " + rivals[0].predictor, "failed", "fell", "settle"},
+                  {true, true, true, true, true, false, false, false});
   for (const CrossValidation& rival : rivals) {
     const MeanScore& mean = rival.summary.mean;
     const MeanScore& frames = rival.summary.frame_weighted;
@@ -255,7 +255,9 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
                compared ? Significant(difference.hip_ade, 2) + " +- " +
                               Significant(difference.hip_ade_error, 2)
                         : "",
-               std::to_string(rival.failures), std::to_string(rival.falls)});
+               std::to_string(rival.failures), std::to_string(rival.falls),
+               rival.fits > 0 ? std::to_string(rival.settling) + " of " + std::to_string(rival.fits)
+                              : ""});
   }
   text += table.ToString();
   if (!groups) return text;

@@ -24,6 +24,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run);
 Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file);
 Result<FitResult> ReadFitResult(const std::string& path);
 
+nlohmann::ordered_json ToJson(const Behaviour& behaviour);
 nlohmann::ordered_json ToJson(const Evaluation& evaluation);
 nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
 nlohmann::ordered_json ToJson(const PropagationSummary& summary);

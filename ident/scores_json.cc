@@ -66,6 +66,11 @@ Json ToJson(const CrossValidation& validation) {
   json.update(ToJson(validation.summary, true));
   json["failures"] = validation.failures;
   json["falls"] = validation.falls;
+  if (validation.fits > 0) {
+    json["fits"] = validation.fits;
+    json["fits_that_settle"] = validation.settling;
+    json["slowest_to_settle_m_s"] = validation.slowest_to_settle;
+  }
   json["folds"] = Json::array();
   for (const FoldScore& fold : validation.folds) {
     json["folds"].push_back({{"name", fold.name},
@@ -74,6 +79,7 @@ Json ToJson(const CrossValidation& validation) {
                              {"hipFDE_m", fold.hip_fde},
                              {"failures", fold.failures},
                              {"falls", fold.falls}});
+    if (fold.behaviour) json["folds"].back()["behaviour"] = ToJson(*fold.behaviour);
     if (fold.propagation.recordings == 0) continue;
     json["folds"].back()["propagation"] = ToJson(fold.propagation);
   }

@@ -161,11 +161,11 @@ TEST(CrossValidation, ThreadsDoNotMatter) {
 // Scores 1, 2, 3, ... by recording; 10 more when it is asked the second time. Fails on one.
 class Scripted : public Predictor {
  public:
-  std::vector<RecordingScore> FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                          const std::vector<int>& train,
-                                          const std::vector<int>& test) const override {
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override {
     EXPECT_EQ(train.size() + test.size(), recordings.size());
-    std::vector<RecordingScore> scores;
+    FoldPrediction prediction;
     for (int i : test) {
       for (int t : train) EXPECT_NE(i, t);
       RecordingScore score;
@@ -174,9 +174,9 @@ class Scripted : public Predictor {
       score.hip_ade = i + 1.0 + 10.0 * asked_[i]++;
       score.hip_fde = 2.0 * score.hip_ade;
       if (i == fails) score.failure = "fell over";
-      scores.push_back(score);
+      prediction.scores.push_back(score);
     }
-    return scores;
+    return prediction;
   }
   int fails = -1;
 
