@@ -58,92 +58,49 @@ T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
   return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
 }
 
-// What the spring and the damper of one contact have in common.
 template <typename T>
-struct ContactLoad {
-  T compression = T(0.0);        // m; no load unless positive
-  T share = T(0.0);              // x / (x + w)
-  Eigen::Matrix<T, 2, 1> along;  // gradient of d by n's point
+using Vector2 = Eigen::Matrix<T, 2, 1>;
 
-  ContactLoad(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-              const PendulumState<T>& j) {
-    using std::sqrt;
-    const T& kappa = p[kContactKappa];
-    const T& height = p[kContactHeight];
-    const Eigen::Matrix<T, 2, 1> r =
-        ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
-    const T d = ContactDistance(r, kappa);
-    if (RealPart(d) >= RealPart(p[kContactDistance])) return;  // d* is never larger
-    const Eigen::Matrix<T, 2, 1> r0 =
-        ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
-        ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
-    const T d0 = ContactDistance(r0, kappa);
-    const T gap = p[kContactDistance] - d0;
-    const T free =
-        0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
-    compression = free - d;
-    if (!Loaded()) return;
-    share = compression / (compression + kContactOnset);
-    along = {r[0] / d, kappa * kappa * r[1] / d};
-  }
-
-  bool Loaded() const { return RealPart(compression) > 0.0; }
-};
-
-// Adds f along the gradient of d on n, and its opposite on j.
-template <typename T>
-void AddContactForce(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-                     const PendulumState<T>& j, const ContactLoad<T>& load, const T& f,
-                     PairForce<T>* force) {
-  const T& height = p[kContactHeight];
-  const T fx = f * load.along[0], fy = f * load.along[1];
-  force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.q, height, fx, fy);
-  force->on_j += ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-fx), T(-fy));
-  force->acts = true;
+// The horizontal force on n's point. r, v: n's point and its velocity, seen from j's; r0: at
+// frame 0. Zero without load.
+template <bool kSpring, bool kDamping, typename T>
+Vector2<T> ContactForce(const ParameterSet<T>& p, const Vector2<T>& r, const Vector2<T>& v,
+                        const Vector2<T>& r0) {
+  using std::sqrt;
+  const T& kappa = p[kContactKappa];
+  const T d = ContactDistance(r, kappa), d0 = ContactDistance(r0, kappa);
+  const T gap = p[kContactDistance] - d0;
+  const T free =
+      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
+  const T x = free - d;
+  if (!(RealPart(x) > 0.0)) return Vector2<T>::Zero();
+  const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
+  T f = T(0.0);
+  if (kSpring) f += p[kContactStiffness] * x;
+  if (kDamping) f -= p[kContactDamping] * (along[0] * v[0] + along[1] * v[1]);
+  f *= x / (x + kContactOnset);
+  return f * along;
 }
 
-// How fast the contact is compressed, m/s.
-template <typename T>
-T ContactApproach(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, const ContactLoad<T>& load) {
-  const T& height = p[kContactHeight];
-  const Eigen::Matrix<T, 2, 1> v =
-      ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
-  return -(load.along[0] * v[0] + load.along[1] * v[1]);
-}
-
-struct SpringTerm {
-  template <typename T>
-  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    const ContactLoad<T> load(pair, p, n, j);
-    if (!load.Loaded()) return;
-    const T f = p[kContactStiffness] * load.share * load.compression;
-    AddContactForce(pair, p, n, j, load, f, force);
-  }
-};
-
-struct DampingTerm {
-  template <typename T>
-  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    const ContactLoad<T> load(pair, p, n, j);
-    if (!load.Loaded()) return;
-    const T f = p[kContactDamping] * load.share * ContactApproach(pair, p, n, j, load);
-    AddContactForce(pair, p, n, j, load, f, force);
-  }
-};
-
-// Both at once: the same sum, with the geometry worked out once.
+template <bool kSpring, bool kDamping>
 struct ContactTerm {
   template <typename T>
   static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
                   const PendulumState<T>& j, PairForce<T>* force) {
-    const ContactLoad<T> load(pair, p, n, j);
-    if (!load.Loaded()) return;
-    const T f = load.share * (p[kContactStiffness] * load.compression +
-                              p[kContactDamping] * ContactApproach(pair, p, n, j, load));
-    AddContactForce(pair, p, n, j, load, f, force);
+    const T& height = p[kContactHeight];
+    const Vector2<T> r =
+        ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
+    // d* is never larger than the contact distance.
+    if (RealPart(ContactDistance(r, p[kContactKappa])) >= RealPart(p[kContactDistance])) return;
+    const Vector2<T> v =
+        ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
+    const Vector2<T> r0 = ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
+                          ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
+    const Vector2<T> f = ContactForce<kSpring, kDamping, T>(p, r, v, r0);
+    if (RealPart(f[0]) == 0.0 && RealPart(f[1]) == 0.0) return;
+    force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.q, height, f[0], f[1]);
+    force->on_j += ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-f[0]), T(-f[1]));
+    force->acts = true;
   }
 };
 

@@ -12,11 +12,11 @@ namespace pushid {
 template <typename Visit>
 void ForEachTerm(const InteractionTerms& terms, Visit&& visit) {
   if (terms.spring && terms.damping) {
-    visit(ContactTerm{});
+    visit(ContactTerm<true, true>{});
   } else if (terms.spring) {
-    visit(SpringTerm{});
+    visit(ContactTerm<true, false>{});
   } else if (terms.damping) {
-    visit(DampingTerm{});
+    visit(ContactTerm<false, true>{});
   }
   if (terms.potential) visit(PotentialTerm{});
   if (terms.lean) visit(LeanTerm{});

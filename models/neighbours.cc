@@ -7,13 +7,6 @@
 #include <tuple>
 
 namespace pushid {
-namespace {
-
-// So few are compared with each other directly.
-constexpr std::size_t kFewPeople = 12;
-
-}  // namespace
-
 Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterSet<double>& p,
                                  double lean) {
   Eigen::Vector2d reach = Eigen::Vector2d::Zero();
@@ -60,30 +53,6 @@ void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::V
   }
 }
 
-void NeighbourGrid::Near(int person, std::vector<int>* near) const {
-  near->clear();
-  const auto add_if_near = [&](int other) {
-    const Eigen::Vector2d apart = (at_[other] - at_[person]).cwiseAbs();
-    if (other != person && apart[0] < reach_[0] && apart[1] < reach_[1]) near->push_back(other);
-  };
-  if (at_.size() <= kFewPeople) {
-    for (std::size_t other = 0; other < at_.size(); ++other) add_if_near(static_cast<int>(other));
-  } else {
-    for (std::int64_t dx = -1; dx <= 1; ++dx) {
-      for (std::int64_t dy = -1; dy <= 1; ++dy) {
-        const Eigen::Matrix<std::int64_t, 2, 1> cell =
-            cell_[person] + Eigen::Matrix<std::int64_t, 2, 1>(dx, dy);
-        const std::size_t bucket = Bucket(cell);
-        for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) {
-          // Several cells may share a bucket.
-          if (cell_[member_[k]] == cell) add_if_near(member_[k]);
-        }
-      }
-    }
-  }
-  std::sort(near->begin(), near->end(), [this](int a, int b) { return rank_[a] < rank_[b]; });
-}
-
 std::vector<int> CanonicalRank(const Scene& scene) {
   std::vector<int> order(scene.people.size());
   std::iota(order.begin(), order.end(), 0);
@@ -99,7 +68,11 @@ std::vector<int> CanonicalRank(const Scene& scene) {
 }
 
 PairFinder::PairFinder(const Scene& scene, const InteractionTerms& terms)
-    : scene_(&scene), terms_(terms), order_(scene.people.size()), at_(scene.people.size()) {
+    : scene_(&scene),
+      terms_(terms),
+      order_(scene.people.size()),
+      cart_(scene.people.size()),
+      point_(scene.people.size()) {
   std::vector<int> rank = CanonicalRank(scene);
   for (std::size_t n = 0; n < rank.size(); ++n) order_[rank[n]] = static_cast<int>(n);
   grid_ = NeighbourGrid(std::move(rank));

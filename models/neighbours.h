@@ -7,6 +7,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -27,11 +29,44 @@ class NeighbourGrid {
   explicit NeighbourGrid(std::vector<int> rank) : rank_(std::move(rank)) {}
 
   void Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach);
-  // Everybody but `person` within the reach along both axes, in canonical order.
-  void Near(int person, std::vector<int>* near) const;
+  // Everybody but `person` within the reach along both axes for whom keep(other), in canonical
+  // order.
+  template <typename Keep>
+  void Near(int person, const Keep& keep, std::vector<int>* near) const {
+    near->clear();
+    const auto consider = [&](int other) {
+      const Eigen::Vector2d apart = (at_[other] - at_[person]).cwiseAbs();
+      const bool close = other != person && apart[0] < reach_[0] && apart[1] < reach_[1];
+      if (close && keep(other)) near->push_back(other);
+    };
+    ForEachCandidate(person, consider);
+    std::sort(near->begin(), near->end(), [this](int a, int b) { return rank_[a] < rank_[b]; });
+  }
   int Rank(int person) const { return rank_[person]; }
 
  private:
+  // So few are compared with each other directly.
+  static constexpr std::size_t kFewPeople = 12;
+
+  // Everybody in the person's cell and the eight around it, the person too.
+  template <typename Visit>
+  void ForEachCandidate(int person, const Visit& visit) const {
+    if (at_.size() <= kFewPeople) {
+      for (std::size_t other = 0; other < at_.size(); ++other) visit(static_cast<int>(other));
+      return;
+    }
+    for (std::int64_t dx = -1; dx <= 1; ++dx) {
+      for (std::int64_t dy = -1; dy <= 1; ++dy) {
+        const Eigen::Matrix<std::int64_t, 2, 1> cell =
+            cell_[person] + Eigen::Matrix<std::int64_t, 2, 1>(dx, dy);
+        const std::size_t bucket = Bucket(cell);
+        for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) {
+          // Several cells may share a bucket.
+          if (cell_[member_[k]] == cell) visit(member_[k]);
+        }
+      }
+    }
+  }
   Eigen::Matrix<std::int64_t, 2, 1> Cell(const Eigen::Vector2d& at) const;
   std::size_t Bucket(const Eigen::Matrix<std::int64_t, 2, 1>& cell) const;
 
@@ -45,7 +80,7 @@ class NeighbourGrid {
 // The canonical order of a scene's people.
 std::vector<int> CanonicalRank(const Scene& scene);
 
-// Finds the pairs of a scene frame by frame.
+// Finds the pairs of a scene frame by frame: exactly those that some term of the model may act on.
 class PairFinder {
  public:
   PairFinder(const Scene& scene, const InteractionTerms& terms);
@@ -53,36 +88,35 @@ class PairFinder {
   // states: of everybody at one frame; p: the parameters everybody shares between them.
   template <typename T>
   void Update(const ParameterSet<T>& p, const PendulumState<T>* states) {
-    const bool alone = !terms_.Any() || at_.size() < 2;
-    if (alone) return;
-    ParameterSet<double> real;
-    for (int i = 0; i < kNumParameters; ++i) real[i] = RealPart(p[i]);
+    if (!Active()) return;
+    for (int i = 0; i < kNumParameters; ++i) parameters_[i] = RealPart(p[i]);
     double lean = 0.0;
-    for (std::size_t n = 0; n < at_.size(); ++n) {
-      const Vector4<T>& q = states[n].q;
-      at_[n] = {RealPart(q[0]), RealPart(q[1])};
+    for (std::size_t n = 0; n < cart_.size(); ++n) {
+      const Vector4<T>& t = states[n].q;
+      const Vector4<double> q(RealPart(t[0]), RealPart(t[1]), RealPart(t[2]), RealPart(t[3]));
+      cart_[n] = q.head<2>();
       if (!terms_.Contact()) continue;
-      const Vector4<double> angles(0.0, 0.0, RealPart(q[2]), RealPart(q[3]));
-      const auto offset =
-          ContactPoint<double>(scene_->people[n].body, angles, real[kContactHeight]);
-      lean = std::max(lean, offset.norm());
+      point_[n] = ContactPoint<double>(scene_->people[n].body, q, parameters_[kContactHeight]);
+      lean = std::max(lean, (point_[n] - cart_[n]).squaredNorm());
     }
-    grid_.Build(at_, InteractionReach(terms_, real, lean));
+    grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean)));
   }
 
   // Neighbours of a person in canonical order.
   void Near(int person, std::vector<int>* near) const {
     near->clear();
-    if (terms_.Any() && at_.size() > 1) grid_.Near(person, near);
+    if (!Active()) return;
+    grid_.Near(
+        person, [this, person](int other) { return MayAct(person, other); }, near);
   }
   int Rank(int person) const { return grid_.Rank(person); }
 
   // Calls visit(n, j) for every pair once, n before j in canonical order, pairs in that order too.
   template <typename Visit>
   void ForEachPair(Visit&& visit) {
-    if (!terms_.Any() || at_.size() < 2) return;
+    if (!Active()) return;
     for (int n : order_) {
-      grid_.Near(n, &near_);
+      Near(n, &near_);
       for (int j : near_) {
         if (grid_.Rank(j) > grid_.Rank(n)) visit(n, j);
       }
@@ -90,10 +124,23 @@ class PairFinder {
   }
 
  private:
+  bool Active() const { return terms_.Any() && cart_.size() > 1; }
+  bool MayAct(int n, int j) const {
+    if (terms_.Contact()) {
+      const double kappa = parameters_[kContactKappa], d = parameters_[kContactDistance];
+      const Eigen::Vector2d r = point_[n] - point_[j];
+      if (r[0] * r[0] + kappa * kappa * r[1] * r[1] < d * d) return true;
+    }
+    if (!terms_.potential && !terms_.lean && !terms_.ldp_discrete) return false;
+    const double reach = SmoothLdpReach(parameters_);
+    return (cart_[n] - cart_[j]).squaredNorm() <= reach * reach;
+  }
+
   const Scene* scene_;
   InteractionTerms terms_;
-  std::vector<int> order_;  // people by rank
-  std::vector<Eigen::Vector2d> at_;
+  ParameterSet<double> parameters_{};
+  std::vector<int> order_;                     // people by rank
+  std::vector<Eigen::Vector2d> cart_, point_;  // point_: of contact
   NeighbourGrid grid_;
   std::vector<int> near_;
 };

@@ -51,52 +51,6 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
 
 namespace {
 
-// Jets over both states and the first `kParameters` of the pair parameters.
-template <int kParameters>
-PairJacobian PairJacobianOf(const InteractionTerms& terms, const Pair& pair,
-                            const ParameterSet<double>& p, const PendulumState<double>& n,
-                            const PendulumState<double>& j) {
-  using Jet = ceres::Jet<double, 16 + kParameters>;
-  PendulumState<Jet> a, b;
-  for (int i = 0; i < 4; ++i) {
-    a.q[i] = Jet(n.q[i], i);
-    a.qd[i] = Jet(n.qd[i], 4 + i);
-    b.q[i] = Jet(j.q[i], 8 + i);
-    b.qd[i] = Jet(j.qd[i], 12 + i);
-  }
-  ParameterSet<Jet> parameters;
-  for (int i = 0; i < kNumPairParameters; ++i) {
-    Jet& parameter = parameters[kFirstPairParameter + i];
-    parameter = Jet(p[kFirstPairParameter + i]);
-    if (i < kParameters) parameter.v[16 + i] = 1.0;
-  }
-  const PairForce<Jet> force = InteractionBetween(terms, pair, parameters, a, b);
-  PairJacobian jacobian;
-  jacobian.by_parameter.setZero();
-  for (int row = 0; row < 4; ++row) {
-    jacobian.by_states.row(row) = force.on_n[row].v.template head<16>().transpose();
-    jacobian.by_states.row(4 + row) = force.on_j[row].v.template head<16>().transpose();
-    jacobian.by_parameter.row(row).template head<kParameters>() =
-        force.on_n[row].v.template tail<kParameters>().transpose();
-    jacobian.by_parameter.row(4 + row).template head<kParameters>() =
-        force.on_j[row].v.template tail<kParameters>().transpose();
-  }
-  return jacobian;
-}
-
-}  // namespace
-
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
-                                 const ParameterSet<double>& p, const PendulumState<double>& n,
-                                 const PendulumState<double>& j) {
-  constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
-  const bool only_contact = !terms.potential && !terms.lean && !terms.ldp_discrete;
-  return only_contact ? PairJacobianOf<kContactParameters>(terms, pair, p, n, j)
-                      : PairJacobianOf<kNumPairParameters>(terms, pair, p, n, j);
-}
-
-namespace {
-
 using Columns = Eigen::Matrix<double, 4, Eigen::Dynamic>;
 
 // Derivatives of what everybody gets from others, now and lately.

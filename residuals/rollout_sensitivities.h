@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "models/rollout.h"
+#include "residuals/pair_jacobian.h"
 #include "residuals/parameter_map.h"
 
 namespace pushid {
@@ -55,15 +56,6 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
                       const ParameterSet<double>& p, int person, int frame,
                       const PendulumState<double>& state, const Vector4<double>& previous,
                       SelfForce::Jacobian* jacobian);
-
-// d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people.
-struct PairJacobian {
-  Eigen::Matrix<double, 8, 16> by_states;  // rows: n then j; columns [q, qd] of n, then of j
-  Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on
-};
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
-                                 const ParameterSet<double>& p, const PendulumState<double>& n,
-                                 const PendulumState<double>& j);
 
 // Same path as Rollout<double>, to the last bit.
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,

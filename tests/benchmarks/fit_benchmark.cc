@@ -1,6 +1,9 @@
 // A whole fit of the 32 recordings of single people: solving and judging, for both presets, and the
-// uncertainty alone. The counters say where it ended.
+// uncertainty alone; and of the 49 recordings of groups: the Jacobian at 19 to 22 parameters, and
+// the solve from one start. The counters say where it ended.
 #include <benchmark/benchmark.h>
+
+#include <memory>
 
 #include "ident/fit_result.h"
 #include "tests/benchmarks/benchmark_recordings.h"
@@ -60,6 +63,69 @@ void UncertaintyAlone(benchmark::State& state, const char* preset) {
 }
 BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
+
+FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
+  FitOptions options = OptionsOf("tail");
+  options.self_force = self_force;
+  options.model.interaction.spring = options.model.interaction.damping = true;
+  options.model.interaction.drive = drive;
+  FreeSelfForce(self_force, &options.table);
+  FreeInteraction(options.model.interaction, &options.table);
+  if (self_force == SelfForceKind::kLinear) options.mode_weight = 30.0;
+  return options;
+}
+
+void GroupJacobian(benchmark::State& state, SelfForceKind self_force, bool drive) {
+  const FitOptions options = GroupOptions(self_force, drive);
+  const FitProblem fit(Groups().recordings, options);
+  const FitPoint point = fit.NominalPoint();
+  std::vector<std::unique_ptr<RolloutResidual>> residuals;
+  std::vector<std::vector<double>> values, jacobians;
+  const int columns = fit.map().num_shared();
+  for (const PendulumRecording& recording : Groups().recordings) {
+    const auto problem =
+        MakeRolloutProblem(recording, options.model, fit.map(), options.sigmas, 1.0, 0);
+    residuals.push_back(std::make_unique<RolloutResidual>(problem));
+    values.emplace_back(problem->num_residuals());
+    jacobians.emplace_back(problem->num_residuals() * columns);
+  }
+  const double* blocks[] = {point.shared.data()};
+  for (auto _ : state) {
+    for (size_t i = 0; i < residuals.size(); ++i) {
+      double* jacobian[] = {jacobians[i].data()};
+      if (!residuals[i]->Evaluate(blocks, values[i].data(), jacobian)) {
+        state.SkipWithError("a rollout fails");
+      }
+    }
+    benchmark::ClobberMemory();
+  }
+  state.SetLabel(std::to_string(columns) + " columns, " +
+                 std::to_string(Groups().recordings.size()) + " " + Groups().origin +
+                 " recordings");
+}
+BENCHMARK_CAPTURE(GroupJacobian, contact, SelfForceKind::kNone, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, SelfForceKind::kLinear, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(GroupJacobian, linear_contact_drive, SelfForceKind::kLinear, true)
+    ->Unit(benchmark::kMillisecond);
+
+void GroupSolve(benchmark::State& state, SelfForceKind self_force) {
+  const FitOptions options = GroupOptions(self_force, false);
+  const FitProblem problem(Groups().recordings, options);
+  Solution solution;
+  for (auto _ : state) solution = Solve(problem);
+  state.SetLabel(std::to_string(Groups().recordings.size()) + " " + Groups().origin +
+                 " recordings");
+  if (solution.best < 0) {
+    state.SkipWithError("no usable start");
+    return;
+  }
+  state.counters["cost"] = solution.Best().cost;
+  state.counters["iterations"] = solution.Best().iterations;
+}
+BENCHMARK_CAPTURE(GroupSolve, contact, SelfForceKind::kNone)->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(GroupSolve, linear_and_contact, SelfForceKind::kLinear)->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace pushid

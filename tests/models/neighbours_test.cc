@@ -40,7 +40,8 @@ TEST(NeighbourGrid, EqualsAllPairs) {
       grid.Build(at, reach);
       std::vector<int> near;
       for (int n = 0; n < people; ++n) {
-        grid.Near(n, &near);
+        grid.Near(
+            n, [](int) { return true; }, &near);
         ASSERT_EQ(near, AllPairs(at, reach, n)) << people << " people, spread " << spread;
       }
     }

@@ -1,0 +1,24 @@
+// residuals: derivatives of what two people do to each other.
+//
+// Contact, the term that most fits have, is chained from three small pieces: the points' places and
+// velocities by the states, the force by those and the parameters, the generalized force by force
+// and state. Jets over both whole states, which serve the other terms, cost four times as much.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "models/interaction.h"
+
+namespace pushid {
+
+// d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people.
+struct PairJacobian {
+  Eigen::Matrix<double, 8, 16> by_states;  // rows: n then j; columns [q, qd] of n, then of j
+  Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on
+};
+
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PendulumState<double>& n,
+                                 const PendulumState<double>& j);
+
+}  // namespace pushid

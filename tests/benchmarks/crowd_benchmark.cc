@@ -1,0 +1,68 @@
+// What a crowd costs: person-steps per second from 100 to 100,000 people, on one thread and
+// on two, and how many times faster than real time 60 frames a second are.
+//
+// People stand 0.45 m apart on a square grid, everybody with a small velocity of her own, so that
+// contacts are loaded everywhere; the parameters are those identified from the published group
+// recordings (README).
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "datasets/random.h"
+#include "datasets/synthetic_recordings.h"
+#include "models/crowd.h"
+#include "models/formation.h"
+
+namespace pushid {
+namespace {
+
+ParameterSet<double> Identified() {
+  ParameterSet<double> p = PublishedTailParameters();
+  p[kMu] = 21.0, p[kKpTheta] = 2200.0, p[kAx] = -16.0;
+  p[kContactStiffness] = 2900.0, p[kContactDistance] = 0.42, p[kContactKappa] = 0.41;
+  p[kContactDamping] = 270.0, p[kContactHeight] = 0.5;
+  return p;
+}
+
+Scene Crowded(int people) {
+  Random random(1);
+  Scene scene = FormationScene(FormationPositions(FormationShape::kGrid, people, 0.45),
+                               {80.0, 0.95, 0.08}, 1.0 / 60.0);
+  for (ScenePerson& person : scene.people) {
+    person.body.mass = random.Uniform(60.0, 100.0);
+    person.start.qd[0] = random.Uniform(-0.3, 0.3);
+    person.start.qd[1] = random.Uniform(-0.3, 0.3);
+  }
+  AddHipPush(0, {80.0, 0.0, 0.2}, &scene);
+  return scene;
+}
+
+// Arguments: people, threads. A second of 60 frames from the same start, so that contacts are as
+// many whatever the number of people.
+void CrowdSecond(benchmark::State& state) {
+  constexpr int kFrames = 60;
+  const int people = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
+  const Scene scene = Crowded(people);
+  ModelOptions options;
+  options.interaction.spring = options.interaction.damping = true;
+  for (auto _ : state) {
+    state.PauseTiming();
+    Crowd crowd(scene, options, {Identified()}, threads);
+    state.ResumeTiming();
+    for (int t = 0; t < kFrames; ++t) {
+      if (!crowd.Advance().ok) state.SkipWithError("somebody falls");
+    }
+  }
+  const double seconds = static_cast<double>(state.iterations());
+  using benchmark::Counter;
+  state.counters["person_steps"] = Counter(seconds * kFrames * people, Counter::kIsRate);
+  state.counters["times_real_time"] = Counter(seconds, Counter::kIsRate);
+}
+BENCHMARK(CrowdSecond)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->ArgsProduct({{100, 1000, 10000, 100000}, {1, 2}})
+    ->ArgNames({"people", "threads"});
+
+}  // namespace
+}  // namespace pushid
