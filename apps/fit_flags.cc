@@ -33,11 +33,11 @@ DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
 DEFINE_string(free, "", "parameters fitted: name or name=start, comma-separated");
 DEFINE_string(prior, "", "priors: name:mean:sigma in the parameter's unit, comma-separated");
 DEFINE_bool(preset_priors, true, "keep the preset's weak priors");
-DEFINE_string(pool, "", "parameters that may differ by subject, comma-separated");
-DEFINE_double(
-    pooling_sigma, 0.2,
-    "how far a subject may deviate from the shared value (standard deviation on the fitted "
-    "scale; 0.2 is about 20 % for a positive parameter)");
+DEFINE_string(pool, "", "parameters that may differ by unit, comma-separated, or all");
+DEFINE_string(pool_by, "subject", "the unit they may differ by: subject or setting");
+DEFINE_double(pooling_sigma, 0.2,
+              "how far a unit may deviate from the shared value (standard deviation on the fitted "
+              "scale; 0.2 is about 20 % for a positive parameter)");
 
 DEFINE_double(sigma_hip, 0.1, "standard deviation of the hip's position, m");
 DEFINE_double(sigma_velocity, 1.0, "standard deviation of the cart's velocity, m/s");
@@ -90,6 +90,7 @@ MaybeError ReadModel(FitOptions* o) {
         Override("cart_derivative", FLAGS_cart_derivative, &m.cart_derivative),
         Override("interaction", FLAGS_interaction, &m.interaction),
         Override("recording_weight", FLAGS_recording_weight, &o->recording_weight),
+        Override("pool_by", FLAGS_pool_by, &o->pool_by),
         Override("start", FLAGS_start, &o->start)}) {
     if (error) return error;
   }
@@ -189,6 +190,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   edits.free = FLAGS_free;
   edits.prior = FLAGS_prior;
   edits.pool = FLAGS_pool;
+  edits.pool_by = o.pool_by;
   if (MaybeError error = EditTable(edits, &o.table)) return *error;
   if (o.table.Free().empty()) return Error{"every parameter is fixed: nothing is left to fit"};
 

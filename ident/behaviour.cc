@@ -75,6 +75,17 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 }  // namespace
 
+void Behaviour::Add(const Behaviour& other, const std::string& setting) {
+  for (Demonstration d : other.demonstrations) {
+    d.setting = setting;
+    demonstrations.push_back(d);
+  }
+  fastest_growth = std::max(fastest_growth, other.fastest_growth);
+  settles = settles && other.settles;
+  harder_moves_farther = harder_moves_farther && other.harder_moves_farther;
+  self_propelling = self_propelling || other.self_propelling;
+}
+
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
   Behaviour behaviour;
   std::vector<Demonstration>& all = behaviour.demonstrations;

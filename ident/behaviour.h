@@ -2,6 +2,7 @@
 // A fit can score well and never stop walking; this tells.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "models/options.h"
@@ -13,6 +14,7 @@ inline constexpr int kLinePeople = 5;  // in a line, where people touch
 
 // The demonstration people two seconds after the last push.
 struct Demonstration {
+  std::string setting;    // where settings differ: with whose parameters; empty: the shared ones
   int people = 1;         // more than one: in a line, the first one pushed
   double mass = 0.0;      // kg
   double impulse = 0.0;   // N s
@@ -35,6 +37,9 @@ struct Behaviour {
   // The person drives herself: an unstable free mode, negative damping of the cart, or a fall. One
   // who is merely slow to stand again does not.
   bool self_propelling = false;
+
+  // Adds what people do in one setting.
+  void Add(const Behaviour& other, const std::string& setting);
 };
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);

@@ -63,18 +63,15 @@ std::vector<Combination> Derived(const FitProblem& problem, const FitPoint& poin
           combine({{kKdPhi, damping}}, "Kd_phi/(m l^2)", "1/s")};
 }
 
-std::map<std::string, SubjectParameters> Subjects(const FitProblem& problem, const FitPoint& point,
-                                                  const Uncertainty& u) {
-  std::map<std::string, SubjectParameters> subjects;
-  for (const PendulumRecording& recording : problem.recordings()) {
-    for (int n = 0; n < recording.num_people(); ++n) {
-      subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
-    }
-  }
+// The pooled parameters of every unit: shared value and deviation together.
+std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitProblem& problem,
+                                                                    const FitPoint& point,
+                                                                    const Uncertainty& u) {
+  std::map<std::string, std::map<std::string, Estimate>> pooled;
   const auto& fitted = problem.map().fitted;
   int first = static_cast<int>(point.shared.size());
-  for (const auto& [id, deviations] : point.subject) {
-    const ParameterSet<double> values = problem.Parameters(point, id);
+  for (const auto& [unit, deviations] : point.unit) {
+    const ParameterSet<double> values = problem.Parameters(point, unit);
     for (size_t i = 0; i < fitted.size(); ++i) {
       if (fitted[i].deviation < 0) continue;
       const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
@@ -89,11 +86,25 @@ std::map<std::string, SubjectParameters> Subjects(const FitProblem& problem, con
       e.standard_error = error * TransformSlope(spec.transform, e.value);
       e.lower95 = ToNatural(spec.transform, center - u.t_quantile * error);
       e.upper95 = ToNatural(spec.transform, center + u.t_quantile * error);
-      subjects[id].pooled[spec.name] = e;
+      pooled[unit][spec.name] = e;
     }
     first += static_cast<int>(deviations.size());
   }
-  return subjects;
+  return pooled;
+}
+
+void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result) {
+  for (const PendulumRecording& recording : problem.recordings()) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      result->subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
+    }
+  }
+  const auto pooled = PooledByUnit(problem, point, result->uncertainty);
+  if (problem.options().pool_by == PoolBy::kSetting) {
+    result->settings = pooled;
+  } else {
+    for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
+  }
 }
 
 std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best) {
@@ -180,8 +191,8 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
                          result.uncertainty.estimates.end());
   result.derived = Derived(problem, best.to, result.uncertainty);
-  result.subjects = Subjects(problem, best.to, result.uncertainty);
-  result.behaviour = ComputeBehaviour(options.model, result.parameters);
+  AddUnits(problem, best.to, &result);
+  result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
   return result;
@@ -193,13 +204,14 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.mapping = result.options.mapping;
   model.table = result.options.table;
   model.parameters = result.parameters;
-  for (const auto& [id, subject] : result.subjects) {
-    if (subject.pooled.empty()) continue;
-    ParameterSet<double>& own = model.by_subject[id] = result.parameters;
-    for (const auto& [name, estimate] : subject.pooled) {
-      own[model.table.Find(name)->id] = estimate.value;
-    }
-  }
+  model.pool_by = result.options.pool_by;
+  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
+    if (pooled.empty()) return;
+    ParameterSet<double>& own = model.by_unit[unit] = result.parameters;
+    for (const auto& [name, estimate] : pooled) own[model.table.Find(name)->id] = estimate.value;
+  };
+  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) add(setting, pooled);
   return model;
 }
 
@@ -212,7 +224,7 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   for (const NamedValue& named : values.value()) {
     const Parameter id = model->table.Find(named.name)->id;
     model->parameters[id] = named.value;
-    for (auto& [subject, own] : model->by_subject) own[id] = named.value;
+    for (auto& [unit, own] : model->by_unit) own[id] = named.value;
   }
   return std::nullopt;
 }

@@ -41,7 +41,8 @@ struct FitOptions {
   double mode_margin = 0.2;
   // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
   double stability_weight = 0.0;
-  // Standard deviation of a subject's deviation from the shared value, on the fitted scale (0.2 on
+  PoolBy pool_by = PoolBy::kSubject;  // what the parameters that --pool names may differ by
+  // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
   // a log scale is about 20 %). Acts on the parameters that --pool names.
   double pooling_sigma = 0.2;
 

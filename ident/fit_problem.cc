@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "ident/behaviour.h"
 #include "residuals/equation_error_residual.h"
 #include "residuals/mode_residual.h"
 #include "residuals/prior_residual.h"
@@ -25,7 +24,7 @@ constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the o
 
 std::vector<double> FitPoint::Flat() const {
   std::vector<double> flat = shared;
-  for (const auto& [name, values] : subject) flat.insert(flat.end(), values.begin(), values.end());
+  for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
   for (const auto& [index, values] : velocity)
     flat.insert(flat.end(), values.begin(), values.end());
   return flat;
@@ -38,12 +37,14 @@ void FitPoint::SetFlat(const std::vector<double>& flat) {
     next += static_cast<std::ptrdiff_t>(values->size());
   };
   take(&shared);
-  for (auto& [name, values] : subject) take(&values);
+  for (auto& [name, values] : unit) take(&values);
   for (auto& [index, values] : velocity) take(&values);
 }
 
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options)
-    : recordings_(recordings), options_(options), map_(options.table.Map()) {}
+    : recordings_(recordings), options_(options), map_(options.table.Map()) {
+  map_.pool_by = options.pool_by;
+}
 
 FitPoint FitProblem::NominalPoint() const {
   FitPoint point;
@@ -53,8 +54,8 @@ FitPoint FitProblem::NominalPoint() const {
   for (size_t i = 0; i < recordings_.size(); ++i) {
     const PendulumRecording& recording = recordings_[i];
     if (map_.num_deviations > 0) {
-      for (const std::string& id : recording.subject_ids) {
-        point.subject[id].assign(map_.num_deviations, 0.0);
+      for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
+        point.unit[unit].assign(map_.num_deviations, 0.0);
       }
     }
     if (recording.initial_velocity != InitialVelocity::kFree) continue;
@@ -66,11 +67,19 @@ FitPoint FitProblem::NominalPoint() const {
   return point;
 }
 
-ParameterSet<double> FitProblem::Parameters(const FitPoint& point,
-                                            const std::string& subject) const {
-  const auto found = point.subject.find(subject);
+ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::string& unit) const {
+  const auto found = point.unit.find(unit);
   return map_.Apply<double>(point.shared.data(),
-                            found == point.subject.end() ? nullptr : found->second.data());
+                            found == point.unit.end() ? nullptr : found->second.data());
+}
+
+Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
+  Behaviour all = ComputeBehaviour(options_.model, Parameters(point, ""));
+  if (map_.pool_by != PoolBy::kSetting) return all;
+  for (const auto& [unit, deviations] : point.unit) {
+    all.Add(ComputeBehaviour(options_.model, Parameters(point, unit)), unit);
+  }
+  return all;
 }
 
 std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
@@ -92,9 +101,9 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
 
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
   std::vector<double*> blocks = {point->shared.data()};
-  const BlockLayout layout(map_, recordings_[recording].subject_ids, false);
+  const BlockLayout layout(map_, PoolingUnits(recordings_[recording], map_.pool_by), false);
   if (map_.num_deviations > 0) {
-    for (const std::string& id : layout.subjects) blocks.push_back(point->subject[id].data());
+    for (const std::string& unit : layout.units) blocks.push_back(point->unit[unit].data());
   }
   const auto velocity = point->velocity.find(recording);
   if (velocity != point->velocity.end()) blocks.push_back(velocity->second.data());
@@ -116,7 +125,7 @@ void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
     built->parameter_blocks.push_back(values->data());
   };
   add(&point->shared);
-  for (auto& [name, values] : point->subject) add(&values);
+  for (auto& [name, values] : point->unit) add(&values);
   for (auto& [index, values] : point->velocity) add(&values);
   for (size_t i = 0; i < map_.fitted.size(); ++i) {
     const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
@@ -138,7 +147,7 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     built->blocks.push_back(
         {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
   }
-  for (auto& [name, values] : point->subject) {
+  for (auto& [name, values] : point->unit) {
     for (const FittedParameter& f : map_.fitted) {
       if (f.deviation < 0) continue;
       // On an identity scale the deviation is in units of the parameter's typical size.
@@ -179,23 +188,33 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     built->blocks.push_back(
         {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
   };
-  if (options_.settling_weight > 0.0) {
+  // Where settings differ, people must stand again in each of them.
+  std::vector<std::string> units = {""};
+  if (map_.num_deviations > 0 && map_.pool_by == PoolBy::kSetting) {
+    for (const auto& [unit, values] : point->unit) units.push_back(unit);
+  }
+  for (const std::string& unit : units) {
+    std::vector<double*> blocks = {point->shared.data()};
+    if (!unit.empty()) blocks.push_back(point->unit[unit].data());
     const auto settle = [&](double impulse, int people) {
       const Scene scene = DemonstrationScene(kDemonstrationMass, impulse, people);
-      add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight),
-          {point->shared.data()});
+      add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight,
+                          unit),
+          blocks);
     };
-    for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
-    if (options_.model.interaction.Any()) {
-      for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
+    if (options_.settling_weight > 0.0) {
+      for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
+      if (options_.model.interaction.Any()) {
+        for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
+      }
     }
-  }
-  if (options_.mode_weight > 0.0) {
-    const Body body = DemonstrationScene(kDemonstrationMass, 0.0).people[0].body;
-    auto* cost =
-        new ModeResidual(options_.model, body, map_, options_.mode_margin, options_.mode_weight);
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(cost, nullptr, point->shared.data()), kPriorCluster});
+    if (options_.mode_weight > 0.0) {
+      const Body body = DemonstrationScene(kDemonstrationMass, 0.0).people[0].body;
+      auto* cost = new ModeResidual(options_.model, body, map_, options_.mode_margin,
+                                    options_.mode_weight, !unit.empty());
+      built->blocks.push_back(
+          {built->problem->AddResidualBlock(cost, nullptr, blocks), kPriorCluster});
+    }
   }
   if (options_.stability_weight > 0.0) {
     for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {

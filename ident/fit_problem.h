@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/pendulum_recording.h"
+#include "ident/behaviour.h"
 #include "ident/fit_options.h"
 #include "residuals/rollout_residual.h"
 
@@ -19,10 +20,10 @@ namespace pushid {
 struct FitPoint {
   std::vector<double> shared;  // fitted scale
   std::map<std::string, std::vector<double>>
-      subject;                                  // deviations, fitted scale; empty if not pooled
+      unit;  // deviations by subject or setting, fitted scale; empty if not pooled
   std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
 
-  // All entries in one row: shared, subjects in order of name, velocities in order of recording.
+  // All entries in one row: shared, units in order of name, velocities in order of recording.
   std::vector<double> Flat() const;
   void SetFlat(const std::vector<double>& flat);
 };
@@ -45,15 +46,18 @@ class FitProblem {
   // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them.
   FitPoint NominalPoint() const;
 
-  // The parameters of a subject (any name, even one that was not fitted) at a point.
-  ParameterSet<double> Parameters(const FitPoint& point, const std::string& subject) const;
+  // The parameters of a unit (any name, even one that was not fitted) at a point.
+  ParameterSet<double> Parameters(const FitPoint& point, const std::string& unit) const;
+
+  // What people do after a push at a point; where settings differ, in each setting.
+  Behaviour BehaviourAt(const FitPoint& point) const;
 
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
 
   // Clusters of what is not data.
   static constexpr int kPriorCluster = -1;    // priors on parameters, settling, stability
-  static constexpr int kPoolingCluster = -2;  // what ties the subjects' deviations to zero
+  static constexpr int kPoolingCluster = -2;  // what ties the units' deviations to zero
 
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.

@@ -31,9 +31,11 @@ struct FitResult {
   // As they act: fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
-  std::vector<Estimate> nuisance;    // subjects' deviations and initial velocities
+  std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains
   std::map<std::string, SubjectParameters> subjects;
+  // Value of each pooled parameter in each setting, where settings differ.
+  std::map<std::string, std::map<std::string, Estimate>> settings;
   Uncertainty uncertainty;
   Behaviour behaviour;
   std::vector<FittedRecording> recordings;
@@ -61,12 +63,13 @@ struct IdentifiedModel {
   SkeletonMapping mapping = SkeletonMapping::kExact;
   ParameterTable table;  // names, units and bounds, for --set
   ParameterSet<double> parameters{};
-  std::map<std::string, ParameterSet<double>> by_subject;  // only where pooled
+  PoolBy pool_by = PoolBy::kSubject;
+  std::map<std::string, ParameterSet<double>> by_unit;  // subject or setting; only where pooled
 
-  // A subject the model does not know gets the shared values.
-  const ParameterSet<double>& For(const std::string& subject) const {
-    const auto found = by_subject.find(subject);
-    return found == by_subject.end() ? parameters : found->second;
+  // A unit the model does not know gets the shared values.
+  const ParameterSet<double>& For(const std::string& unit) const {
+    const auto found = by_unit.find(unit);
+    return found == by_unit.end() ? parameters : found->second;
   }
 };
 

@@ -107,7 +107,7 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
   run.recording = AsRecording(scene);
   // Nobody of a formation is a subject of the fit.
   IdentifiedModel shared = model;
-  shared.by_subject.clear();
+  shared.by_unit.clear();
   run.prediction = Predict(shared, run.recording, num_frames);
   if (!run.prediction.status.ok) return run;
   for (int n = 0; n < run.num_people(); ++n) run.summaries.push_back(Summarize(run, n));

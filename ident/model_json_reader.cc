@@ -103,6 +103,7 @@ FitOptions OptionsFrom(const Json& json) {
   o.mode_weight = json.at("mode_weight");
   o.mode_margin = json.at("mode_margin_per_s");
   o.stability_weight = json.at("stability_weight");
+  o.pool_by = EnumFrom<PoolBy>(json, "pool_by");
   o.pooling_sigma = json.at("pooling_sigma");
   o.horizons = json.at("horizons").get<std::vector<int>>();
   o.start = EnumFrom<FitStart>(json, "start");
@@ -123,9 +124,9 @@ Behaviour BehaviourFrom(const Json& json) {
   b.fastest_growth = json.at("fastest_growth_per_s");
   b.harder_moves_farther = json.at("harder_moves_farther");
   for (const Json& d : json.at("demonstrations")) {
-    b.demonstrations.push_back({d.at("people"), d.at("mass_kg"), d.at("impulse_Ns"),
-                                d.at("speed_m_s"), d.at("lean_rad"), d.at("distance_m"),
-                                d.at("fell"), d.at("settled")});
+    b.demonstrations.push_back({d.at("setting"), d.at("people"), d.at("mass_kg"),
+                                d.at("impulse_Ns"), d.at("speed_m_s"), d.at("lean_rad"),
+                                d.at("distance_m"), d.at("fell"), d.at("settled")});
   }
   return b;
 }
@@ -186,13 +187,15 @@ void CheckConsistent(const FitResult& result) {
   if (!(result.parameters[kTailTime] > 0.0)) {
     throw std::runtime_error("tail_time must be positive");
   }
-  for (const auto& [id, subject] : result.subjects) {
-    for (const auto& [name, estimate] : subject.pooled) {
+  const auto check = [&result](const std::string& unit, const auto& pooled) {
+    for (const auto& [name, estimate] : pooled) {
       if (result.options.table.Find(name) == nullptr) {
-        throw std::runtime_error("subject " + id + " has an unknown parameter '" + name + "'");
+        throw std::runtime_error(unit + " has an unknown parameter '" + name + "'");
       }
     }
-  }
+  };
+  for (const auto& [id, subject] : result.subjects) check("subject " + id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) check("setting " + setting, pooled);
 }
 
 // "[json.exception.type_error.302] type must be number, but is string": the end is for people.
@@ -226,6 +229,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
     for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
     for (const Json& c : at("derived")) result.derived.push_back(CombinationFrom(c));
+    for (const auto& [setting, pooled] : at("settings").items()) {
+      for (const auto& [name, estimate] : pooled.items()) {
+        result.settings[setting][name] = EstimateFrom(estimate);
+      }
+    }
     for (const auto& [id, subject] : at("subjects").items()) {
       result.subjects[id].mass_kg = subject.at("mass_kg");
       for (const auto& [name, estimate] : subject.at("pooled").items()) {

@@ -80,6 +80,7 @@ Json OptionsJson(const FitOptions& o) {
           {"mode_weight", o.mode_weight},
           {"mode_margin_per_s", o.mode_margin},
           {"stability_weight", o.stability_weight},
+          {"pool_by", NameOf(o.pool_by)},
           {"pooling_sigma", o.pooling_sigma},
           {"horizons", o.horizons},
           {"start", NameOf(o.start)},
@@ -151,7 +152,8 @@ Json EstimatesJson(const std::vector<Estimate>& estimates) {
 nlohmann::ordered_json ToJson(const Behaviour& b) {
   Json demonstrations = Json::array();
   for (const Demonstration& d : b.demonstrations) {
-    demonstrations.push_back({{"people", d.people},
+    demonstrations.push_back({{"setting", d.setting},
+                              {"people", d.people},
                               {"mass_kg", d.mass},
                               {"impulse_Ns", d.impulse},
                               {"speed_m_s", d.speed},
@@ -169,10 +171,13 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
 
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   Json derived = Json::array(), recordings = Json::array();
-  Json subjects = Json::object(), values = Json::object();
+  Json subjects = Json::object(), settings = Json::object(), values = Json::object();
   for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
   for (const ParameterSpec& spec : result.options.table.specs) {
     values[spec.name] = result.parameters[spec.id];
+  }
+  for (const auto& [setting, pooled] : result.settings) {
+    for (const auto& [name, estimate] : pooled) settings[setting][name] = EstimateJson(estimate);
   }
   for (const auto& [id, subject] : result.subjects) {
     Json pooled = Json::object();
@@ -194,6 +199,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
           {"derived", derived},
           {"nuisance", EstimatesJson(result.nuisance)},
           {"subjects", subjects},
+          {"settings", settings},
           {"values", values},
           {"behaviour", ToJson(result.behaviour)},
           {"uncertainty", UncertaintyJson(result.uncertainty)},

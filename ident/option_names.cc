@@ -56,6 +56,11 @@ const OptionNames<FitStart>& Names(FitStart) {
                                               {"equation_error", FitStart::kEquationError}};
   return names;
 }
+const OptionNames<PoolBy>& Names(PoolBy) {
+  static const OptionNames<PoolBy> names = {{"subject", PoolBy::kSubject},
+                                            {"setting", PoolBy::kSetting}};
+  return names;
+}
 const OptionNames<FoldScheme>& Names(FoldScheme) {
   static const OptionNames<FoldScheme> names = {{"stratified", FoldScheme::kStratified},
                                                 {"subject", FoldScheme::kSubject},

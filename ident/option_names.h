@@ -24,6 +24,7 @@ const OptionNames<SkeletonMapping>& Names(SkeletonMapping);
 const OptionNames<SelfForceKind>& Names(SelfForceKind);
 const OptionNames<RecordingWeight>& Names(RecordingWeight);
 const OptionNames<FitStart>& Names(FitStart);
+const OptionNames<PoolBy>& Names(PoolBy);
 const OptionNames<FoldScheme>& Names(FoldScheme);
 const OptionNames<Transform>& Names(Transform);
 const OptionNames<EstimateStatus>& Names(EstimateStatus);

@@ -27,7 +27,7 @@ struct ParameterSpec {
   double scale = 1.0;  // a typical size, for scaling null directions and judging "weak"
   Transform transform = Transform::kIdentity;
   bool free = false;
-  bool pooled = false;  // may deviate by subject
+  bool pooled = false;  // may deviate by subject or setting
   std::optional<Prior> prior;
   std::string meaning;  // one line for people
 };
@@ -76,9 +76,10 @@ bool Acts(Parameter id, const ModelOptions& model);
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value
 //   prior: name:mean:sigma         set:  name=value (also of a fixed one)
-//   pool:  names
+//   pool:  names, or all
 struct TableEdits {
   std::string fix, free, prior, set, pool;
+  PoolBy pool_by = PoolBy::kSubject;
 };
 MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "datasets/atomic_file.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -11,7 +12,9 @@ namespace {
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording) {
   std::vector<ParameterSet<double>> sets;
-  for (const std::string& subject : recording.subject_ids) sets.push_back(model.For(subject));
+  for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
+    sets.push_back(model.For(unit));
+  }
   return sets;
 }
 

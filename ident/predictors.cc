@@ -23,9 +23,10 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
   FoldPrediction prediction;
   IdentifiedModel model;
   model.options = options_.model;
+  model.pool_by = options_.pool_by;
   if (solution.best >= 0) {
     model.parameters = problem.Parameters(solution.Best().to, "");
-    prediction.behaviour = ComputeBehaviour(options_.model, model.parameters);
+    prediction.behaviour = problem.BehaviourAt(solution.Best().to);
   }
   for (int i : test) {
     if (solution.best < 0) {
@@ -36,8 +37,8 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
       prediction.scores.push_back(failed);
       continue;
     }
-    for (const auto& [subject, deviations] : solution.Best().to.subject) {
-      model.by_subject[subject] = problem.Parameters(solution.Best().to, subject);
+    for (const auto& [unit, deviations] : solution.Best().to.unit) {
+      model.by_unit[unit] = problem.Parameters(solution.Best().to, unit);
     }
     prediction.scores.push_back(ScoreModel(model, recordings[i]));
   }

@@ -83,7 +83,8 @@ std::string CorrelationText(const FitResult& result) {
 
 std::string DemonstrationName(const Demonstration& d) {
   const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
-  return who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+  const std::string where = d.setting.empty() ? "" : d.setting + ": ";
+  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
 }
 
 std::string BehaviourText(const FitResult& result) {
@@ -117,6 +118,27 @@ std::string BehaviourText(const FitResult& result) {
   return text;
 }
 
+std::string PooledText(const FitResult& result) {
+  const bool by_setting = !result.settings.empty();
+  TextTable table({by_setting ? "setting" : "subject", "kg", "parameter", "value", "std error",
+                   "95 % interval", "unit"},
+                  {true, false, true, false, false, true, true});
+  bool any = false;
+  const auto add = [&](const std::string& unit, const std::string& mass,
+                       const std::map<std::string, Estimate>& pooled) {
+    for (const auto& [name, e] : pooled) {
+      table.Add({unit, mass, name, Significant(e.value), Significant(e.standard_error, 3),
+                 Interval(e.lower95, e.upper95), e.unit});
+      any = true;
+    }
+  };
+  for (const auto& [id, subject] : result.subjects) {
+    add(id, Significant(subject.mass_kg), subject.pooled);
+  }
+  for (const auto& [setting, pooled] : result.settings) add(setting, "", pooled);
+  return any ? table.ToString() + "\n" : "";
+}
+
 std::string WithError(double value, double error, const MeanScore& mean) {
   if (mean.recordings == 0) return "-";
   return Significant(value, 3) + " +- " + Significant(error, 2);
@@ -148,20 +170,7 @@ std::string ReportText(const FitResult& result) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
   text += CorrelationText(result);
-  bool any_pooled = false;
-  for (const auto& [id, subject] : result.subjects)
-    any_pooled = any_pooled || !subject.pooled.empty();
-  if (any_pooled) {
-    TextTable table({"subject", "kg", "parameter", "value", "std error", "95 % interval", "unit"},
-                    {true, false, true, false, false, true, true});
-    for (const auto& [id, subject] : result.subjects) {
-      for (const auto& [name, e] : subject.pooled) {
-        table.Add({id, Significant(subject.mass_kg), name, Significant(e.value),
-                   Significant(e.standard_error, 3), Interval(e.lower95, e.upper95), e.unit});
-      }
-    }
-    text += table.ToString() + "\n";
-  }
+  text += PooledText(result);
   text += BehaviourText(result) + "\n";
   text += "cost " + Significant(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +

@@ -30,9 +30,16 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
-ceres::Solver::Options SolverOptions(const FitOptions& options) {
+// So many columns or fewer are few.
+constexpr int kFewColumns = 50;
+
+ceres::Solver::Options SolverOptions(const FitOptions& options, int num_columns) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::DENSE_QR;  // few columns; keeps weak directions accurate
+  // QR keeps weak directions accurate. Many columns are those of units (subjects, settings), of
+  // which a recording has few: sparse normal equations cost a tenth then, and every unit's column
+  // has its prior.
+  solver.linear_solver_type =
+      num_columns <= kFewColumns ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -79,7 +86,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
       FitProblem::Built built = problem.Build(&start.to, horizons[i]);
-      ceres::Solver::Options solver = SolverOptions(options);
+      ceres::Solver::Options solver = SolverOptions(options, built.problem->NumParameters());
       // Stages on the way need not be exact.
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
@@ -105,7 +112,7 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
   FitPoint point = nominal;
   FitProblem::Built built = problem.BuildEquationError(&point);
   std::string message;
-  RunStage(&built, SolverOptions(problem.options()), 0, &message);
+  RunStage(&built, SolverOptions(problem.options(), built.problem->NumParameters()), 0, &message);
   for (size_t i = 0; i < point.shared.size(); ++i) {
     const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
     const double reach = spec.transform == Transform::kIdentity

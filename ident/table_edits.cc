@@ -118,14 +118,21 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   if (MaybeError error = Assign(edits.fix, "--fix", false, false, table)) return error;
   if (MaybeError error = AddPriors(edits.prior, table)) return error;
   for (const std::string& name : Split(edits.pool, ',')) {
+    if (name == "all") {
+      for (ParameterSpec& spec : table->specs) spec.pooled = spec.free;
+      continue;
+    }
     ParameterSpec* spec = table->Find(name);
     if (spec == nullptr) return UnknownName(name, "--pool", *table);
     if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
-    if (IsPairParameter(spec->id)) {
-      return Error{"--pool names " + name +
-                   ", which two people share: it cannot differ by subject"};
-    }
     spec->pooled = true;
+  }
+  for (const ParameterSpec& spec : table->specs) {
+    if (spec.pooled && edits.pool_by == PoolBy::kSubject && IsPairParameter(spec.id)) {
+      return Error{"--pool names " + spec.name +
+                   ", which two people share: it may differ by setting (--pool_by=setting), not by "
+                   "subject"};
+    }
   }
   return std::nullopt;
 }

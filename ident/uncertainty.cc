@@ -40,12 +40,12 @@ std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
     c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
     columns.push_back(c);
   }
-  for (const auto& [subject, values] : point.subject) {
+  for (const auto& [unit, values] : point.unit) {
     for (const FittedParameter& f : fitted) {
       if (f.deviation < 0) continue;
       const ParameterSpec& spec = table[f.parameter];
       const bool plain = f.transform == Transform::kIdentity;
-      Column c{spec.name + "[" + subject + "] deviation", plain ? spec.unit : "1"};
+      Column c{spec.name + "[" + unit + "] deviation", plain ? spec.unit : "1"};
       c.scale = plain ? spec.scale : 1.0;
       c.fitted = c.natural = values[f.deviation];
       columns.push_back(c);

@@ -3,6 +3,8 @@
 
 #include <ceres/jet.h>
 
+#include "residuals/rollout_residual.h"
+
 namespace pushid {
 namespace {
 
@@ -12,9 +14,10 @@ constexpr double kHinge = 0.01;  // eps
 }  // namespace
 
 ModeResidual::ModeResidual(const ModelOptions& options, const Body& body, const ParameterMap& map,
-                           double margin, double weight)
+                           double margin, double weight, bool of_unit)
     : options_(options), body_(body), map_(map), margin_(margin), weight_(weight) {
   mutable_parameter_block_sizes()->push_back(map.num_shared());
+  if (of_unit) mutable_parameter_block_sizes()->push_back(map.num_deviations);
   set_num_residuals(kResiduals);
 }
 
@@ -36,22 +39,24 @@ Eigen::Matrix<T, ModeResidual::kResiduals, 1> ModeResidual::Hinges(const Paramet
 
 bool ModeResidual::Evaluate(double const* const* blocks, double* residuals,
                             double** jacobians) const {
-  const ParameterSet<double> p = map_.Apply<double>(blocks[0], nullptr);
+  const bool of_unit = parameter_block_sizes().size() > 1;
+  const ParameterSet<double> p = map_.Apply<double>(blocks[0], of_unit ? blocks[1] : nullptr);
   Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
   values = Hinges(p);
-  if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+  if (jacobians == nullptr) return true;
   using Jet = ceres::Jet<double, kNumParameters>;
   ParameterSet<Jet> jets;
   for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i], i);
   const Eigen::Matrix<Jet, kResiduals, 1> hinges = Hinges(jets);
-  Eigen::Map<Eigen::Matrix<double, kResiduals, Eigen::Dynamic, Eigen::RowMajor>> jacobian(
-      jacobians[0], kResiduals, map_.num_shared());
-  jacobian.setZero();
-  for (const ColumnEntry& entry : map_.Entries(p, -1)) {
+  const int shared = map_.num_shared();
+  Eigen::MatrixXd by_column =
+      Eigen::MatrixXd::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
+  for (const ColumnEntry& entry : map_.Entries(p, of_unit ? shared : -1)) {
     for (int row = 0; row < kResiduals; ++row) {
-      jacobian(row, entry.column) += entry.derivative * hinges[row].v[entry.parameter];
+      by_column(row, entry.column) += entry.derivative * hinges[row].v[entry.parameter];
     }
   }
+  ScatterJacobian(by_column, parameter_block_sizes(), 0, kResiduals, jacobians);
   return true;
 }
 

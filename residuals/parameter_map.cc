@@ -6,20 +6,20 @@
 namespace pushid {
 
 BlockLayout::BlockLayout(const ParameterMap& map,
-                         const std::vector<std::string>& subject_of_each_person, bool free_velocity)
+                         const std::vector<std::string>& unit_of_each_person, bool free_velocity)
     : free_initial_velocity(free_velocity),
       num_shared(map.num_shared()),
       num_deviations(map.num_deviations) {
-  for (const std::string& subject : subject_of_each_person) {
-    const auto found = std::find(subjects.begin(), subjects.end(), subject);
-    subject_of_person.push_back(static_cast<int>(found - subjects.begin()));
-    if (found == subjects.end()) subjects.push_back(subject);
+  for (const std::string& unit : unit_of_each_person) {
+    const auto found = std::find(units.begin(), units.end(), unit);
+    unit_of_person.push_back(static_cast<int>(found - units.begin()));
+    if (found == units.end()) units.push_back(unit);
   }
 }
 
 std::vector<int> BlockLayout::BlockSizes() const {
   std::vector<int> sizes = {num_shared};
-  if (num_deviations > 0) sizes.insert(sizes.end(), subjects.size(), num_deviations);
+  if (num_deviations > 0) sizes.insert(sizes.end(), units.size(), num_deviations);
   if (free_initial_velocity) sizes.push_back(4 * num_people());
   return sizes;
 }
@@ -32,7 +32,7 @@ int BlockLayout::num_columns() const {
 
 int BlockLayout::DeviationColumn(int person) const {
   if (num_deviations == 0) return -1;
-  return num_shared + subject_of_person[person] * num_deviations;
+  return num_shared + unit_of_person[person] * num_deviations;
 }
 
 int BlockLayout::VelocityColumn() const {

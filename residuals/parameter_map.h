@@ -2,7 +2,8 @@
 //
 // Parameter blocks of one recording, in this order:
 //   0        shared values on the fitted scale, one entry per fitted parameter
-//   1 .. S   deviations of each distinct subject, one entry per pooled parameter (absent when none)
+//   1 .. S   deviations of each distinct unit - subject or setting - one entry per pooled parameter
+//            (absent when none)
 //   last     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
 // A person's value is natural(shared + deviation); with no deviation, natural(shared). Adding on
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
@@ -15,6 +16,9 @@
 #include "models/parameters.h"
 
 namespace pushid {
+
+// What pooled parameters may differ by: the unit that a deviation belongs to.
+enum class PoolBy { kSubject, kSetting };
 
 // The scale on which a parameter is fitted.
 enum class Transform {
@@ -53,7 +57,7 @@ inline double TransformSlope(Transform transform, double natural) {
 struct FittedParameter {
   Parameter parameter;
   Transform transform;
-  int deviation = -1;  // index in a subject's block, -1 when not pooled
+  int deviation = -1;  // index in a unit's block, -1 when not pooled
 };
 
 // d (a person's parameter) / d (a column of the recording's Jacobian).
@@ -66,7 +70,8 @@ struct ColumnEntry {
 struct ParameterMap {
   ParameterSet<double> values{};        // of the parameters that are not fitted
   std::vector<FittedParameter> fitted;  // in the order of the shared block
-  int num_deviations = 0;               // length of a subject's block; 0: no such blocks
+  int num_deviations = 0;               // length of a unit's block; 0: no such blocks
+  PoolBy pool_by = PoolBy::kSubject;
 
   int num_shared() const { return static_cast<int>(fitted.size()); }
 
@@ -83,7 +88,7 @@ struct ParameterMap {
     return set;
   }
 
-  // Entries of one person whose shared block starts at column 0 and whose subject's block starts at
+  // Entries of one person whose shared block starts at column 0 and whose unit's block starts at
   // `deviation_column` (negative: none).
   std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column) const {
     std::vector<ColumnEntry> entries;
@@ -101,17 +106,17 @@ struct ParameterMap {
 
 // How one recording's people hang on its parameter blocks.
 struct BlockLayout {
-  std::vector<std::string> subjects;  // distinct, in order of first appearance
-  std::vector<int> subject_of_person;
+  std::vector<std::string> units;  // distinct, in order of first appearance
+  std::vector<int> unit_of_person;
   bool free_initial_velocity = false;
   int num_shared = 0;
   int num_deviations = 0;
 
   BlockLayout() = default;
-  BlockLayout(const ParameterMap& map, const std::vector<std::string>& subject_of_each_person,
+  BlockLayout(const ParameterMap& map, const std::vector<std::string>& unit_of_each_person,
               bool free_velocity);
 
-  int num_people() const { return static_cast<int>(subject_of_person.size()); }
+  int num_people() const { return static_cast<int>(unit_of_person.size()); }
   std::vector<int> BlockSizes() const;
   int num_columns() const;
   // First column of a person's deviations; negative when there are none.
@@ -122,8 +127,8 @@ struct BlockLayout {
   template <typename T>
   std::vector<ParameterSet<T>> Parameters(const ParameterMap& map, T const* const* blocks) const {
     std::vector<ParameterSet<T>> sets;
-    for (int subject : subject_of_person) {
-      sets.push_back(map.Apply<T>(blocks[0], num_deviations > 0 ? blocks[1 + subject] : nullptr));
+    for (int unit : unit_of_person) {
+      sets.push_back(map.Apply<T>(blocks[0], num_deviations > 0 ? blocks[1 + unit] : nullptr));
     }
     return sets;
   }
@@ -133,7 +138,7 @@ struct BlockLayout {
     return free_initial_velocity ? blocks[num_blocks() - 1] : nullptr;
   }
   int num_blocks() const {
-    return 1 + (num_deviations > 0 ? static_cast<int>(subjects.size()) : 0) +
+    return 1 + (num_deviations > 0 ? static_cast<int>(units.size()) : 0) +
            (free_initial_velocity ? 1 : 0);
   }
 };

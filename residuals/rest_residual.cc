@@ -8,15 +8,16 @@
 namespace pushid {
 
 RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
-                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight) {
+                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
+                            const std::string& unit) {
   RestProblem problem;
   problem.scene = demonstration;
   problem.options = options;
   problem.map = map;
   // Nobody in particular: only the shared block.
-  problem.map.num_deviations = 0;
-  const std::vector<std::string> nobody(demonstration.people.size(), "demonstration");
-  problem.layout = BlockLayout(problem.map, nobody, false);
+  if (unit.empty()) problem.map.num_deviations = 0;
+  const std::vector<std::string> units(demonstration.people.size(), unit);
+  problem.layout = BlockLayout(problem.map, units, false);
   problem.sigmas = sigmas;
   problem.weight = weight;
   return problem;
@@ -29,8 +30,8 @@ RestProblem StabilityProblem(const PendulumRecording& recording, double factor, 
   problem.scene = ScalePushes(recording.scene, factor);
   problem.options = options;
   problem.map = map;
-  problem.layout =
-      BlockLayout(map, recording.subject_ids, recording.initial_velocity == InitialVelocity::kFree);
+  problem.layout = BlockLayout(map, PoolingUnits(recording, map.pool_by),
+                               recording.initial_velocity == InitialVelocity::kFree);
   problem.sigmas = sigmas;
   problem.weight = weight;
   problem.first_frame = recording.num_frames();

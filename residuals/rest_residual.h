@@ -33,9 +33,11 @@ struct RestProblem {
   int residuals_per_frame() const { return penalize_velocity ? 6 : 4; }
 };
 
-// A demonstration (models/scene.h); uses the shared parameters only.
+// A demonstration (models/scene.h) of people with the shared parameters, or with those of `unit`
+// (whose deviations are then the second block).
 RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
-                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight);
+                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
+                            const std::string& unit = "");
 
 // The recording rolled out `extra_frames` past its end, its push multiplied by `factor`.
 RestProblem StabilityProblem(const PendulumRecording& recording, double factor, int extra_frames,

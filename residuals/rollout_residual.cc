@@ -5,6 +5,11 @@
 
 namespace pushid {
 
+std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by) {
+  if (pool_by == PoolBy::kSubject) return recording.subject_ids;
+  return std::vector<std::string>(recording.scene.people.size(), recording.setting);
+}
+
 std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording& recording,
                                                          const ModelOptions& options,
                                                          const ParameterMap& map,
@@ -14,8 +19,8 @@ std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording
   problem->recording = &recording;
   problem->options = options;
   problem->map = map;
-  problem->layout =
-      BlockLayout(map, recording.subject_ids, recording.initial_velocity == InitialVelocity::kFree);
+  problem->layout = BlockLayout(map, PoolingUnits(recording, map.pool_by),
+                                recording.initial_velocity == InitialVelocity::kFree);
   problem->sigmas = sigmas;
   problem->weight = weight;
   const int frames = recording.num_frames();

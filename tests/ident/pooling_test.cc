@@ -1,6 +1,7 @@
 // Parameters by subject, tied to a shared value; initial velocities that are fitted.
 #include <gtest/gtest.h>
 
+#include "ident/evaluation.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -50,6 +51,48 @@ TEST(Pooling, SubjectsKeepTheirOwnAndShrinkTogether) {
     EXPECT_GE(rough.upper95, rough.value);
   }
   EXPECT_LT(last, 1.0);
+}
+
+// Two settings in which people touch at different distances: what two people share may differ by
+// setting, and every setting has its demonstrations.
+TEST(Pooling, SettingsKeepTheirOwnContact) {
+  SyntheticOptions study = TinyStudy();
+  study.joint_noise_m = 0.0;
+  study.subjects = study.people_in_row = 3;
+  study.frames = 60;
+  study.model.interaction.spring = study.model.interaction.damping = true;
+  study.parameters[kContactStiffness] = 2500.0, study.parameters[kContactKappa] = 0.5;
+  study.parameters[kContactDamping] = 200.0, study.parameters[kContactHeight] = 0.5;
+  std::vector<PendulumRecording> recordings;
+  for (double distance : {0.38, 0.46}) {
+    study.parameters[kContactDistance] = distance;
+    for (PendulumRecording& r : MakePendulums(study)) {
+      r.setting = distance < 0.4 ? "near" : "far";
+      recordings.push_back(r);
+    }
+  }
+  FitOptions options = UnbiasedFit(study);
+  FreeInteraction(study.model.interaction, &options.table);
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.pool_by = PoolBy::kSetting;
+  options.table[kContactDistance].pooled = true;
+  options.pooling_sigma = 10.0;
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.ok());
+  EXPECT_NEAR(result.settings.at("near").at("contact_distance").value, 0.38, 1e-3);
+  EXPECT_NEAR(result.settings.at("far").at("contact_distance").value, 0.46, 1e-3);
+  const IdentifiedModel model = ModelOf(result);
+  EXPECT_EQ(model.For("far")[kContactDistance],
+            result.settings.at("far").at("contact_distance").value);
+  EXPECT_NEAR(model.For("far")[kContactStiffness], 2500.0, 5.0);
+  EXPECT_NEAR(model.For("elsewhere")[kContactDistance], std::sqrt(0.38 * 0.46), 0.01);
+  EXPECT_LT(ScoreModel(model, recordings.front()).hip_ade, 1e-3);
+  EXPECT_LT(ScoreModel(model, recordings.back()).hip_ade, 1e-3);
+  int demonstrations = 0;
+  for (const Demonstration& d : result.behaviour.demonstrations) {
+    demonstrations += d.setting == "near";
+  }
+  EXPECT_EQ(demonstrations, 12);
 }
 
 TEST(FreeVelocity, StartsThatMoveAreRecovered) {

@@ -54,10 +54,10 @@ TEST(Prediction, ASubjectsOwnParameters) {
   const PendulumRecording recording = MakePendulums(study)[0];
   IdentifiedModel model = TruthOf(study);
   const auto shared = Predict(model, recording).hip[0].back();
-  model.by_subject["someone else"] = model.parameters;
-  model.by_subject["someone else"][kMu] = 300.0;
+  model.by_unit["someone else"] = model.parameters;
+  model.by_unit["someone else"][kMu] = 300.0;
   EXPECT_EQ(Predict(model, recording).hip[0].back(), shared);
-  model.by_subject[recording.subject_ids[0]] = model.by_subject["someone else"];
+  model.by_unit[recording.subject_ids[0]] = model.by_unit["someone else"];
   EXPECT_LT(Predict(model, recording).hip[0].back()[0], shared[0] - 0.01);
 }
 
@@ -65,11 +65,11 @@ TEST(Prediction, WhatIf) {
   const SyntheticOptions study = TinyStudy();
   const PendulumRecording recording = MakePendulums(study)[0];
   IdentifiedModel model = TruthOf(study);
-  model.by_subject["S01"] = model.parameters;
+  model.by_unit["S01"] = model.parameters;
   ASSERT_FALSE(SetValues("mu=200,Kp_phi=900", &model));
   EXPECT_EQ(model.parameters[kMu], 200.0);
-  EXPECT_EQ(model.by_subject["S01"][kMu], 200.0);
-  EXPECT_EQ(model.by_subject["S01"][kKpPhi], 900.0);
+  EXPECT_EQ(model.by_unit["S01"][kMu], 200.0);
+  EXPECT_EQ(model.by_unit["S01"][kKpPhi], 900.0);
   EXPECT_EQ(model.parameters[kAx], study.parameters[kAx]);
   const double rough = Predict(model, recording).hip[0].back()[0];
   ASSERT_FALSE(SetValues("mu=5", &model));

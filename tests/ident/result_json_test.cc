@@ -67,8 +67,8 @@ TEST(ResultJson, PredictionsNeedTheJsonAlone) {
   const FitResult read = FitResultFromJson(ToJson(result, kRun), "").value();
   const IdentifiedModel a = ModelOf(result), b = ModelOf(read);
   EXPECT_EQ(a.parameters, b.parameters);
-  EXPECT_EQ(a.by_subject, b.by_subject);
-  EXPECT_EQ(a.by_subject.size(), 2u);
+  EXPECT_EQ(a.by_unit, b.by_unit);
+  EXPECT_EQ(a.by_unit.size(), 2u);
 }
 
 TEST(ResultJson, SameSeedSameBytes) {

@@ -35,6 +35,16 @@ TEST(ModeResidual, JacobianAgainstNumericDifferentiation) {
   }
 }
 
+TEST(ModeResidual, OfAUnit) {
+  Random random(62);
+  const ParameterMap map = EveryParameterMap({kMu, kKpTheta, kBx});
+  const ModeResidual cost({}, kBody, map, 2.0, 10.0, true);
+  ASSERT_EQ(cost.parameter_block_sizes(), (std::vector<int>{kNumParameters, 3}));
+  ExpectCorrectJacobian(
+      cost, {SharedBlock(map, RandomRecoveringParameters(&random, 0.2)), {0.1, -0.2, 0.3}},
+      {1e-6, 1e-8, 1e-14});
+}
+
 TEST(ModeResidual, SilentWhereEveryModeDecays) {
   EXPECT_LT(Residuals(Steady(), 0.0).maxCoeff(), 0.01);
 }

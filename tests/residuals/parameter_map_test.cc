@@ -88,7 +88,7 @@ TEST(BlockLayout, PeopleOfTheSameSubjectShareABlock) {
   EXPECT_EQ(layout.BlockSizes(), (std::vector<int>{kNumParameters, 3, 3, 3, 16}));
   EXPECT_EQ(layout.num_blocks(), 5);
   EXPECT_EQ(layout.num_columns(), kNumParameters + 9 + 16);
-  EXPECT_EQ(layout.subjects, (std::vector<std::string>{"anna", "bert", "carl"}));
+  EXPECT_EQ(layout.units, (std::vector<std::string>{"anna", "bert", "carl"}));
   EXPECT_EQ(layout.DeviationColumn(0), kNumParameters);
   EXPECT_EQ(layout.DeviationColumn(1), kNumParameters + 3);
   EXPECT_EQ(layout.DeviationColumn(2), kNumParameters);
