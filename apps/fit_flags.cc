@@ -6,7 +6,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "ident/network_json.h"
 #include "ident/option_names.h"
+#include "ident/result_json.h"
 
 DEFINE_string(
     preset, "tail",
@@ -27,6 +29,12 @@ DEFINE_string(interaction, "none",
               "what people do to each other: none, or comma-separated terms: contact (smooth and "
               "mutual: spring,damping), ldp (potential,lean), ldp_discrete (to evaluate), drive "
               "(who was pushed by others steps on)");
+DEFINE_string(
+    interaction_network, "",
+    "JSON file of the network that --interaction=network evaluates (ident/network_json.h)");
+DEFINE_string(self_from, "",
+              "a model whose self parameters (all but those between people) are taken over and "
+              "held, as of single people");
 DEFINE_string(mapping, "exact", "skeleton to pendulum: exact, or ldp for comparison");
 
 DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
@@ -160,6 +168,33 @@ void FixWhatDoesNotAct(const ModelOptions& model, ParameterTable* table) {
   }
 }
 
+MaybeError ReadNetwork(ModelOptions* model) {
+  if (!model->interaction.network && FLAGS_interaction_network.empty()) return std::nullopt;
+  if (!model->interaction.network) {
+    return Error{"--interaction_network is given, but --interaction does not name network"};
+  }
+  if (FLAGS_interaction_network.empty()) {
+    return Error{"--interaction names network: --interaction_network must name its JSON file"};
+  }
+  const auto network = ReadInteractionNetwork(FLAGS_interaction_network);
+  if (!network.ok()) return network.error();
+  model->interaction_network = network.value();
+  return std::nullopt;
+}
+
+// Takes over what a person does alone; the terms between people stay as they are.
+MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
+  if (path.empty()) return std::nullopt;
+  const Result<FitResult> source = ReadFitResult(path);
+  if (!source.ok()) return source.error();
+  for (ParameterSpec& spec : table->specs) {
+    if (spec.id >= kFirstPairParameter) continue;
+    spec.nominal = source.value().parameters[spec.id];
+    spec.free = false;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<FitOptions> FitOptionsFromFlags() {
@@ -184,7 +219,9 @@ Result<FitOptions> FitOptionsFromFlags() {
   if (!FLAGS_preset_priors) {
     for (ParameterSpec& spec : o.table.specs) spec.prior.reset();
   }
+  if (MaybeError error = ReadNetwork(&o.model)) return *error;
   FixWhatDoesNotAct(o.model, &o.table);
+  if (MaybeError error = TakeSelfFrom(FLAGS_self_from, &o.table)) return *error;
   TableEdits edits;
   edits.fix = FLAGS_fix;
   edits.free = FLAGS_free;

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "datasets/json_file.h"
+#include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
 
@@ -225,6 +226,9 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     const Preset known = MakePreset("tail").value();
     result.options = OptionsFrom(at("model"));
     result.options.table = TableFrom(at("table"), known.table);
+    if (const Json& network = at("interaction_network"); !network.is_null()) {
+      result.options.model.interaction_network = InteractionNetworkFromJson(network);
+    }
     result.version = at("version");
     for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
     for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));

@@ -1,6 +1,7 @@
 // ident: FitResult to JSON. model_json_reader.cc is the inverse.
 #include <cmath>
 
+#include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
 
@@ -170,6 +171,7 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
 }
 
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
+  const auto& network = result.options.model.interaction_network;
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), settings = Json::object(), values = Json::object();
   for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
@@ -197,6 +199,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
           {"model", OptionsJson(result.options)},
           {"parameters", EstimatesJson(result.estimates)},
           {"derived", derived},
+          {"interaction_network", network ? ToJson(*network) : Json()},
           {"nuisance", EstimatesJson(result.nuisance)},
           {"subjects", subjects},
           {"settings", settings},

@@ -92,6 +92,7 @@ const TermNames& Terms() {
                                   {"potential", &InteractionTerms::potential},
                                   {"lean", &InteractionTerms::lean},
                                   {"ldp_discrete", &InteractionTerms::ldp_discrete},
+                                  {"network", &InteractionTerms::network},
                                   {"drive", &InteractionTerms::drive}};
   return names;
 }
@@ -121,7 +122,7 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
       if (found == Terms().end()) {
         return Error{flag + " names '" + part +
                      "'; it must be none, or some of contact (spring,damping), ldp "
-                     "(potential,lean), spring, damping, potential, lean, ldp_discrete, drive"};
+                     "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, drive"};
       }
       terms->*(found->second) = true;
     }

@@ -178,8 +178,7 @@ void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
 
 bool Acts(Parameter id, const ModelOptions& model) {
   const InteractionTerms& terms = model.interaction;
-  const bool ldp = terms.potential || terms.lean || terms.ldp_discrete;
-  switch (id) {
+    switch (id) {
     case kMuY:
       return model.friction == FrictionKind::kAnisotropic;
     case kKdX:
@@ -205,7 +204,7 @@ bool Acts(Parameter id, const ModelOptions& model) {
     case kLeanPhi:
       return terms.lean || terms.ldp_discrete;
     case kNeighbourRange:
-      return ldp;
+      return terms.AtCarts();
     case kDriveGain:
     case kDriveTorque:
     case kDriveTime:

@@ -3,6 +3,7 @@
 
 #include "models/contact.h"
 #include "models/ldp_interaction.h"
+#include "models/network_interaction.h"
 #include "models/options.h"
 #include "models/pair.h"
 
@@ -10,7 +11,7 @@ namespace pushid {
 
 // Calls visit(term) for every term of the model that acts between two people.
 template <typename Visit>
-void ForEachTerm(const InteractionTerms& terms, Visit&& visit) {
+void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* network, Visit&& visit) {
   if (terms.spring && terms.damping) {
     visit(ContactTerm<true, true>{});
   } else if (terms.spring) {
@@ -21,14 +22,15 @@ void ForEachTerm(const InteractionTerms& terms, Visit&& visit) {
   if (terms.potential) visit(PotentialTerm{});
   if (terms.lean) visit(LeanTerm{});
   if (terms.ldp_discrete) visit(LdpDiscreteTerm{});
+  if (terms.network && network != nullptr) visit(NetworkTerm{network});
 }
 
 template <typename T>
-PairForce<T> InteractionBetween(const InteractionTerms& terms, const Pair& pair,
-                                const ParameterSet<T>& p, const PendulumState<T>& n,
-                                const PendulumState<T>& j) {
+PairForce<T> InteractionBetween(const InteractionTerms& terms, const InteractionNetwork* network,
+                                const Pair& pair, const ParameterSet<T>& p,
+                                const PendulumState<T>& n, const PendulumState<T>& j) {
   PairForce<T> force;
-  ForEachTerm(terms, [&](auto term) { term.Add(pair, p, n, j, &force); });
+  ForEachTerm(terms, network, [&](auto term) { term.Add(pair, p, n, j, &force); });
   return force;
 }
 

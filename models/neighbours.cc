@@ -14,10 +14,9 @@ Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterS
     const double d = p[kContactDistance];
     reach = {d + 2.0 * lean, d / p[kContactKappa] + 2.0 * lean};
   }
-  if (terms.potential || terms.lean) {
+  if (terms.AtCarts()) {
     reach = reach.cwiseMax(Eigen::Vector2d::Constant(SmoothLdpReach(p)));
   }
-  if (terms.ldp_discrete) reach = reach.cwiseMax(Eigen::Vector2d::Constant(p[kNeighbourRange]));
   return reach;
 }
 

@@ -131,7 +131,7 @@ class PairFinder {
       const Eigen::Vector2d r = point_[n] - point_[j];
       if (r[0] * r[0] + kappa * kappa * r[1] * r[1] < d * d) return true;
     }
-    if (!terms_.potential && !terms_.lean && !terms_.ldp_discrete) return false;
+    if (!terms_.AtCarts()) return false;
     const double reach = SmoothLdpReach(parameters_);
     return (cart_[n] - cart_[j]).squaredNorm() <= reach * reach;
   }

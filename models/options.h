@@ -1,6 +1,8 @@
 // models: the choices that turn the general equations into one particular model. Plain data.
 #pragma once
 
+#include <memory>
+
 namespace pushid {
 
 // What the balance error is measured from.
@@ -41,11 +43,16 @@ struct InteractionTerms {
   bool potential = false;     // LDP's repulsive potential, smoothed
   bool lean = false;          // LDP's torques against leaning on each other, smoothed
   bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
+  bool network = false;       // a learned force (network_interaction.h)
   bool drive = false;         // whoever was pushed by others steps on for a while (drive.h)
 
   bool Contact() const { return spring || damping; }
-  bool Any() const { return Contact() || potential || lean || ldp_discrete; }
+  bool Any() const { return Contact() || AtCarts(); }
+  // Those that ask how far the carts are apart.
+  bool AtCarts() const { return potential || lean || ldp_discrete || network; }
 };
+
+struct InteractionNetwork;
 
 struct ModelOptions {
   Posture posture = Posture::kInitial;
@@ -55,6 +62,7 @@ struct ModelOptions {
   PushTail push_tail = PushTail::kExponential;
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
+  std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term
 };
 
 }  // namespace pushid

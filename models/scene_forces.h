@@ -119,8 +119,8 @@ class SceneForces {
   }
 
   PairForce<T> Between(int n, int j) const {
-    return InteractionBetween(options_->interaction, PairOf(*scene_, n, j), Parameters(0),
-                              states_[n], states_[j]);
+    return InteractionBetween(options_->interaction, options_->interaction_network.get(),
+                              PairOf(*scene_, n, j), Parameters(0), states_[n], states_[j]);
   }
 
   // The parts of the net force; qd_previous: the velocity one frame earlier.

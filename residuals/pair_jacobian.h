@@ -17,8 +17,8 @@ struct PairJacobian {
   Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on
 };
 
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
-                                 const ParameterSet<double>& p, const PendulumState<double>& n,
-                                 const PendulumState<double>& j);
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
+                                 const Pair& pair, const ParameterSet<double>& p,
+                                 const PendulumState<double>& n, const PendulumState<double>& j);
 
 }  // namespace pushid

@@ -71,9 +71,9 @@ class ReceivedSensitivities {
     for (Columns& columns : now_) columns.setZero();
     forces->pairs().ForEachPair([&](int n, int j) {
       if (!forces->Between(n, j).acts) return;
-      const PairJacobian jacobian =
-          ComputePairJacobian(options_.interaction, PairOf(scene_, n, j), forces->Parameters(0),
-                              path.At(frame, n), path.At(frame, j));
+      const PairJacobian jacobian = ComputePairJacobian(
+          options_.interaction, options_.interaction_network.get(), PairOf(scene_, n, j),
+          forces->Parameters(0), path.At(frame, n), path.At(frame, j));
       for (int side = 0; side < 2; ++side) {
         Columns& target = now_[side == 0 ? n : j];
         target += jacobian.by_states.block<4, 8>(4 * side, 0) * sensitivities.At(frame, n);
