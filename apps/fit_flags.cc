@@ -12,10 +12,11 @@
 
 DEFINE_string(
     preset, "tail",
-    "the single-person model: tail (push tail, posture-relative recovery) or ldp (plain PD "
-    "and friction from upright)");
-DEFINE_string(self_force, "none",
-              "what is fitted on top: none, or linear (cross terms, quadratic)");
+    "the model: tail (push tail, posture-relative recovery), ldp (plain PD and friction from "
+    "upright), or group (tail with linear self forces and contact, pooled by setting)");
+DEFINE_string(self_force, "",
+              "what is fitted on top: none, or linear (cross terms, quadratic) (default: the "
+              "preset's)");
 DEFINE_string(posture, "",
               "balance error measured from: upright or initial (default: the preset's)");
 DEFINE_string(gain_scaling, "",
@@ -25,10 +26,10 @@ DEFINE_string(friction, "", "isotropic or anisotropic (default: the preset's)");
 DEFINE_string(push, "", "as_recorded (honour push_kind) or added (default: the preset's)");
 DEFINE_string(push_tail, "", "none or exponential (default: the preset's)");
 DEFINE_string(cart_derivative, "none", "none or backward: lets Kd_x and Kd_y act");
-DEFINE_string(interaction, "none",
+DEFINE_string(interaction, "",
               "what people do to each other: none, or comma-separated terms: contact (smooth and "
               "mutual: spring,damping), ldp (potential,lean), ldp_discrete (to evaluate), drive "
-              "(who was pushed by others steps on)");
+              "(who was pushed by others steps on) (default: the preset's)");
 DEFINE_string(
     interaction_network, "",
     "JSON file of the network that --interaction=network evaluates (ident/network_json.h)");
@@ -41,11 +42,14 @@ DEFINE_string(fix, "", "parameters held: name or name=value, comma-separated");
 DEFINE_string(free, "", "parameters fitted: name or name=start, comma-separated");
 DEFINE_string(prior, "", "priors: name:mean:sigma in the parameter's unit, comma-separated");
 DEFINE_bool(preset_priors, true, "keep the preset's weak priors");
-DEFINE_string(pool, "", "parameters that may differ by unit, comma-separated, or all");
-DEFINE_string(pool_by, "subject", "the unit they may differ by: subject or setting");
-DEFINE_double(pooling_sigma, 0.2,
+DEFINE_string(pool, "",
+              "parameters that may differ by unit, comma-separated, or all, or none (default: the "
+              "preset's)");
+DEFINE_string(pool_by, "",
+              "the unit they may differ by: subject or setting (default: the preset's)");
+DEFINE_double(pooling_sigma, -1.0,
               "how far a unit may deviate from the shared value (standard deviation on the fitted "
-              "scale; 0.2 is about 20 % for a positive parameter)");
+              "scale; 0.2 is about 20 % for a positive parameter) (default: the preset's)");
 
 DEFINE_double(sigma_hip, 0.1, "standard deviation of the hip's position, m");
 DEFINE_double(sigma_velocity, 1.0, "standard deviation of the cart's velocity, m/s");
@@ -73,7 +77,8 @@ DEFINE_double(start_spread, 5.0, "random starts multiply every gain by up to thi
 DEFINE_uint64(seed, 1, "seed of everything random");
 DEFINE_int32(num_threads, 1, "threads");
 DEFINE_int32(max_iterations, 200, "iterations of each stage");
-DEFINE_double(function_tolerance, 1e-10, "relative change of the cost that ends a stage");
+DEFINE_double(function_tolerance, -1.0,
+              "relative change of the cost that ends a stage (default: the preset's)");
 DEFINE_double(gradient_tolerance, 1e-12, "gradient that ends a stage");
 DEFINE_double(parameter_tolerance, 1e-9, "relative step that ends a stage");
 
@@ -140,18 +145,22 @@ MaybeError CheckNumbers() {
                            CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
                            CheckPositive("sigma_angle", FLAGS_sigma_angle),
                            CheckPositive("sigma_rate", FLAGS_sigma_rate),
-                           CheckPositive("pooling_sigma", FLAGS_pooling_sigma),
                            CheckPositive("num_threads", FLAGS_num_threads),
                            CheckPositive("max_iterations", FLAGS_max_iterations),
                            CheckNotNegative("robust", FLAGS_robust),
                            CheckNotNegative("stability_weight", FLAGS_stability_weight),
                            CheckPositive("starts", FLAGS_starts),
-                           CheckNotNegative("function_tolerance", FLAGS_function_tolerance),
                            CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
                            CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
     if (error) return error;
   }
-  // Below zero stands for the default weight.
+  // Below zero stands for the preset's value.
+  if (!std::isfinite(FLAGS_pooling_sigma) || FLAGS_pooling_sigma == 0.0) {
+    return Error{"--pooling_sigma must be positive"};
+  }
+  if (!std::isfinite(FLAGS_function_tolerance)) {
+    return Error{"--function_tolerance must be a number of at least 0"};
+  }
   if (!std::isfinite(FLAGS_mode_weight)) return Error{"--mode_weight must be a number"};
   if (!std::isfinite(FLAGS_mode_margin)) return Error{"--mode_margin must be a number"};
   if (!std::isfinite(FLAGS_settling_weight)) return Error{"--settling_weight must be a number"};
@@ -204,6 +213,8 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.preset = FLAGS_preset;
   o.model = preset.value().model;
   o.table = preset.value().table;
+  o.self_force = preset.value().self_force;
+  o.pool_by = preset.value().pool_by;
   o.settling_weight =
       FLAGS_settling_weight >= 0.0 ? FLAGS_settling_weight : preset.value().settling_weight;
   o.stability_weight = FLAGS_stability_weight;
@@ -226,20 +237,21 @@ Result<FitOptions> FitOptionsFromFlags() {
   edits.fix = FLAGS_fix;
   edits.free = FLAGS_free;
   edits.prior = FLAGS_prior;
-  edits.pool = FLAGS_pool;
+  edits.pool = FLAGS_pool.empty() ? preset.value().pool : FLAGS_pool;
   edits.pool_by = o.pool_by;
   if (MaybeError error = EditTable(edits, &o.table)) return *error;
   if (o.table.Free().empty()) return Error{"every parameter is fixed: nothing is left to fit"};
 
   o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
               FLAGS_robust};
-  o.pooling_sigma = FLAGS_pooling_sigma;
+  o.pooling_sigma = FLAGS_pooling_sigma > 0.0 ? FLAGS_pooling_sigma : preset.value().pooling_sigma;
   o.num_starts = FLAGS_starts;
   o.start_spread = FLAGS_start_spread;
   o.seed = FLAGS_seed;
   o.num_threads = FLAGS_num_threads;
   o.max_iterations = FLAGS_max_iterations;
-  o.function_tolerance = FLAGS_function_tolerance;
+  o.function_tolerance = FLAGS_function_tolerance >= 0.0 ? FLAGS_function_tolerance
+                                                         : preset.value().function_tolerance;
   o.gradient_tolerance = FLAGS_gradient_tolerance;
   o.parameter_tolerance = FLAGS_parameter_tolerance;
   return o;

@@ -226,7 +226,8 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     const Preset known = MakePreset("tail").value();
     result.options = OptionsFrom(at("model"));
     result.options.table = TableFrom(at("table"), known.table);
-    if (const Json& network = at("interaction_network"); !network.is_null()) {
+    if (json.contains("interaction_network")) {
+      const Json& network = at("interaction_network");
       result.options.model.interaction_network = InteractionNetworkFromJson(network);
     }
     result.version = at("version");

@@ -171,7 +171,6 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
 }
 
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
-  const auto& network = result.options.model.interaction_network;
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), settings = Json::object(), values = Json::object();
   for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
@@ -193,40 +192,43 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                           {"failure", r.failure},
                           {"content_hash", r.content_hash}});
   }
-  return {{"format", "pushid model"},
-          {"format_version", kModelFormat},
-          {"version", result.version},
-          {"model", OptionsJson(result.options)},
-          {"parameters", EstimatesJson(result.estimates)},
-          {"derived", derived},
-          {"interaction_network", network ? ToJson(*network) : Json()},
-          {"nuisance", EstimatesJson(result.nuisance)},
-          {"subjects", subjects},
-          {"settings", settings},
-          {"values", values},
-          {"behaviour", ToJson(result.behaviour)},
-          {"uncertainty", UncertaintyJson(result.uncertainty)},
-          {"warnings", result.warnings},
-          {"fit",
-           {{"converged", result.converged},
-            {"cost", result.cost},
-            {"message", result.message},
-            {"best_start", result.best_start},
-            {"starts", StartsJson(result)}}},
-          {"table", TableJson(result.options.table)},
-          {"data",
-           {{"manifest_hash", result.manifest_hash},
-            {"setting", result.setting},
-            {"recordings", recordings}}},
-          {"configuration", result.configuration},
-          {"run",
-           {{"date", run.date},
-            {"host", run.host},
-            {"manifest", result.manifest},
-            {"model_out", run.model_path},
-            {"solve_seconds", result.solve_seconds},
-            {"total_seconds", run.total_seconds},
-            {"num_threads", run.num_threads}}}};
+  Json json = {{"format", "pushid model"},
+               {"format_version", kModelFormat},
+               {"version", result.version},
+               {"model", OptionsJson(result.options)},
+               {"parameters", EstimatesJson(result.estimates)},
+               {"derived", derived},
+               {"nuisance", EstimatesJson(result.nuisance)},
+               {"subjects", subjects},
+               {"settings", settings},
+               {"values", values},
+               {"behaviour", ToJson(result.behaviour)},
+               {"uncertainty", UncertaintyJson(result.uncertainty)},
+               {"warnings", result.warnings},
+               {"fit",
+                {{"converged", result.converged},
+                 {"cost", result.cost},
+                 {"message", result.message},
+                 {"best_start", result.best_start},
+                 {"starts", StartsJson(result)}}},
+               {"table", TableJson(result.options.table)},
+               {"data",
+                {{"manifest_hash", result.manifest_hash},
+                 {"setting", result.setting},
+                 {"recordings", recordings}}},
+               {"configuration", result.configuration},
+               {"run",
+                {{"date", run.date},
+                 {"host", run.host},
+                 {"manifest", result.manifest},
+                 {"model_out", run.model_path},
+                 {"solve_seconds", result.solve_seconds},
+                 {"total_seconds", run.total_seconds},
+                 {"num_threads", run.num_threads}}}};
+  if (const auto& network = result.options.model.interaction_network) {
+    json["interaction_network"] = ToJson(*network);
+  }
+  return json;
 }
 
 }  // namespace pushid

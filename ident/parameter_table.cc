@@ -90,6 +90,20 @@ Preset TailPreset() {
   return preset;
 }
 
+Preset GroupPreset() {
+  Preset preset = TailPreset();
+  preset.name = "group";
+  preset.model.interaction.spring = preset.model.interaction.damping = true;
+  preset.self_force = SelfForceKind::kLinear;
+  preset.settling_weight = 20.0;
+  preset.pool = "all";
+  preset.pool_by = PoolBy::kSetting;
+  preset.pooling_sigma = 0.3;
+  // The last iterations move nothing by a hundredth of its error.
+  preset.function_tolerance = 1e-6;
+  return preset;
+}
+
 Preset LdpPreset() {
   Preset preset;
   preset.name = "ldp";
@@ -147,7 +161,8 @@ ParameterMap ParameterTable::Map() const {
 Result<Preset> MakePreset(const std::string& name) {
   if (name == "tail") return TailPreset();
   if (name == "ldp") return LdpPreset();
-  return Error{"--preset is '" + name + "'; it must be tail or ldp"};
+  if (name == "group") return GroupPreset();
+  return Error{"--preset is '" + name + "'; it must be tail, ldp or group"};
 }
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
@@ -178,7 +193,7 @@ void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
 
 bool Acts(Parameter id, const ModelOptions& model) {
   const InteractionTerms& terms = model.interaction;
-    switch (id) {
+  switch (id) {
     case kMuY:
       return model.friction == FrictionKind::kAnisotropic;
     case kKdX:

@@ -51,15 +51,23 @@ struct ParameterTable {
   ParameterMap Map() const;             // fitted = free, in table order
 };
 
-// Settings of the two single-person models (DESIGN section 3).
-//   tail: push tail, posture-relative recovery, one cross term; seven free parameters
-//   ldp:  plain PD balance and friction from upright; six free parameters
+// Settings of the models (DESIGN section 3).
+//   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
+//   ldp:   one person: plain PD balance and friction from upright; six free parameters
+//   group: people who touch: tail with all linear self forces and contact, every parameter
+//          partially pooled by setting; eighteen shared parameters
 struct Preset {
   std::string name;
   ModelOptions model;
   ParameterTable table;
+  SelfForceKind self_force = SelfForceKind::kNone;
   double settling_weight = 0.0;
+  std::string pool;  // as --pool
+  PoolBy pool_by = PoolBy::kSubject;
+  double pooling_sigma = 0.2;
+  double function_tolerance = 1e-10;
 };
+// Errors: no such preset.
 Result<Preset> MakePreset(const std::string& name);
 
 // Frees the terms of a self force, where the model's options let them act.
@@ -76,7 +84,7 @@ bool Acts(Parameter id, const ModelOptions& model);
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value
 //   prior: name:mean:sigma         set:  name=value (also of a fixed one)
-//   pool:  names, or all
+//   pool:  names, or all, or none
 struct TableEdits {
   std::string fix, free, prior, set, pool;
   PoolBy pool_by = PoolBy::kSubject;

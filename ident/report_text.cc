@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "ident/option_names.h"
+#include "ident/starts_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {
@@ -74,6 +75,7 @@ std::string CorrelationText(const FitResult& result) {
   for (int i = 0; i < u.correlation.rows(); ++i) {
     for (int j = i + 1; j < u.correlation.cols(); ++j) {
       if (std::abs(u.correlation(i, j)) < 0.9) continue;
+      if (u.estimates[j].name.find('[') != std::string::npos) continue;  // a unit's deviation
       text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
               Significant(u.correlation(i, j), 2) + "\n";
     }
@@ -170,12 +172,14 @@ std::string ReportText(const FitResult& result) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
   text += CorrelationText(result);
-  text += PooledText(result);
+  const std::string pooled = PooledText(result);
+  text += (pooled.empty() ? "" : "\n") + pooled;
   text += BehaviourText(result) + "\n";
   text += "cost " + Significant(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   return text;
 }

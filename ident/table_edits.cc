@@ -118,6 +118,7 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   if (MaybeError error = Assign(edits.fix, "--fix", false, false, table)) return error;
   if (MaybeError error = AddPriors(edits.prior, table)) return error;
   for (const std::string& name : Split(edits.pool, ',')) {
+    if (name == "none") continue;
     if (name == "all") {
       for (ParameterSpec& spec : table->specs) spec.pooled = spec.free;
       continue;

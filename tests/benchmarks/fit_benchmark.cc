@@ -65,13 +65,21 @@ BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
 
 FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
-  FitOptions options = OptionsOf("tail");
+  FitOptions options = OptionsOf("group");
   options.self_force = self_force;
-  options.model.interaction.spring = options.model.interaction.damping = true;
   options.model.interaction.drive = drive;
   FreeSelfForce(self_force, &options.table);
   FreeInteraction(options.model.interaction, &options.table);
+  options.function_tolerance = MakePreset("group").value().function_tolerance;
   if (self_force == SelfForceKind::kLinear) options.mode_weight = 30.0;
+  return options;
+}
+
+FitOptions PooledOptions() {
+  FitOptions options = GroupOptions(SelfForceKind::kLinear, false);
+  options.pool_by = PoolBy::kSetting;
+  options.pooling_sigma = 0.3;
+  for (ParameterSpec& spec : options.table.specs) spec.pooled = spec.free;
   return options;
 }
 
@@ -110,8 +118,7 @@ BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, SelfForceKind::kLinear, fal
 BENCHMARK_CAPTURE(GroupJacobian, linear_contact_drive, SelfForceKind::kLinear, true)
     ->Unit(benchmark::kMillisecond);
 
-void GroupSolve(benchmark::State& state, SelfForceKind self_force) {
-  const FitOptions options = GroupOptions(self_force, false);
+void GroupSolve(benchmark::State& state, const FitOptions& options) {
   const FitProblem problem(Groups().recordings, options);
   Solution solution;
   for (auto _ : state) solution = Solve(problem);
@@ -124,8 +131,12 @@ void GroupSolve(benchmark::State& state, SelfForceKind self_force) {
   state.counters["cost"] = solution.Best().cost;
   state.counters["iterations"] = solution.Best().iterations;
 }
-BENCHMARK_CAPTURE(GroupSolve, contact, SelfForceKind::kNone)->Unit(benchmark::kSecond);
-BENCHMARK_CAPTURE(GroupSolve, linear_and_contact, SelfForceKind::kLinear)->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(GroupSolve, contact, GroupOptions(SelfForceKind::kNone, false))
+    ->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(GroupSolve, linear_and_contact, GroupOptions(SelfForceKind::kLinear, false))
+    ->Unit(benchmark::kSecond);
+
+BENCHMARK_CAPTURE(GroupSolve, group_preset, PooledOptions())->Unit(benchmark::kSecond);
 
 }  // namespace
 }  // namespace pushid

@@ -178,7 +178,8 @@ inline std::vector<ModelOptions> EveryModelOptions() {
           for (PushTail tail : {PushTail::kNone, PushTail::kExponential})
             for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
               for (const InteractionTerms& interaction : SomeInteractions())
-                all.push_back({posture, scaling, friction, use, tail, derivative, interaction, nullptr});
+                all.push_back(
+                    {posture, scaling, friction, use, tail, derivative, interaction, nullptr});
   return all;
 }
 

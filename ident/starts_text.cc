@@ -1,0 +1,46 @@
+// ident: the spread of a multi-start.
+#include "ident/starts_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/report_text.h"
+#include "ident/text_table.h"
+
+namespace pushid {
+
+std::string AcrossStartsText(const FitResult& result) {
+  std::vector<const SolveStart*> as_good;
+  double worst = result.cost;
+  for (const SolveStart& start : result.starts) {
+    if (!start.usable || !start.failed.empty()) continue;
+    worst = std::max(worst, start.cost);
+    if (start.cost <= (1.0 + kSameCost) * result.cost) as_good.push_back(&start);
+  }
+  if (result.starts.size() < 2) return "";
+  std::string text = std::to_string(as_good.size()) + " of " +
+                     std::to_string(result.starts.size()) +
+                     " starts end within 1 % of the lowest cost, " + Significant(result.cost, 6) +
+                     "; the highest is " + Significant(worst, 6) + "\n";
+  TextTable table({"across these starts", "lowest", "highest", "unit", "in standard errors"},
+                  {true, false, false, true, false});
+  size_t index = 0;
+  for (Parameter id : result.options.table.Free()) {
+    const ParameterSpec& spec = result.options.table[id];
+    double low = INFINITY, high = -INFINITY;
+    for (const SolveStart* start : as_good) {
+      const double value = ToNatural(spec.transform, start->to.shared[index]);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
+                                       [&spec](const Estimate& e) { return e.name == spec.name; });
+    const bool known = estimate != result.estimates.end() && estimate->standard_error > 0.0;
+    table.Add({spec.name, Significant(low), Significant(high), spec.unit,
+               known ? Significant((high - low) / estimate->standard_error, 2) : "-"});
+    ++index;
+  }
+  return as_good.empty() ? text : text + table.ToString();
+}
+
+}  // namespace pushid
