@@ -32,7 +32,8 @@ TEST(Presets, FreeWhatTheyPromise) {
   EXPECT_GT(tail.settling_weight, 0.0);
   const Result<Preset> wrong = MakePreset("tial");
   ASSERT_FALSE(wrong.ok());
-  EXPECT_TRUE(Contains(wrong.error().ToString(), "--preset is 'tial'; it must be tail or ldp"));
+  EXPECT_TRUE(
+      Contains(wrong.error().ToString(), "--preset is 'tial'; it must be tail, ldp or group"));
 }
 
 TEST(Presets, EveryRowIsSound) {
