@@ -22,6 +22,10 @@ DEFINE_string(svg_out, "",
               "formation: picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
 
+DEFINE_string(as_setting, "",
+              "formation: with the parameters of this setting, where the model has them by setting "
+              "(default: the shared ones)");
+
 namespace pushid {
 namespace {
 
@@ -112,6 +116,22 @@ int LeftDomain(const RolloutStatus& status) {
   return kFitFailed;
 }
 
+// Takes the parameters of the named setting for everybody.
+MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
+  if (setting.empty()) return std::nullopt;
+  const auto found = model->by_unit.find(setting);
+  if (model->pool_by == PoolBy::kSetting && found != model->by_unit.end()) {
+    model->parameters = found->second;
+    return std::nullopt;
+  }
+  std::string known;
+  if (model->pool_by == PoolBy::kSetting) {
+    for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
+  }
+  return Error{"--as_setting names '" + setting + "'; " + FLAGS_model + " knows " +
+               (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
+}
+
 }  // namespace
 
 int SimulateFormation() {
@@ -128,8 +148,9 @@ int SimulateFormation() {
   }
   const Result<FormationPlan> plan = PlanOfFlags();
   if (!plan.ok()) return Fail(plan.error());
-  const Result<IdentifiedModel> model = LoadFlaggedModel();
+  Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
+  if (MaybeError error = ActAsIn(FLAGS_as_setting, &model.value())) return Fail(*error);
   if (MaybeError error = CheckOutputs(plan.value().scene.num_people())) return Fail(*error);
   if (!model.value().options.interaction.Any() && plan.value().scene.num_people() > 1) {
     Warn(FLAGS_model +

@@ -30,16 +30,22 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
-// So many columns or fewer are few.
-constexpr int kFewColumns = 50;
+// QR keeps weak directions accurate, and is twice the work of normal equations: up to so many
+// multiplications nobody notices.
+constexpr double kQrWork = 2e7;
+// More columns than these are those of units (subjects, settings), of which a recording has few:
+// sparse normal equations cost a tenth then, and every unit's column has its prior.
+constexpr int kDenseColumns = 50;
 
-ceres::Solver::Options SolverOptions(const FitOptions& options, int num_columns) {
+ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
+  const double columns = problem.NumParameters(), rows = problem.NumResiduals();
+  if (columns > kDenseColumns) return ceres::SPARSE_NORMAL_CHOLESKY;
+  return rows * columns * columns > kQrWork ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
+}
+
+ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  // QR keeps weak directions accurate. Many columns are those of units (subjects, settings), of
-  // which a recording has few: sparse normal equations cost a tenth then, and every unit's column
-  // has its prior.
-  solver.linear_solver_type =
-      num_columns <= kFewColumns ? ceres::DENSE_QR : ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.linear_solver_type = LinearSolverFor(problem);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -86,7 +92,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
       FitProblem::Built built = problem.Build(&start.to, horizons[i]);
-      ceres::Solver::Options solver = SolverOptions(options, built.problem->NumParameters());
+      ceres::Solver::Options solver = SolverOptions(options, *built.problem);
       // Stages on the way need not be exact.
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
@@ -112,7 +118,7 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
   FitPoint point = nominal;
   FitProblem::Built built = problem.BuildEquationError(&point);
   std::string message;
-  RunStage(&built, SolverOptions(problem.options(), built.problem->NumParameters()), 0, &message);
+  RunStage(&built, SolverOptions(problem.options(), *built.problem), 0, &message);
   for (size_t i = 0; i < point.shared.size(); ++i) {
     const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
     const double reach = spec.transform == Transform::kIdentity

@@ -117,23 +117,24 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   if (MaybeError error = Assign(edits.free, "--free", true, false, table)) return error;
   if (MaybeError error = Assign(edits.fix, "--fix", false, false, table)) return error;
   if (MaybeError error = AddPriors(edits.prior, table)) return error;
+  const auto may_differ = [&edits](const ParameterSpec& spec) {
+    return edits.pool_by == PoolBy::kSetting || !IsPairParameter(spec.id);
+  };
   for (const std::string& name : Split(edits.pool, ',')) {
     if (name == "none") continue;
     if (name == "all") {
-      for (ParameterSpec& spec : table->specs) spec.pooled = spec.free;
+      for (ParameterSpec& spec : table->specs) spec.pooled = spec.free && may_differ(spec);
       continue;
     }
     ParameterSpec* spec = table->Find(name);
     if (spec == nullptr) return UnknownName(name, "--pool", *table);
     if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
-    spec->pooled = true;
-  }
-  for (const ParameterSpec& spec : table->specs) {
-    if (spec.pooled && edits.pool_by == PoolBy::kSubject && IsPairParameter(spec.id)) {
-      return Error{"--pool names " + spec.name +
+    if (!may_differ(*spec)) {
+      return Error{"--pool names " + spec->name +
                    ", which two people share: it may differ by setting (--pool_by=setting), not by "
                    "subject"};
     }
+    spec->pooled = true;
   }
   return std::nullopt;
 }

@@ -75,6 +75,11 @@ TEST(Prediction, WhatIf) {
   ASSERT_FALSE(SetValues("mu=5", &model));
   EXPECT_GT(Predict(model, recording).hip[0].back()[0], rough);
 
+  // What differs by setting can be set too.
+  model.table[kContactDistance].free = model.table[kContactDistance].pooled = true;
+  EXPECT_FALSE(SetValues("mu=6,contact_distance=0.5", &model));
+  EXPECT_EQ(model.by_unit["S01"][kContactDistance], 0.5);
+
   const ParameterSet<double> before = model.parameters;
   for (const char* bad : {"nu=3", "mu", "mu=abc", "Kp_theta=-10", "mu=7,Kp_theta=1e9"}) {
     const MaybeError error = SetValues(bad, &model);
