@@ -26,7 +26,7 @@ void DrawLabels(std::vector<Label> labels, SvgPicture* svg) {
   double free = kTop;
   for (const Label& label : labels) {
     const double y = std::max(free, label.y);
-    svg->Line(label.x + 6, label.y, kRight + 8, y, "faint");
+    svg->Line(label.x + 6, label.y, kRight + 8, y, "stroke:#999999;stroke-width:0.5");
     svg->Text(kRight + 12, y + 4, label.text, "ink small");
     free = y + kLabelStep;
   }
