@@ -3,11 +3,15 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/behaviour.h"
+#include "ident/bootstrap.h"
+#include "ident/diagnostics.h"
 #include "ident/fit_options.h"
+#include "ident/profile.h"
 #include "ident/solver.h"
 #include "ident/uncertainty.h"
 
@@ -35,6 +39,9 @@ struct FitResult {
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains
   std::map<std::string, SubjectParameters> subjects;
   Uncertainty uncertainty;
+  std::vector<Profile> profiles;       // empty unless asked for
+  std::optional<Bootstrap> bootstrap;  // absent unless asked for
+  Diagnostics diagnostics;
   Behaviour behaviour;
   std::vector<FittedRecording> recordings;
 

@@ -77,6 +77,13 @@ const OptionNames<EstimateStatus>& Names(EstimateStatus) {
       {"fixed", EstimateStatus::kFixed}};
   return names;
 }
+const OptionNames<ProfileClass>& Names(ProfileClass) {
+  static const OptionNames<ProfileClass> names = {
+      {"identifiable", ProfileClass::kIdentifiable},
+      {"practically_not", ProfileClass::kPracticallyNot},
+      {"structurally_not", ProfileClass::kStructurallyNot}};
+  return names;
+}
 
 namespace {
 
