@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "apps/app_support.h"
+#include "apps/confidence_flags.h"
 #include "apps/fit_flags.h"
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
@@ -29,6 +30,7 @@ int Run() {
   const auto begin = std::chrono::steady_clock::now();
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
+  if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
@@ -49,6 +51,7 @@ int Run() {
     std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
     return kFitFailed;
   }
+  if (MaybeError error = AddConfidence(pendulums, &result)) return Fail(*error);
   result.version = Version();
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.
@@ -76,6 +79,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::AllowBareProfile(argc, argv);
   return pushid::RunApp(argc, argv,
                         "pushid-fit identifies friction, balance gains and the push tail from push "
                         "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "

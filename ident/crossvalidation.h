@@ -6,11 +6,11 @@
 // averaged over the repeats): recordings are the independent units here, not frames and not folds.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "ident/evaluation.h"
+#include "ident/parallel.h"
 
 namespace pushid {
 
@@ -53,10 +53,9 @@ struct CrossValidation {
   int failures = 0, falls = 0;  // over all folds
 };
 
-using FoldProgress = std::function<void(int done, int total)>;
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
-                              int num_threads, const FoldProgress& progress = nullptr);
+                              int num_threads, const JobProgress& progress = nullptr);
 
 // b minus a, recording by recording, with the standard error of its mean.
 struct PairedDifference {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/solver.h"
 #include "ident/uncertainty.h"
 
 namespace pushid {
@@ -53,13 +54,6 @@ struct Leverage {
   std::vector<std::string> recordings, parameters, units;
   std::vector<std::vector<double>> change;     // [recording][parameter], natural units
   std::vector<std::vector<double>> in_errors;  // the same over the clustered standard error
-};
-
-struct TracePoint {
-  int horizon = 0;  // frames; 0: all
-  int iteration = 0;
-  double cost = 0.0;
-  double gradient = 0.0;  // largest component
 };
 
 struct Advice {

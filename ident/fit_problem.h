@@ -35,8 +35,10 @@ struct FailedRollout {
 
 class FitProblem {
  public:
-  // recordings and options must outlive the problem.
-  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options);
+  // recordings and options must outlive the problem. counts: how often each recording counts (a
+  // bootstrap replica; 0 leaves it out); empty: each once.
+  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+             std::vector<int> counts = {});
 
   const ParameterMap& map() const { return map_; }
   const std::vector<PendulumRecording>& recordings() const { return recordings_; }
@@ -73,6 +75,7 @@ class FitProblem {
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
+  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
   double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
@@ -81,6 +84,7 @@ class FitProblem {
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;
+  std::vector<int> counts_;
   ParameterMap map_;
 };
 

@@ -142,8 +142,12 @@ std::vector<SolveStart> StartsFrom(const Json& json) {
     start.from.shared = s.at("from_fitted_scale").get<std::vector<double>>();
     start.to.shared = s.at("to_fitted_scale").get<std::vector<double>>();
     for (const Json& stage : s.at("stages")) {
-      start.stages.push_back({stage.at("horizon"), stage.at("iterations"), stage.at("initial_cost"),
-                              stage.at("final_cost"), stage.at("converged")});
+      start.stages.push_back({stage.at("horizon"),
+                              stage.at("iterations"),
+                              stage.at("initial_cost"),
+                              stage.at("final_cost"),
+                              stage.at("converged"),
+                              {}});
     }
     start.message = s.at("message");
     starts.push_back(start);

@@ -144,6 +144,10 @@ Json EstimatesJson(const std::vector<Estimate>& estimates) {
 
 }  // namespace
 
+nlohmann::ordered_json SettingsJson(const FitOptions& options) {
+  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+}
+
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), values = Json::object();

@@ -16,10 +16,15 @@
 // 25:1923).
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "datasets/result.h"
+#include "ident/parallel.h"
+#include "ident/uncertainty.h"
 
 namespace pushid {
 
@@ -48,5 +53,43 @@ struct Profile {
   std::string lower_end, upper_end;  // why a side ended: threshold, bound, domain, flat or steps
   std::vector<ProfilePoint> points;  // ascending in value
 };
+
+// Profiles of the named parameters and derived combinations, or of all that move (empty names).
+// Combinations of a single free parameter are that parameter's profile on another scale. Errors:
+// names that are neither a free parameter nor a combination of one.
+Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const FitPoint& estimate,
+                                             const Uncertainty& uncertainty,
+                                             const std::vector<std::string>& names, int num_threads,
+                                             const JobProgress& progress = nullptr);
+
+// What follows knows nothing of people: any number of any least-squares problem can be profiled.
+
+// The best fit found with the number held near `wanted`.
+struct HeldFit {
+  bool ok = false;
+  double value = 0.0;  // of the number there
+  double cost = 0.0;   // without what held it
+  std::vector<double> point;
+};
+using HoldFit = std::function<HeldFit(double wanted, const std::vector<double>& from)>;
+
+struct ProfileSearch {
+  double estimate = 0.0, cost = 0.0;  // at the optimum
+  std::vector<double> point;          // all fitted numbers there
+  std::vector<double> direction;      // how they move with the number, to first order
+  double naive_error = 1.0;           // 2 (profile - cost) grows like the square of moves over this
+  double threshold = 0.0;             // of the cost
+  double lower = -std::numeric_limits<double>::infinity();  // bounds of the number
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+struct ProfileSide {
+  double crossing = 0.0;  // of the threshold; infinite where it is not crossed
+  std::string end;        // as in Profile
+  std::vector<HeldFit> points;
+};
+
+// sign: +1 upwards, -1 downwards.
+ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& hold);
 
 }  // namespace pushid

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ident/confidence_text.h"
 #include "ident/option_names.h"
 #include "ident/text_table.h"
 
@@ -147,6 +148,8 @@ std::string ReportText(const FitResult& result) {
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
+  const std::string agreement = AgreementText(result);
+  if (!agreement.empty()) text += agreement + "\n";
   text += CorrelationText(result);
   bool any_pooled = false;
   for (const auto& [id, subject] : result.subjects)

@@ -2,7 +2,6 @@
 #include "ident/solver.h"
 
 #include <ceres/iteration_callback.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <chrono>
@@ -30,6 +29,12 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
+std::string HorizonName(int horizon) {
+  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
+}
+
+}  // namespace
+
 ceres::Solver::Options SolverOptions(const FitOptions& options) {
   ceres::Solver::Options solver;
   solver.linear_solver_type = ceres::DENSE_QR;  // few columns; keeps weak directions accurate
@@ -43,8 +48,8 @@ ceres::Solver::Options SolverOptions(const FitOptions& options) {
   return solver;
 }
 
-SolveStage RunStage(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                    std::string* message) {
+SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
+                      std::string* message) {
   ceres::Solver::Summary summary;
   ceres::Solve(options, built->problem.get(), &summary);
   *message = summary.message;
@@ -54,14 +59,28 @@ SolveStage RunStage(FitProblem::Built* built, const ceres::Solver::Options& opti
   stage.initial_cost = summary.initial_cost;
   stage.final_cost = summary.final_cost;
   stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  for (const ceres::IterationSummary& i : summary.iterations) {
+    stage.trace.push_back({horizon, i.iteration, i.cost, i.gradient_max_norm});
+  }
   return stage;
 }
 
-std::string HorizonName(int horizon) {
-  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
+SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
+  SolveStart start;
+  start.kind = "warm";
+  start.from = start.to = from;
+  FitProblem::Built built = problem.Build(&start.to, 0);
+  ceres::Solver::Options options = SolverOptions(problem.options());
+  options.num_threads = 1;
+  const SolveStage stage = SolveBuilt(&built, options, 0, &start.message);
+  start.failed = std::move(built.shortened);
+  start.stages.push_back(stage);
+  start.iterations = stage.iterations;
+  start.cost = stage.final_cost;
+  start.converged = stage.converged;
+  start.usable = stage.converged && start.failed.empty();
+  return start;
 }
-
-}  // namespace
 
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const std::string& label, const SolveProgress& progress) {
@@ -84,7 +103,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
-      const SolveStage stage = RunStage(&built, solver, horizons[i], &start.message);
+      const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
       start.stages.push_back(stage);
       start.iterations += stage.iterations;
       if (!last) break;
@@ -105,7 +124,7 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
   FitPoint point = nominal;
   FitProblem::Built built = problem.BuildEquationError(&point);
   std::string message;
-  RunStage(&built, SolverOptions(problem.options()), 0, &message);
+  SolveBuilt(&built, SolverOptions(problem.options()), 0, &message);
   for (size_t i = 0; i < point.shared.size(); ++i) {
     const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
     const double reach = spec.transform == Transform::kIdentity

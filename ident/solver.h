@@ -1,6 +1,8 @@
 // ident: from starts to an optimum: equation error, horizon curriculum, multi-start.
 #pragma once
 
+#include <ceres/solver.h>
+
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,11 +11,20 @@
 
 namespace pushid {
 
+// One iteration of the solver.
+struct TracePoint {
+  int horizon = 0;  // frames; 0: all
+  int iteration = 0;
+  double cost = 0.0;
+  double gradient = 0.0;  // largest component
+};
+
 struct SolveStage {
   int horizon = 0;  // frames; 0: all
   int iterations = 0;
   double initial_cost = 0.0, final_cost = 0.0;
   bool converged = false;
+  std::vector<TracePoint> trace;
 };
 
 // One start of a multi-start.
@@ -39,6 +50,17 @@ struct Solution {
 
 // phase: "start 2/8, horizon 32"; called after every accepted iteration.
 using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
+
+// The solver's settings: those of every fit, refit and reference check.
+ceres::Solver::Options SolverOptions(const FitOptions& options);
+
+// Solves what was built, from where its point stands.
+SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
+                      std::string* message);
+
+// All frames from a point near the optimum (profiles, bootstrap, leaving recordings out); one
+// thread, as refits run in parallel.
+SolveStart Refit(const FitProblem& problem, const FitPoint& from);
 
 // Runs one start through the horizons.
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,

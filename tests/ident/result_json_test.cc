@@ -53,11 +53,17 @@ TEST(ResultJson, RoundTripIsExact) {
 FitResult JudgedResult() {
   FitResult result = SampleResult();
   const double infinity = std::numeric_limits<double>::infinity();
-  Profile profile{"mu", "N s/m", 20.1, ProfileClass::kPracticallyNot, -infinity, 30.7, 1.1, 0.3};
-  profile.lower_end = "bound";
-  profile.upper_end = "threshold";
-  profile.points = {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}};
-  result.profiles = {profile};
+  result.profiles = {{"mu",
+                      "N s/m",
+                      20.1,
+                      ProfileClass::kPracticallyNot,
+                      -infinity,
+                      30.7,
+                      1.1,
+                      0.3,
+                      "bound",
+                      "threshold",
+                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
   result.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
   Diagnostics& d = result.diagnostics;
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
