@@ -11,6 +11,7 @@
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
+#include "ident/advice.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
@@ -40,6 +41,9 @@ int Run() {
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(recordings.value(), options.value().mapping);
 
+  for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
+  if (MaybeError error = CheckEffects(FitProblem(pendulums, options.value()))) return Fail(*error);
+
   ProgressLine line;
   FitResult result = Fit(pendulums, options.value(),
                          [&line](const std::string& phase, int iteration, double cost) {
@@ -60,6 +64,7 @@ int Run() {
   result.setting = FLAGS_setting;
   const Result<std::string> hash = HashFile(FLAGS_recordings);
   if (hash.ok()) result.manifest_hash = hash.value();
+  result.diagnostics.advice = Advise(result);
 
   std::printf("%s", ReportText(result).c_str());
   if (!FLAGS_model_out.empty()) {

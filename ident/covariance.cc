@@ -76,6 +76,7 @@ Covariance ComputeCovariance(const ScoreBlocks& score, const Eigen::VectorXd& un
   c.naive = c.sigma * c.sigma * c.inverse_hessian;
   const double groups = static_cast<double>(score.clusters.size());
   if (groups < 2) return c;
+  c.clusters = score.clusters;
   c.moves = back * LeaveOneOutMoves(score, scaled * base);
   const Eigen::MatrixXd centred = c.moves.colwise() - c.moves.rowwise().mean().eval();
   c.clustered = (groups - 1.0) / groups * centred * centred.transpose();

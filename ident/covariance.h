@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "ident/score_blocks.h"
 
@@ -33,8 +34,9 @@ struct Covariance {
   Eigen::MatrixXd inverse_hessian;
   Eigen::MatrixXd naive;
   Eigen::MatrixXd clustered;  // empty with fewer than two clusters
-  // By cluster: what leaving it out would move, by one Gauss-Newton step.
+  // One column for each of `clusters`: what leaving it out would move, by one Gauss-Newton step.
   Eigen::MatrixXd moves;
+  std::vector<int> clusters;
 };
 
 // unit: the size of one step in each column, for judging what counts as null; 0 holds a column.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/result.h"
 #include "ident/solver.h"
 #include "ident/uncertainty.h"
 
@@ -69,5 +70,27 @@ struct Diagnostics {
   std::vector<TracePoint> trace;  // of the best start
   std::vector<Advice> advice;
 };
+
+// The recordings at the point where a solve starts.
+StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start);
+
+// Free parameters that change no residual of the recordings, neither at the nominal values nor near
+// them: an error that names them. To be asked before a solve.
+MaybeError CheckEffects(const FitProblem& problem);
+
+// Masses, rods, pushes and motions that no person has: what looks wrong, by recording.
+std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& recordings);
+
+std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
+                                                     const FitPoint& point);
+std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoint& point);
+
+// Checked against real refits in tests/ident/leverage_test.cc.
+Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
+                         const Uncertainty& uncertainty);
+
+// Everything but the advice, which also looks at profiles and bootstrap (advice.h).
+Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
+                     const Uncertainty& uncertainty);
 
 }  // namespace pushid

@@ -169,6 +169,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
                          result.uncertainty.estimates.end());
   result.derived = Derived(problem, best.to, result.uncertainty);
   result.subjects = Subjects(problem, best.to, result.uncertainty);
+  result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = ComputeBehaviour(options.model, result.parameters);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);

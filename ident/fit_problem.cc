@@ -95,6 +95,18 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   return failures;
 }
 
+std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recording) const {
+  FitPoint copy = point;
+  ResidualSigmas plain = options_.sigmas;
+  plain.robust = 0.0;
+  const RolloutResidual residual(
+      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0));
+  std::vector<double> values(residual.num_residuals());
+  const std::vector<double*> blocks = RecordingBlocks(&copy, recording);
+  if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) values.clear();
+  return values;
+}
+
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
   std::vector<double*> blocks = {point->shared.data()};
   const BlockLayout layout(map_, recordings_[recording].subject_ids, false);

@@ -53,6 +53,10 @@ class FitProblem {
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
 
+  // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
+  // then person. Empty where its rollout leaves the domain.
+  std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
+
   // Clusters of what is not data.
   static constexpr int kPriorCluster = -1;    // priors on parameters, settling, stability
   static constexpr int kPoolingCluster = -2;  // what ties the subjects' deviations to zero

@@ -7,14 +7,14 @@
 namespace pushid {
 namespace {
 
+// Lengths are in half widths: where a quadratic cost would cross the threshold.
 constexpr int kMaxSteps = 60;
-constexpr int kStepsToThreshold = 4;  // aimed at, on a quadratic cost
-constexpr double kMaxGrowth = 3.0;    // of a step over the one before
-constexpr double kSmallestStep =
-    1e-3;  // in naive errors: what is left of a step that keeps failing
+constexpr int kStepsToThreshold = 4;    // aimed at, on a quadratic cost
+constexpr double kMaxGrowth = 3.0;      // of a step over the one before
+constexpr double kSmallestStep = 1e-3;  // what may be left of a step that keeps failing
+constexpr double kFlatReach = 1e4;      // this far without a rise is flat
 constexpr int kMaxRefinements = 8;
 constexpr double kCrossingTolerance = 1e-3;  // of the signed root
-constexpr double kFlatReach = 1e4;           // naive errors without a rise
 
 // The signed root of the cost difference, nearly linear where the cost is nearly quadratic: steps
 // and crossings are found on it.
@@ -71,17 +71,18 @@ double NextStep(double step, double rise, double run, double aim) {
 
 ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& hold) {
   const double aim = std::sqrt(2.0 * search.threshold);
+  const double half_width = search.naive_error * aim;
   const double limit = sign > 0 ? search.upper : search.lower;
   ProfileSide side;
   side.crossing = sign * std::numeric_limits<double>::infinity();
   side.end = "steps";
   HeldFit last{true, search.estimate, search.cost, search.point}, before;
-  double step = search.naive_error * aim / kStepsToThreshold;
+  double step = half_width / kStepsToThreshold;
   for (int k = 0; k < kMaxSteps; ++k) {
     double wanted = last.value + sign * step;
     const bool at_limit = sign * (wanted - limit) >= 0.0;
     if (at_limit) wanted = limit;
-    if (sign * (wanted - last.value) <= kSmallestStep * search.naive_error) {
+    if (sign * (wanted - last.value) <= kSmallestStep * half_width) {
       side.end = at_limit ? "bound" : "domain";
       return side;
     }
@@ -99,7 +100,7 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
       return side;
     }
     side.end = at_limit ? "bound" : "flat";
-    const double reach = std::abs(fit.value - search.estimate) / search.naive_error;
+    const double reach = std::abs(fit.value - search.estimate) / half_width;
     if (at_limit || (reach > kFlatReach && root < kCrossingTolerance * aim)) return side;
     side.end = "steps";
     const double run = std::abs(fit.value - last.value);

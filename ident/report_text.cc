@@ -171,6 +171,8 @@ std::string ReportText(const FitResult& result) {
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  const std::string diagnostics = DiagnosticsText(result);
+  if (!diagnostics.empty()) text += "\n" + diagnostics;
   return text;
 }
 

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/number_text.h"
 #include "datasets/random.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kStartBox = 5.0;
+constexpr double kOffBound = 0.1;
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -87,7 +89,9 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
   const FitOptions& options = problem.options();
   SolveStart start;
   start.kind = kind;
-  start.from = start.to = from;
+  start.from = from;
+  start.notes = MoveOffBounds(problem, &start.from);
+  start.to = start.from;
   std::vector<int> horizons = options.horizons;
   if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
 
@@ -134,6 +138,26 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
         std::clamp(point.shared[i], nominal.shared[i] - reach, nominal.shared[i] + reach);
   }
   return point;
+}
+
+std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point) {
+  std::vector<std::string> notes;
+  for (size_t i = 0; i < point->shared.size(); ++i) {
+    const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
+    const double lower = ToFitted(spec.transform, spec.lower);
+    const double upper = ToFitted(spec.transform, spec.upper);
+    const double size = spec.transform == Transform::kIdentity ? spec.scale : 1.0;
+    const double inwards = std::min(kOffBound * size, 0.5 * (upper - lower));
+    double& value = point->shared[i];
+    const double before = value;
+    if (value <= lower) value = lower + inwards;
+    if (value >= upper) value = upper - inwards;
+    if (value == before) continue;
+    notes.push_back(spec.name + " started on its bound " +
+                    DoubleText(ToNatural(spec.transform, before)) + " and was moved to " +
+                    DoubleText(ToNatural(spec.transform, value)));
+  }
+  return notes;
 }
 
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {

@@ -37,6 +37,7 @@ struct SolveStart {
   FitPoint from, to;
   std::vector<SolveStage> stages;
   std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
+  std::vector<std::string> notes;     // parameters whose start was moved off a bound
   std::string message;
 };
 
@@ -69,6 +70,10 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
 // The equation-error optimum, kept within a factor (log scale) or multiple (identity scale) of 5 of
 // the nominal values, so that no start sits on a bound.
 FitPoint EquationErrorStart(const FitProblem& problem);
+
+// A start on a bound stalls: such values are moved inwards by a tenth of their typical size (on a
+// log scale by 10 %). Returns what was moved, in words.
+std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point);
 
 // The nominal point with every free gain multiplied by spread^u, u uniform in [-1, 1].
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed);
