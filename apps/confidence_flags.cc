@@ -10,6 +10,7 @@
 #include "apps/fit_flags.h"
 #include "datasets/atomic_file.h"
 #include "ident/confidence.h"
+#include "ident/experiment_design.h"
 
 DECLARE_uint64(seed);
 
@@ -19,9 +20,14 @@ DEFINE_string(profile, "",
 DEFINE_int32(bootstrap, 0, "refit so many resamples of the recordings; 199 is a good number");
 DEFINE_string(bootstrap_file, "",
               "keeps finished replicas, so that a run that was interrupted goes on from there");
+DEFINE_string(design, "",
+              "which further push would lower the standard error of this parameter most; all: of "
+              "all together");
 
 namespace pushid {
 namespace {
+
+constexpr int kDesignRows = 10;
 
 std::vector<std::string> ProfileNames() {
   std::vector<std::string> names;
@@ -78,6 +84,18 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitRe
     }
   }
   return std::nullopt;
+}
+
+Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
+                                  const FitResult& result) {
+  if (FLAGS_design.empty()) return std::string();
+  const FitProblem problem(recordings, result.options);
+  const FitPoint& estimate = result.starts[result.best_start].to;
+  const ExperimentDesign design =
+      DesignExperiments(problem, estimate, result.uncertainty, DefaultCandidates(recordings));
+  Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
+  if (!text.ok()) return Error{"--design: " + text.error().message};
+  return "\n" + text.value();
 }
 
 }  // namespace pushid

@@ -1,4 +1,5 @@
-// apps: the flags of pushid-fit that ask how sure a fit is: profiles and bootstrap.
+// apps: the flags of pushid-fit that ask how sure a fit is: profiles, bootstrap, and
+// the next push to record.
 #pragma once
 
 #include <vector>
@@ -15,5 +16,9 @@ MaybeError CheckConfidenceFlags();
 
 // Adds what the flags ask for.
 MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result);
+
+// The table of --design, or nothing.
+Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
+                                  const FitResult& result);
 
 }  // namespace pushid

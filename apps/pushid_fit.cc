@@ -65,8 +65,10 @@ int Run() {
   const Result<std::string> hash = HashFile(FLAGS_recordings);
   if (hash.ok()) result.manifest_hash = hash.value();
   result.diagnostics.advice = Advise(result);
+  const Result<std::string> design = FlaggedDesign(pendulums, result);
+  if (!design.ok()) return Fail(design.error());
 
-  std::printf("%s", ReportText(result).c_str());
+  std::printf("%s%s", ReportText(result).c_str(), design.value().c_str());
   if (!FLAGS_model_out.empty()) {
     RunInfo run;
     run.date = Today();

@@ -14,6 +14,7 @@ struct NistSet {
   std::string name;
   std::vector<double> start[2];
   std::vector<double> certified, certified_error;
+  double residual_sum = 0.0;              // certified
   std::vector<std::vector<double>> rows;  // response, then predictors
 };
 
@@ -46,6 +47,9 @@ inline NistSet ReadNistSet(const std::string& path, const std::string& name) {
     set.start[1].push_back(second);
     set.certified.push_back(value);
     set.certified_error.push_back(error);
+  }
+  for (const std::string& line : lines) {
+    std::sscanf(line.c_str(), "Residual Sum of Squares: %lf", &set.residual_sum);
   }
   for (const std::string& line : LinesOfPart(lines, "Data  ")) {
     std::istringstream words(line);

@@ -38,6 +38,18 @@ double Digits(double found, double certified) {
   return off > 0.0 ? std::min(kCertifiedDigits, -std::log10(off)) : kCertifiedDigits;
 }
 
+// At the certified values.
+double SquaredResiduals(const NistSet& set) {
+  double sum = 0.0;
+  const double* blocks[] = {set.certified.data()};
+  for (const std::vector<double>& row : set.rows) {
+    double residual;
+    NistResidual{&set.name, &row}(blocks, &residual);
+    sum += residual * residual;
+  }
+  return sum;
+}
+
 struct Score {
   double values = kCertifiedDigits, errors = kCertifiedDigits;  // of the worst parameter
   int iterations = 0;
@@ -85,9 +97,16 @@ TEST(Nist, Scoreboard) {
   std::printf("%-9s %8s %8s %10s %8s %8s %10s\n", "digits of", "values", "errors", "iterations",
               "values", "errors", "iterations");
   for (const std::string& name : NistNames()) {
-    const NistSet set = ReadNistSet(NistRoot() + "/" + name + ".dat", name);
+    NistSet set = ReadNistSet(NistRoot() + "/" + name + ".dat", name);
+    // A copy of this file that is going round prints b1 as "1.20196866396E-0". With it the residual
+    // sum of squares is 25, not the certified 4.9484847331E-04, which NIST's own 2.0196866396E-01
+    // gives.
+    if (name == "Roszman1") set.certified[0] = 2.0196866396E-01;
     ASSERT_FALSE(set.rows.empty()) << name;
     ASSERT_FALSE(set.certified.empty()) << name;
+    if (name != "Lanczos1") {
+      EXPECT_GE(Digits(SquaredResiduals(set), set.residual_sum), 4.0) << name;
+    }
     Score scores[2];
     for (int s : {0, 1}) {
       scores[s] = RunSet(set, set.start[s]);
