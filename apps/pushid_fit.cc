@@ -6,10 +6,12 @@
 #include <ctime>
 
 #include "apps/app_support.h"
+#include "apps/confidence_flags.h"
 #include "apps/fit_flags.h"
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
+#include "ident/advice.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
@@ -29,6 +31,7 @@ int Run() {
   const auto begin = std::chrono::steady_clock::now();
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
+  if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
@@ -37,6 +40,9 @@ int Run() {
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(recordings.value(), options.value().mapping);
+
+  for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
+  if (MaybeError error = CheckEffects(FitProblem(pendulums, options.value()))) return Fail(*error);
 
   ProgressLine line;
   FitResult result = Fit(pendulums, options.value(),
@@ -49,6 +55,7 @@ int Run() {
     std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
     return kFitFailed;
   }
+  if (MaybeError error = AddConfidence(pendulums, &result)) return Fail(*error);
   result.version = Version();
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.
@@ -57,8 +64,11 @@ int Run() {
   result.setting = FLAGS_setting;
   const Result<std::string> hash = HashFile(FLAGS_recordings);
   if (hash.ok()) result.manifest_hash = hash.value();
+  result.diagnostics.advice = Advise(result);
+  const Result<std::string> design = FlaggedDesign(pendulums, result);
+  if (!design.ok()) return Fail(design.error());
 
-  std::printf("%s", ReportText(result).c_str());
+  std::printf("%s%s", ReportText(result).c_str(), design.value().c_str());
   if (!FLAGS_model_out.empty()) {
     RunInfo run;
     run.date = Today();
@@ -76,6 +86,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::AllowBareProfile(argc, argv);
   return pushid::RunApp(argc, argv,
                         "pushid-fit identifies friction, balance gains and the push tail from push "
                         "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "

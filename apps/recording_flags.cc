@@ -1,6 +1,7 @@
 // apps: loading what --recordings names.
 #include "apps/recording_flags.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "apps/app_support.h"
@@ -10,9 +11,35 @@ DEFINE_string(setting, "all",
               "which recordings: settings of the manifest, comma-separated; groups (more than one "
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
+DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
 DEFINE_string(length_unit, "", "unit of the BVH files, mm, cm or m, whatever the manifest says");
 
 namespace pushid {
+namespace {
+
+std::vector<std::string> SplitList(const std::string& text) {
+  std::vector<std::string> words;
+  std::stringstream list(text);
+  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+  return words;
+}
+
+MaybeError LeaveOut(std::vector<Recording>* recordings) {
+  for (const std::string& id : SplitList(FLAGS_leave_out)) {
+    const auto at = std::find_if(recordings->begin(), recordings->end(),
+                                 [&id](const Recording& r) { return r.id == id; });
+    if (at == recordings->end()) {
+      return Error{
+          "--leave_out: there is no recording '" + id + "' among those that were asked for",
+          FLAGS_recordings};
+    }
+    recordings->erase(at);
+  }
+  if (!recordings->empty()) return std::nullopt;
+  return Error{"--leave_out leaves no recording", FLAGS_recordings};
+}
+
+}  // namespace
 
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids) {
   if (MaybeError missing =
@@ -21,11 +48,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   }
   LoadOptions options;
   options.setting = FLAGS_setting;
-  options.ids = ids;
-  if (ids.empty()) {
-    std::stringstream list(FLAGS_ids);
-    for (std::string id; std::getline(list, id, ',');) options.ids.push_back(id);
-  }
+  options.ids = ids.empty() ? SplitList(FLAGS_ids) : ids;
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);
     if (!options.length_unit) {
@@ -35,6 +58,8 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   std::vector<std::string> warnings;
   Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_recordings, options, &warnings);
   for (const std::string& warning : warnings) Warn(warning);
+  if (!recordings.ok() || !ids.empty()) return recordings;
+  if (MaybeError error = LeaveOut(&recordings.value())) return *error;
   return recordings;
 }
 

@@ -14,8 +14,8 @@ DECLARE_string(setting);
 
 namespace pushid {
 
-// The recordings of --recordings, --setting and --ids; warnings go to stderr. Other ids than the
-// flag's may be asked for.
+// The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr. Other
+// ids than the flags' may be asked for.
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {});
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.

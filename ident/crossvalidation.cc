@@ -3,11 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <map>
-#include <mutex>
-#include <thread>
 
 #include "datasets/random.h"
 #include "ident/option_names.h"
@@ -99,24 +96,16 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
 
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
-                              int num_threads, const FoldProgress& progress) {
+                              int num_threads, const JobProgress& progress) {
   const int total = static_cast<int>(recordings.size());
   std::vector<FoldPrediction> predictions(folds.size());
-  std::atomic<size_t> next{0};
-  std::mutex mutex;
-  int done = 0;
-  auto work = [&]() {
-    for (size_t f = next++; f < folds.size(); f = next++) {
-      predictions[f] =
-          predictor.FitAndScore(recordings, Others(folds[f].held_out, total), folds[f].held_out);
-      const std::lock_guard<std::mutex> lock(mutex);
-      if (progress) progress(++done, static_cast<int>(folds.size()));
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int i = 1; i < num_threads; ++i) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
+  ParallelFor(
+      static_cast<int>(folds.size()), num_threads,
+      [&](int f) {
+        predictions[f] =
+            predictor.FitAndScore(recordings, Others(folds[f].held_out, total), folds[f].held_out);
+      },
+      progress);
 
   CrossValidation result;
   result.predictor = predictor.name;

@@ -6,13 +6,13 @@
 // averaged over the repeats): recordings are the independent units here, not frames and not folds.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/behaviour.h"
 #include "ident/evaluation.h"
+#include "ident/parallel.h"
 
 namespace pushid {
 
@@ -67,10 +67,9 @@ struct CrossValidation {
   double slowest_to_settle = 0.0;  // m/s
 };
 
-using FoldProgress = std::function<void(int done, int total)>;
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
-                              int num_threads, const FoldProgress& progress = nullptr);
+                              int num_threads, const JobProgress& progress = nullptr);
 
 // b minus a, recording by recording, with the standard error of its mean.
 struct PairedDifference {

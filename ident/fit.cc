@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "ident/fit_result.h"
-#include "ident/score_blocks.h"
 
 namespace pushid {
 namespace {
@@ -43,24 +42,13 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
   return rows;
 }
 
-// c = mu + Kp always; per-mass gains of the reference person.
 std::vector<Combination> Derived(const FitProblem& problem, const FitPoint& point,
                                  const Uncertainty& u) {
-  const ModelOptions& model = problem.options().model;
-  const Parameter mu_y = model.friction == FrictionKind::kIsotropic ? kMu : kMuY;
-  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
-  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
-  auto combine = [&](const std::vector<Term>& terms, const char* name, const char* unit) {
-    return Combine(problem, point, u, terms, name, unit);
-  };
-  return {combine({{kMu, 1.0}, {kKpX, 1.0}}, "c_x", "N s/m"),
-          combine({{mu_y, 1.0}, {kKpY, 1.0}}, "c_y", "N s/m"),
-          combine({{kMu, 1.0 / kReferenceMass}, {kKpX, 1.0 / kReferenceMass}}, "c_x/M", "1/s"),
-          combine({{mu_y, 1.0 / kReferenceMass}, {kKpY, 1.0 / kReferenceMass}}, "c_y/M", "1/s"),
-          combine({{kKpTheta, stiffness}}, "Kp_theta/(m g l)", "1"),
-          combine({{kKpPhi, stiffness}}, "Kp_phi/(m g l)", "1"),
-          combine({{kKdTheta, damping}}, "Kd_theta/(m l^2)", "1/s"),
-          combine({{kKdPhi, damping}}, "Kd_phi/(m l^2)", "1/s")};
+  std::vector<Combination> derived;
+  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+    derived.push_back(Combine(problem, point, u, spec));
+  }
+  return derived;
 }
 
 // The pooled parameters of every unit: shared value and deviation together.
@@ -192,6 +180,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
                          result.uncertainty.estimates.end());
   result.derived = Derived(problem, best.to, result.uncertainty);
   AddUnits(problem, best.to, &result);
+  result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);

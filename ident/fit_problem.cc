@@ -41,8 +41,12 @@ void FitPoint::SetFlat(const std::vector<double>& flat) {
   for (auto& [index, values] : velocity) take(&values);
 }
 
-FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options)
-    : recordings_(recordings), options_(options), map_(options.table.Map()) {
+FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                       std::vector<int> counts)
+    : recordings_(recordings),
+      options_(options),
+      counts_(std::move(counts)),
+      map_(options.table.Map()) {
   map_.pool_by = options.pool_by;
 }
 
@@ -86,6 +90,7 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   std::vector<FailedRollout> failures;
   FitPoint copy = point;
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
     const auto problem =
         MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
     const std::vector<double*> blocks = RecordingBlocks(&copy, i);
@@ -97,6 +102,18 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
     if (!status.ok) failures.push_back({i, status});
   }
   return failures;
+}
+
+std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recording) const {
+  FitPoint copy = point;
+  ResidualSigmas plain = options_.sigmas;
+  plain.robust = 0.0;
+  const RolloutResidual residual(
+      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0));
+  std::vector<double> values(residual.num_residuals());
+  const std::vector<double*> blocks = RecordingBlocks(&copy, recording);
+  if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) values.clear();
+  return values;
 }
 
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
@@ -111,11 +128,12 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
 }
 
 double FitProblem::Weight(int recording, int horizon) const {
-  if (options_.recording_weight == RecordingWeight::kFrame) return 1.0;
+  const double counted = std::sqrt(static_cast<double>(Count(recording)));
+  if (options_.recording_weight == RecordingWeight::kFrame) return counted;
   // A recording's frames are far from independent: together they count as one.
   const PendulumRecording& r = recordings_[recording];
   const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
-  return 1.0 / std::sqrt(std::max(1, frames - 1));
+  return counted / std::sqrt(std::max(1, frames - 1));
 }
 
 void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
@@ -218,9 +236,11 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
   }
   if (options_.stability_weight > 0.0) {
     for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+      if (Count(i) == 0) continue;
+      const double weight = options_.stability_weight * std::sqrt(static_cast<double>(Count(i)));
       for (double factor : {1.0, kStrongerPush}) {
         add(StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
-                             options_.sigmas, options_.stability_weight),
+                             options_.sigmas, weight),
             RecordingBlocks(point, i));
       }
     }
@@ -236,6 +256,7 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon) const {
     for (const FailedRollout& failed : built.shortened) {
       if (failed.recording == i) frames = failed.status.frame;
     }
+    if (Count(i) == 0) continue;
     if (frames == 1) continue;  // fails in its very first step: nothing left to compare
     auto* residual = new RolloutResidual(MakeRolloutProblem(
         recordings_[i], options_.model, map_, options_.sigmas, Weight(i, horizon), frames));
@@ -256,6 +277,7 @@ FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
   Built built;
   AddParameterBlocks(point, &built);
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
     auto* residual = new EquationErrorResidual(recordings_[i], options_.model, map_);
     built.blocks.push_back(
         {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});

@@ -36,8 +36,10 @@ struct FailedRollout {
 
 class FitProblem {
  public:
-  // recordings and options must outlive the problem.
-  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options);
+  // recordings and options must outlive the problem. counts: how often each recording counts (a
+  // bootstrap replica; 0 leaves it out); empty: each once.
+  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+             std::vector<int> counts = {});
 
   const ParameterMap& map() const { return map_; }
   const std::vector<PendulumRecording>& recordings() const { return recordings_; }
@@ -54,6 +56,10 @@ class FitProblem {
 
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
+
+  // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
+  // then person. Empty where its rollout leaves the domain.
+  std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
 
   // Clusters of what is not data.
   static constexpr int kPriorCluster = -1;    // priors on parameters, settling, stability
@@ -77,6 +83,7 @@ class FitProblem {
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
+  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
   double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
@@ -85,6 +92,7 @@ class FitProblem {
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;
+  std::vector<int> counts_;
   ParameterMap map_;
 };
 

@@ -3,11 +3,15 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/behaviour.h"
+#include "ident/bootstrap.h"
+#include "ident/diagnostics.h"
 #include "ident/fit_options.h"
+#include "ident/profile.h"
 #include "ident/solver.h"
 #include "ident/uncertainty.h"
 
@@ -37,6 +41,9 @@ struct FitResult {
   // Value of each pooled parameter in each setting, where settings differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
   Uncertainty uncertainty;
+  std::vector<Profile> profiles;       // empty unless asked for
+  std::optional<Bootstrap> bootstrap;  // absent unless asked for
+  Diagnostics diagnostics;
   Behaviour behaviour;
   std::vector<FittedRecording> recordings;
 

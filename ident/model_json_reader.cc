@@ -1,7 +1,7 @@
 // ident: FitResult from JSON. model_json_writer.cc is the inverse.
-#include <limits>
-
 #include "datasets/json_file.h"
+#include "ident/confidence_json.h"
+#include "ident/json_pieces.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
@@ -10,16 +10,6 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// The inverse of Number: JSON knows no infinity.
-double ToDouble(const Json& json) {
-  if (json.is_number()) return json.get<double>();
-  const std::string text = json.get<std::string>();
-  if (text == "infinity") return std::numeric_limits<double>::infinity();
-  if (text == "-infinity") return -std::numeric_limits<double>::infinity();
-  return std::numeric_limits<double>::quiet_NaN();
-}
-double ToDouble(const Json& json, const char* key) { return ToDouble(json.at(key)); }
 
 template <typename E>
 E EnumFrom(const Json& json, const char* key) {
@@ -34,25 +24,19 @@ Estimate EstimateFrom(const Json& json) {
   Estimate e;
   e.name = json.at("name");
   e.value = json.at("value");
-  e.standard_error = ToDouble(json, "standard_error");
-  e.standard_error_naive = ToDouble(json, "standard_error_naive");
-  e.lower95 = ToDouble(json.at("interval_95").at(0));
-  e.upper95 = ToDouble(json.at("interval_95").at(1));
+  e.standard_error = NumberFrom(json.at("standard_error"));
+  e.standard_error_naive = NumberFrom(json.at("standard_error_naive"));
+  e.lower95 = NumberFrom(json.at("interval_95").at(0));
+  e.upper95 = NumberFrom(json.at("interval_95").at(1));
   e.unit = json.at("unit");
   e.status = EnumFrom<EstimateStatus>(json, "status");
   return e;
 }
 
-Combination CombinationFrom(const Json& json) {
-  const auto& interval = json.at("interval_95");
-  return {json.at("name"),           json.at("unit"), json.at("value"),
-          json.at("standard_error"), interval.at(0),  interval.at(1)};
-}
-
 Eigen::MatrixXd MatrixFrom(const Json& json) {
   Eigen::MatrixXd matrix(json.size(), json.empty() ? 0 : json[0].size());
   for (int i = 0; i < matrix.rows(); ++i) {
-    for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = ToDouble(json.at(i).at(j));
+    for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = NumberFrom(json.at(i).at(j));
   }
   return matrix;
 }
@@ -139,17 +123,10 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.num_residuals = json.at("residuals");
   u.sigma = json.at("sigma");
   u.t_quantile = json.at("t_quantile");
-  u.condition_number = ToDouble(json, "condition_number");
+  u.condition_number = NumberFrom(json.at("condition_number"));
   u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
   u.correlation = MatrixFrom(json.at("correlation"));
-  for (const Json& n : json.at("null_directions")) {
-    NullDirection direction;
-    direction.parameters = n.at("parameters").get<std::vector<std::string>>();
-    direction.coefficients = n.at("coefficients").get<std::vector<double>>();
-    for (const Json& c : n.at("identified")) direction.identified.push_back(CombinationFrom(c));
-    direction.sentence = n.at("sentence");
-    u.null_directions.push_back(direction);
-  }
+  u.null_directions = NullDirectionsFrom(json.at("null_directions"));
   return u;
 }
 
@@ -167,8 +144,12 @@ std::vector<SolveStart> StartsFrom(const Json& json) {
     start.from.shared = s.at("from_fitted_scale").get<std::vector<double>>();
     start.to.shared = s.at("to_fitted_scale").get<std::vector<double>>();
     for (const Json& stage : s.at("stages")) {
-      start.stages.push_back({stage.at("horizon"), stage.at("iterations"), stage.at("initial_cost"),
-                              stage.at("final_cost"), stage.at("converged")});
+      start.stages.push_back({stage.at("horizon"),
+                              stage.at("iterations"),
+                              stage.at("initial_cost"),
+                              stage.at("final_cost"),
+                              stage.at("converged"),
+                              {}});
     }
     start.message = s.at("message");
     starts.push_back(start);
@@ -258,6 +239,10 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     }
     result.uncertainty.estimates.insert(result.uncertainty.estimates.end(), result.nuisance.begin(),
                                         result.nuisance.end());
+    // Not in every model: asked for, or written before there were any.
+    if (json.contains("profiles")) result.profiles = ProfilesFromJson(at("profiles"));
+    if (json.contains("bootstrap")) result.bootstrap = BootstrapFromJson(at("bootstrap"));
+    if (json.contains("diagnostics")) result.diagnostics = DiagnosticsFromJson(at("diagnostics"));
     result.warnings = at("warnings").get<std::vector<std::string>>();
     const Json& fit = at("fit");
     result.converged = fit.at("converged");

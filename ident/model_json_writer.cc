@@ -1,6 +1,6 @@
 // ident: FitResult to JSON. model_json_reader.cc is the inverse.
-#include <cmath>
-
+#include "ident/confidence_json.h"
+#include "ident/json_pieces.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
@@ -10,36 +10,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON knows no infinity.
-Json Number(double value) {
-  if (std::isfinite(value)) return value;
-  if (std::isnan(value)) return "nan";
-  return value > 0 ? "infinity" : "-infinity";
-}
-
 Json EstimateJson(const Estimate& e) {
   return {{"name", e.name},
           {"value", e.value},
-          {"standard_error", Number(e.standard_error)},
-          {"standard_error_naive", Number(e.standard_error_naive)},
-          {"interval_95", {Number(e.lower95), Number(e.upper95)}},
+          {"standard_error", NumberJson(e.standard_error)},
+          {"standard_error_naive", NumberJson(e.standard_error_naive)},
+          {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
           {"unit", e.unit},
           {"status", NameOf(e.status)}};
-}
-
-Json CombinationJson(const Combination& c) {
-  return {{"name", c.name},
-          {"value", c.value},
-          {"standard_error", c.standard_error},
-          {"interval_95", {c.lower95, c.upper95}},
-          {"unit", c.unit}};
 }
 
 Json MatrixJson(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
   for (int i = 0; i < matrix.rows(); ++i) {
     Json row = Json::array();
-    for (int j = 0; j < matrix.cols(); ++j) row.push_back(Number(matrix(i, j)));
+    for (int j = 0; j < matrix.cols(); ++j) row.push_back(NumberJson(matrix(i, j)));
     rows.push_back(row);
   }
   return rows;
@@ -95,26 +80,18 @@ Json OptionsJson(const FitOptions& o) {
 }
 
 Json UncertaintyJson(const Uncertainty& u) {
-  Json names = Json::array(), nulls = Json::array();
+  Json names = Json::array();
   for (const Estimate& e : u.estimates) names.push_back(e.name);
-  for (const NullDirection& n : u.null_directions) {
-    Json identified = Json::array();
-    for (const Combination& c : n.identified) identified.push_back(CombinationJson(c));
-    nulls.push_back({{"parameters", n.parameters},
-                     {"coefficients", n.coefficients},
-                     {"identified", identified},
-                     {"sentence", n.sentence}});
-  }
   return {{"clustered_by", u.clustered ? "recording" : "none"},
           {"clusters", u.num_clusters},
           {"residuals", u.num_residuals},
           {"sigma", u.sigma},
           {"t_quantile", u.t_quantile},
-          {"condition_number", Number(u.condition_number)},
+          {"condition_number", NumberJson(u.condition_number)},
           {"fitted", names},
           {"covariance_fitted_scale", MatrixJson(u.covariance)},
           {"correlation", MatrixJson(u.correlation)},
-          {"null_directions", nulls}};
+          {"null_directions", NullDirectionsJson(u.null_directions)}};
 }
 
 Json StartsJson(const FitResult& result) {
@@ -170,6 +147,10 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
           {"demonstrations", demonstrations}};
 }
 
+nlohmann::ordered_json SettingsJson(const FitOptions& options) {
+  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+}
+
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), settings = Json::object(), values = Json::object();
@@ -204,6 +185,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                {"values", values},
                {"behaviour", ToJson(result.behaviour)},
                {"uncertainty", UncertaintyJson(result.uncertainty)},
+               {"diagnostics", ToJson(result.diagnostics)},
                {"warnings", result.warnings},
                {"fit",
                 {{"converged", result.converged},
@@ -228,6 +210,8 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }
+  if (!result.profiles.empty()) json["profiles"] = ToJson(result.profiles);
+  if (result.bootstrap) json["bootstrap"] = ToJson(*result.bootstrap);
   return json;
 }
 

@@ -48,8 +48,10 @@ std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoi
         const Eigen::RowVectorXd change = first.scale * null_space.row(touched[a]) +
                                           sign * second.scale * null_space.row(touched[b]);
         if (change.norm() > 1e-4 * first.scale) continue;
-        found.push_back(Combine(problem, point, uncertainty, {{first.id, 1.0}, {second.id, sign}},
-                                first.name + (sign > 0 ? " + " : " - ") + second.name, first.unit));
+        found.push_back(Combine(problem, point, uncertainty,
+                                {first.name + (sign > 0 ? " + " : " - ") + second.name,
+                                 first.unit,
+                                 {{first.id, 1.0}, {second.id, sign}}}));
         break;
       }
     }

@@ -82,6 +82,13 @@ const OptionNames<EstimateStatus>& Names(EstimateStatus) {
       {"fixed", EstimateStatus::kFixed}};
   return names;
 }
+const OptionNames<ProfileClass>& Names(ProfileClass) {
+  static const OptionNames<ProfileClass> names = {
+      {"identifiable", ProfileClass::kIdentifiable},
+      {"practically_not", ProfileClass::kPracticallyNot},
+      {"structurally_not", ProfileClass::kStructurallyNot}};
+  return names;
+}
 
 namespace {
 
@@ -120,9 +127,10 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
       const auto found = std::find_if(Terms().begin(), Terms().end(),
                                       [&part](const auto& term) { return term.first == part; });
       if (found == Terms().end()) {
-        return Error{flag + " names '" + part +
-                     "'; it must be none, or some of contact (spring,damping), ldp "
-                     "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, drive"};
+        return Error{
+            flag + " names '" + part +
+            "'; it must be none, or some of contact (spring,damping), ldp "
+            "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, drive"};
       }
       terms->*(found->second) = true;
     }

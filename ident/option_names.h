@@ -8,6 +8,8 @@
 #include "datasets/result.h"
 #include "ident/crossvalidation.h"
 #include "ident/fit_options.h"
+#include "ident/profile.h"
+#include "ident/uncertainty.h"
 
 namespace pushid {
 
@@ -28,6 +30,7 @@ const OptionNames<PoolBy>& Names(PoolBy);
 const OptionNames<FoldScheme>& Names(FoldScheme);
 const OptionNames<Transform>& Names(Transform);
 const OptionNames<EstimateStatus>& Names(EstimateStatus);
+const OptionNames<ProfileClass>& Names(ProfileClass);
 
 template <typename E>
 std::string NameOf(E value) {

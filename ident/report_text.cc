@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ident/confidence_text.h"
 #include "ident/option_names.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
@@ -171,6 +172,8 @@ std::string ReportText(const FitResult& result) {
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
+  const std::string agreement = AgreementText(result);
+  if (!agreement.empty()) text += agreement + "\n";
   text += CorrelationText(result);
   const std::string pooled = PooledText(result);
   text += (pooled.empty() ? "" : "\n") + pooled;
@@ -181,6 +184,8 @@ std::string ReportText(const FitResult& result) {
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
   text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  const std::string diagnostics = DiagnosticsText(result);
+  if (!diagnostics.empty()) text += "\n" + diagnostics;
   return text;
 }
 

@@ -20,6 +20,9 @@ struct RunInfo {
 
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run);
 
+// The options and the table: everything that decides what a fit of given recordings finds.
+nlohmann::ordered_json SettingsJson(const FitOptions& options);
+
 // Errors: not a pushid model, a newer format, missing or wrong entries by name.
 Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file);
 Result<FitResult> ReadFitResult(const std::string& path);

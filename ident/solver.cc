@@ -2,19 +2,20 @@
 #include "ident/solver.h"
 
 #include <ceres/iteration_callback.h>
-#include <ceres/solver.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "datasets/number_text.h"
 #include "datasets/random.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kStartBox = 5.0;
+constexpr double kOffBound = 0.1;
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -30,6 +31,10 @@ class ProgressCallback : public ceres::IterationCallback {
   std::string phase_;
 };
 
+std::string HorizonName(int horizon) {
+  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
+}
+
 // QR keeps weak directions accurate, and is twice the work of normal equations: up to so many
 // multiplications nobody notices.
 constexpr double kQrWork = 2e7;
@@ -42,6 +47,8 @@ ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
   if (columns > kDenseColumns) return ceres::SPARSE_NORMAL_CHOLESKY;
   return rows * columns * columns > kQrWork ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
 }
+
+}  // namespace
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
@@ -56,8 +63,8 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
   return solver;
 }
 
-SolveStage RunStage(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                    std::string* message) {
+SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
+                      std::string* message) {
   ceres::Solver::Summary summary;
   ceres::Solve(options, built->problem.get(), &summary);
   *message = summary.message;
@@ -67,21 +74,37 @@ SolveStage RunStage(FitProblem::Built* built, const ceres::Solver::Options& opti
   stage.initial_cost = summary.initial_cost;
   stage.final_cost = summary.final_cost;
   stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  for (const ceres::IterationSummary& i : summary.iterations) {
+    stage.trace.push_back({horizon, i.iteration, i.cost, i.gradient_max_norm});
+  }
   return stage;
 }
 
-std::string HorizonName(int horizon) {
-  return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
+SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
+  SolveStart start;
+  start.kind = "warm";
+  start.from = start.to = from;
+  FitProblem::Built built = problem.Build(&start.to, 0);
+  ceres::Solver::Options options = SolverOptions(problem.options(), *built.problem);
+  options.num_threads = 1;
+  const SolveStage stage = SolveBuilt(&built, options, 0, &start.message);
+  start.failed = std::move(built.shortened);
+  start.stages.push_back(stage);
+  start.iterations = stage.iterations;
+  start.cost = stage.final_cost;
+  start.converged = stage.converged;
+  start.usable = stage.converged && start.failed.empty();
+  return start;
 }
-
-}  // namespace
 
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const std::string& label, const SolveProgress& progress) {
   const FitOptions& options = problem.options();
   SolveStart start;
   start.kind = kind;
-  start.from = start.to = from;
+  start.from = from;
+  start.notes = MoveOffBounds(problem, &start.from);
+  start.to = start.from;
   std::vector<int> horizons = options.horizons;
   if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
 
@@ -97,7 +120,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
-      const SolveStage stage = RunStage(&built, solver, horizons[i], &start.message);
+      const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
       start.stages.push_back(stage);
       start.iterations += stage.iterations;
       if (!last) break;
@@ -118,7 +141,7 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
   FitPoint point = nominal;
   FitProblem::Built built = problem.BuildEquationError(&point);
   std::string message;
-  RunStage(&built, SolverOptions(problem.options(), *built.problem), 0, &message);
+  SolveBuilt(&built, SolverOptions(problem.options(), *built.problem), 0, &message);
   for (size_t i = 0; i < point.shared.size(); ++i) {
     const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
     const double reach = spec.transform == Transform::kIdentity
@@ -128,6 +151,26 @@ FitPoint EquationErrorStart(const FitProblem& problem) {
         std::clamp(point.shared[i], nominal.shared[i] - reach, nominal.shared[i] + reach);
   }
   return point;
+}
+
+std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point) {
+  std::vector<std::string> notes;
+  for (size_t i = 0; i < point->shared.size(); ++i) {
+    const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
+    const double lower = ToFitted(spec.transform, spec.lower);
+    const double upper = ToFitted(spec.transform, spec.upper);
+    const double size = spec.transform == Transform::kIdentity ? spec.scale : 1.0;
+    const double inwards = std::min(kOffBound * size, 0.5 * (upper - lower));
+    double& value = point->shared[i];
+    const double before = value;
+    if (value <= lower) value = lower + inwards;
+    if (value >= upper) value = upper - inwards;
+    if (value == before) continue;
+    notes.push_back(spec.name + " started on its bound " +
+                    DoubleText(ToNatural(spec.transform, before)) + " and was moved to " +
+                    DoubleText(ToNatural(spec.transform, value)));
+  }
+  return notes;
 }
 
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {

@@ -1,4 +1,4 @@
-// ident: covariance on the identified subspace, by singular values of the scaled Jacobian.
+// ident: standard errors, intervals and null directions of a fit.
 #include "ident/uncertainty.h"
 
 #include <Eigen/Dense>
@@ -7,14 +7,12 @@
 #include <limits>
 
 #include "ident/null_directions.h"
-#include "ident/score_blocks.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNullSingularValue = 1e-7;  // relative to the largest one
-constexpr double kTouched = 1e-4;            // share of a null direction that counts
+constexpr double kTouched = 1e-4;  // share of a null direction that counts
 
 // What is known of each fitted number besides its estimate.
 struct Column {
@@ -68,54 +66,6 @@ std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
 
 // d fitted / d (natural / scale): the change of variables to physical units.
 double PhysicalUnit(const Column& c) { return c.scale / TransformSlope(c.transform, c.natural); }
-
-// Clustered covariance in the coordinates of `basis` (columns: an orthonormal base of the
-// identified subspace of the scaled fitted numbers).
-Eigen::MatrixXd ClusteredCovariance(const ScoreBlocks& score, const Eigen::MatrixXd& jacobian) {
-  const int rank = static_cast<int>(jacobian.cols());
-  const int groups = static_cast<int>(score.clusters.size());
-  const Eigen::MatrixXd hessian = jacobian.transpose() * jacobian;
-  Eigen::MatrixXd moves(rank, groups);
-  for (int g = 0; g < groups; ++g) {
-    std::vector<int> rows;
-    for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-      if (score.cluster_of_row[row] == score.clusters[g]) rows.push_back(row);
-    }
-    const Eigen::MatrixXd own = jacobian(rows, Eigen::all);
-    const Eigen::VectorXd gradient = own.transpose() * score.residuals(rows);
-    const Eigen::MatrixXd rest = hessian - own.transpose() * own;
-    // A recording without which something is undetermined keeps its full leverage.
-    const Eigen::LDLT<Eigen::MatrixXd> without(rest);
-    const bool determined = without.isPositive() && without.rcond() > 1e-12;
-    moves.col(g) = determined ? Eigen::VectorXd(without.solve(gradient))
-                              : Eigen::VectorXd(hessian.ldlt().solve(gradient));
-  }
-  moves.colwise() -= moves.rowwise().mean().eval();
-  return (groups - 1.0) / groups * moves * moves.transpose();
-}
-
-// Right singular vectors, by the triangle of a QR decomposition.
-struct Directions {
-  Eigen::VectorXd singular;
-  Eigen::MatrixXd v;
-  int rank = 0;
-};
-Directions Decompose(const Eigen::MatrixXd& jacobian) {
-  const Eigen::Index size = jacobian.cols();
-  Eigen::MatrixXd triangle = jacobian;
-  if (jacobian.rows() >= size) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
-    triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  Directions directions{svd.singularValues(), svd.matrixV(), 0};
-  const Eigen::VectorXd& singular = directions.singular;
-  while (directions.rank < singular.size() &&
-         singular[directions.rank] > kNullSingularValue * singular[0]) {
-    ++directions.rank;
-  }
-  return directions;
-}
 
 // Directions that the recordings say nothing about, whatever priors and demonstrations say: a
 // number that only its prior holds is not identified.
@@ -179,53 +129,47 @@ Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
   return correlation;
 }
 
+// To physical units; a parameter on its bound does not move.
+Eigen::VectorXd Units(const std::vector<Column>& columns) {
+  Eigen::VectorXd unit(columns.size());
+  for (size_t i = 0; i < columns.size(); ++i) {
+    unit[static_cast<Eigen::Index>(i)] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
+  }
+  return unit;
+}
+
 }  // namespace
+
+Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
+  FitPoint copy = point;
+  return ComputeCovariance(EvaluateScoreBlocks(problem.Build(&copy, 0)),
+                           Units(Columns(problem, point)));
+}
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
   FitPoint copy = point;
-  const FitProblem::Built built = problem.Build(&copy, 0);
-  const ScoreBlocks score = EvaluateScoreBlocks(built);
+  const ScoreBlocks score = EvaluateScoreBlocks(problem.Build(&copy, 0));
   const std::vector<Column> columns = Columns(problem, point);
+  const Eigen::VectorXd unit = Units(columns);
   const int size = static_cast<int>(columns.size());
-
-  // To physical units; a parameter on its bound does not move.
-  Eigen::VectorXd unit(size);
-  for (int i = 0; i < size; ++i) unit[i] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
-  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
-  const Directions all = Decompose(scaled);
-  const int rank = all.rank;
-  const Eigen::VectorXd& singular = all.singular;
+  const Covariance c = ComputeCovariance(score, unit);
 
   Uncertainty u;
   u.num_residuals = score.num_data_rows;
   u.num_clusters = static_cast<int>(score.clusters.size());
   u.clustered = u.num_clusters > 1;
-  u.condition_number = rank > 0 ? singular[0] / singular[rank - 1] : kInfinity;
-  double sum = 0.0;
-  for (int row = 0; row < score.residuals.size(); ++row) {
-    if (score.cluster_of_row[row] >= 0) sum += score.residuals[row] * score.residuals[row];
-  }
-  const int freedom = std::max(1, score.num_data_rows - rank);
-  u.sigma = std::sqrt(sum / freedom);
-  u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : freedom);
-
-  // In the base of the identified directions, then back to the fitted scale.
-  const Eigen::MatrixXd base = all.v.leftCols(rank);
-  const Eigen::MatrixXd back = unit.asDiagonal() * base;
-  const Eigen::VectorXd inverse = singular.head(rank).cwiseInverse();
-  const Eigen::MatrixXd naive =
-      back * (u.sigma * u.sigma * inverse.cwiseAbs2()).asDiagonal() * back.transpose();
-  u.covariance =
-      u.clustered
-          ? Eigen::MatrixXd(back * ClusteredCovariance(score, scaled * base) * back.transpose())
-          : naive;
+  u.condition_number = c.directions.Condition();
+  u.sigma = c.sigma;
+  u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : c.freedom);
+  u.covariance = u.clustered ? c.clustered : c.naive;
   u.correlation = Correlation(u.covariance);
 
+  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
-    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), naive(i, i), u.t_quantile,
+    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i), u.t_quantile,
                                        touched && !columns[i].at_bound));
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
@@ -233,11 +177,11 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
 }
 
 Combination Combine(const FitProblem& problem, const FitPoint& point,
-                    const Uncertainty& uncertainty, const std::vector<Term>& terms,
-                    const std::string& name, const std::string& unit) {
+                    const Uncertainty& uncertainty, const CombinationSpec& spec) {
+  const std::vector<Term>& terms = spec.terms;
   const ParameterSet<double> values = problem.Parameters(point, "");
   const auto& fitted = problem.map().fitted;
-  Combination result{name, unit};
+  Combination result{spec.name, spec.unit};
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
   for (const Term& term : terms) {
     result.value += term.coefficient * values[term.parameter];
@@ -261,6 +205,21 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
     }
   }
   return result;
+}
+
+std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
+  const Parameter mu_y = model.friction == FrictionKind::kIsotropic ? kMu : kMuY;
+  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
+  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
+  const double by_mass = 1.0 / kReferenceMass;
+  return {{"c_x", "N s/m", {{kMu, 1.0}, {kKpX, 1.0}}},
+          {"c_y", "N s/m", {{mu_y, 1.0}, {kKpY, 1.0}}},
+          {"c_x/M", "1/s", {{kMu, by_mass}, {kKpX, by_mass}}},
+          {"c_y/M", "1/s", {{mu_y, by_mass}, {kKpY, by_mass}}},
+          {"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
+          {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
+          {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
+          {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}};
 }
 
 }  // namespace pushid

@@ -1,18 +1,16 @@
 // ident: how sure: standard errors naive and clustered by recording, null directions, correlations.
 //
-// At the optimum, with H = J'J over all residuals and s_g = J_g' r_g the score of recording g:
-//   naive      sigma^2 H^-1, sigma^2 = |r|^2 / (N - P): frames taken as independent, which they are
-//   not clustered  sum over g of D_g D_g' (G - 1) / G,  D_g = (H - H_g)^-1 s_g centred:
-// what leaving out recording g would move, to first order (the CR3 jackknife; Bell & McCaffrey
-// 2002), with Student's t of G - 1 degrees of freedom. Naive errors are up to 20 times too small
-// here. A null direction of the scaled Jacobian has no finite error: every parameter it touches is
-// unidentifiable, but combinations orthogonal to it are reported.
+// Covariances as covariance.h defines them, with Student's t of G - 1 degrees of freedom for G
+// recordings. Naive errors are up to 20 times too small here. A null direction of the scaled
+// Jacobian has no finite error: every parameter it touches is unidentifiable, but combinations
+// orthogonal to it are reported.
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "ident/covariance.h"
 #include "ident/fit_problem.h"
 
 namespace pushid {
@@ -57,16 +55,26 @@ struct Uncertainty {
   std::vector<NullDirection> null_directions;
 };
 
+// Fitted scale, in the order of FitPoint::Flat.
+Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
+
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point);
 
-// A linear combination of natural values of shared parameters with its error (delta method).
+// A linear combination of natural values of shared parameters, and its error by the delta method.
 struct Term {
   Parameter parameter;
   double coefficient;
 };
+struct CombinationSpec {
+  std::string name, unit;
+  std::vector<Term> terms;
+};
 Combination Combine(const FitProblem& problem, const FitPoint& point,
-                    const Uncertainty& uncertainty, const std::vector<Term>& terms,
-                    const std::string& name, const std::string& unit);
+                    const Uncertainty& uncertainty, const CombinationSpec& spec);
+
+// What every result reports beside its parameters: c = mu + Kp, and gains per mass of the reference
+// person.
+std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
 
 // Two-sided 95 % quantile of Student's t.
 double StudentQuantile95(int degrees_of_freedom);

@@ -100,9 +100,9 @@ TEST(ContactWork, IsTheChangeOfEnergy) {
     const auto p = Contact(damping);
     RolloutPath<double> path;
     ForceTrace forces;
-    ASSERT_TRUE(Rollout<double>(scene, WithContact(), {p}, InitialVelocities(scene), 30001, &path,
-                                &forces)
-                    .ok);
+    ASSERT_TRUE(
+        Rollout<double>(scene, WithContact(), {p}, InitialVelocities(scene), 30001, &path, &forces)
+            .ok);
     const ContactBooks books = KeepBooks(path, forces, scene.dt);
     double change = 0.0;
     for (int n : {0, 1}) {

@@ -49,6 +49,43 @@ TEST(ResultJson, RoundTripIsExact) {
   }
 }
 
+// Numbers that do not end in binary, an open side, a bootstrap and every diagnostic.
+FitResult JudgedResult() {
+  FitResult result = SampleResult();
+  const double infinity = std::numeric_limits<double>::infinity();
+  result.profiles = {{"mu",
+                      "N s/m",
+                      20.1,
+                      ProfileClass::kPracticallyNot,
+                      -infinity,
+                      30.7,
+                      1.1,
+                      0.3,
+                      "bound",
+                      "threshold",
+                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
+  result.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  Diagnostics& d = result.diagnostics;
+  d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
+  d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
+  d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
+  d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
+  d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
+  d.advice = {{"free less", "pushid-fit --fix=mu"}};
+  return result;
+}
+
+TEST(ResultJson, ConfidenceRoundTripIsExact) {
+  const Json json = ToJson(JudgedResult(), kRun);
+  for (const char* key : {"profiles", "bootstrap", "diagnostics"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+  EXPECT_EQ(json["profiles"][0]["interval_95"][0], "-infinity");
+  EXPECT_EQ(json["profiles"][0]["class"], "practically_not");
+}
+
 TEST(ResultJson, InfinitiesStayInfinite) {
   const FitResult result = SampleResult({"", "Kp_x", "", "", ""});
   const Json json = ToJson(result, kRun);
@@ -131,7 +168,7 @@ TEST(ResultJson, DamageIsNamed) {
   EXPECT_TRUE(Contains(message(json), "damaged"));
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
-    if (key == "format_version") continue;
+    if (key == "format_version" || key == "diagnostics") continue;  // older models have none
     json = good;
     json.erase(key);
     EXPECT_FALSE(message(json).empty()) << key;

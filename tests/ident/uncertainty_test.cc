@@ -144,7 +144,7 @@ TEST(Uncertainty, CombineAddsByTheDeltaMethod) {
   const auto s = SolveSmall(6, 0.0);
   const Uncertainty& u = s->uncertainty;
   const Combination c =
-      Combine(*s->problem, s->point, u, {{kMu, 2.0}, {kKpTheta, -1.0}}, "2 mu - Kp", "");
+      Combine(*s->problem, s->point, u, {"2 mu - Kp", "", {{kMu, 2.0}, {kKpTheta, -1.0}}});
   const double mu = u.estimates[0].value, kp = u.estimates[1].value;
   EXPECT_NEAR(c.value, 2.0 * mu - kp, 1e-9);
   const Eigen::Vector3d gradient(2.0, -kp, 0.0);  // Kp_theta is fitted as a log

@@ -1,0 +1,77 @@
+// ident: reading and writing finished replicas, a line of JSON each.
+#include "ident/bootstrap_file.h"
+
+#include <filesystem>
+#include <sstream>
+
+#include "datasets/atomic_file.h"
+#include "datasets/content_hash.h"
+#include "ident/result_json.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Two runs with the same header find the same replicas.
+std::string Header(const FitProblem& problem, const BootstrapOptions& options,
+                   const std::vector<std::string>& names) {
+  ContentHash fit;
+  fit.Add(SettingsJson(problem.options()).dump());
+  for (const PendulumRecording& recording : problem.recordings()) {
+    fit.Add(recording.id + "\n" + recording.content_hash + "\n");
+  }
+  const Json header = {
+      {"format", "pushid bootstrap"}, {"seed", options.seed}, {"fit", fit.Hex()}, {"names", names}};
+  return header.dump();
+}
+
+std::string Line(int replica, const ReplicaValues& values) {
+  return Json{{"replica", replica}, {"values", values}}.dump();
+}
+
+}  // namespace
+
+MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions& options,
+                               const std::vector<std::string>& names) {
+  path_ = options.file;
+  if (path_.empty()) return std::nullopt;
+  const std::string header = Header(problem, options, names);
+  std::string kept = header + "\n";
+  std::error_code ignored;
+  if (std::filesystem::exists(path_, ignored)) {
+    std::ifstream old(path_, std::ios::binary);
+    std::string line;
+    if (std::getline(old, line) && line != header) {
+      return Error{
+          "this file holds the bootstrap of another fit, seed or data; name another one "
+          "with --bootstrap_file, or delete it",
+          path_};
+    }
+    while (std::getline(old, line)) {
+      const Json row = Json::parse(line, nullptr, false);
+      if (!row.is_object() || !row.contains("replica") || !row.contains("values")) break;
+      const ReplicaValues values = row["values"].get<ReplicaValues>();
+      if (!values.empty() && values.size() != names.size()) break;
+      finished_[row["replica"].get<int>()] = values;
+      kept += line + "\n";
+    }
+  }
+  if (MaybeError error = WriteFileAtomically(path_, kept)) return error;
+  stream_.open(path_, std::ios::binary | std::ios::app);
+  return std::nullopt;
+}
+
+void BootstrapFile::Append(int replica, const ReplicaValues& values) {
+  if (path_.empty()) return;
+  stream_ << Line(replica, values) << "\n" << std::flush;
+}
+
+MaybeError BootstrapFile::Close() {
+  if (path_.empty()) return std::nullopt;
+  stream_.close();
+  if (stream_.fail()) return Error{"could not be written to its end", path_};
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,62 @@
+// ident: which further recording would tell most: the drop of standard errors that one more push of
+// a kind would bring.
+//
+// With H = J'J of the present recordings, V their clustered covariance and H_c = J_c'J_c of a
+// candidate, whose Jacobian comes from rolling the model out at the estimate (no data needed):
+//
+//   V' = (H + H_c)^-1 (B + k H_c) (H + H_c)^-1,   B = H V H,   k = tr(V H) / P
+//
+// The candidate's score is taken to be as much noisier than its information says as those of the
+// present recordings are on average (k = 1 sigma^2 for independent frames). Rejected: det(H + H_c)
+// alone, which believes frames to be independent and promises far too much of one recording.
+//   c-optimal: smallest V'_ii of a chosen parameter; D-optimal: smallest det V'.
+// Errors of parameters on a bound, and null directions, are left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/uncertainty.h"
+
+namespace pushid {
+
+struct CandidatePush {
+  double direction_deg = 0.0;  // from forward (+x) towards left (+y)
+  double acceleration = 0.0;   // peak force over mass, m/s^2
+  double height = 1.0;         // of the contact, fraction of the rod
+  double duration_s = 0.1;     // of the recorded part
+  double mass_kg = 80.0;       // of the person
+};
+
+struct DesignRow {
+  CandidatePush push;
+  std::vector<double> error_ratio;  // standard error with one more such recording over the present
+  double volume_ratio = 1.0;  // of det V, the P-th root of its square root: mean of the errors
+};
+
+struct ExperimentDesign {
+  std::vector<std::string> parameters, units;
+  std::vector<double> standard_error;  // now
+  PushKind kind = PushKind::kNet;      // of the candidates: that of most recordings
+  std::vector<DesignRow> rows;         // candidates that fell are left out
+};
+
+// Directions forward, oblique, sideways and back; strengths, durations and masses as wide as those
+// of the recordings; at the hip and lower.
+std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings);
+
+ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
+                                   const Uncertainty& uncertainty,
+                                   const std::vector<CandidatePush>& candidates);
+
+// The best `count` candidates for a parameter, or for all together ("all"), and the present spread
+// of pushes below them. Errors: no such parameter.
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
+                               int count);
+
+// The recording a candidate would be: an upright person at rest, and the motion that the model
+// expects.
+PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
+                                const CandidatePush& push, PushKind kind);
+
+}  // namespace pushid

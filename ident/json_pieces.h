@@ -1,0 +1,26 @@
+// ident: what several writers and readers of result JSON share.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "ident/uncertainty.h"
+
+namespace pushid {
+
+// JSON knows no infinity: it is written as the text "infinity".
+nlohmann::ordered_json NumberJson(double value);
+double NumberFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json NumbersJson(const std::vector<double>& values);
+std::vector<double> NumbersFrom(const nlohmann::ordered_json& json);
+nlohmann::ordered_json RowsJson(const std::vector<std::vector<double>>& rows);
+std::vector<std::vector<double>> RowsFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json CombinationJson(const Combination& combination);
+Combination CombinationFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json NullDirectionsJson(const std::vector<NullDirection>& directions);
+std::vector<NullDirection> NullDirectionsFrom(const nlohmann::ordered_json& json);
+
+}  // namespace pushid

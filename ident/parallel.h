@@ -1,0 +1,35 @@
+// ident: independent jobs over a few threads. Which thread does which job makes no difference to a
+// result: every job writes to its own place.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace pushid {
+
+using JobProgress = std::function<void(int done, int total)>;
+
+// Calls job(i) for i in [0, total); progress after each, from one thread at a time.
+inline void ParallelFor(int total, int num_threads, const std::function<void(int)>& job,
+                        const JobProgress& progress = nullptr) {
+  std::atomic<int> next{0};
+  std::mutex mutex;
+  int done = 0;
+  const auto work = [&] {
+    for (int i = next++; i < total; i = next++) {
+      job(i);
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (progress) progress(++done, total);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int i = 1; i < std::min(num_threads, total); ++i) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace pushid
