@@ -12,6 +12,7 @@
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
 #include "ident/option_names.h"
+#include "ident/predictive_bands.h"
 #include "ident/predictors.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
@@ -28,6 +29,8 @@ DEFINE_string(
     "rival configurations, semicolon-separated: name: --flag=value ... added to the flags "
     "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
 DEFINE_bool(yardsticks, true, "also static, constant velocity and ridge regression");
+DEFINE_bool(bands, false,
+            "also how often predictive 50 and 90 % bands hold the recordings that were not fitted");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace {
@@ -104,8 +107,19 @@ int Run() {
                     std::to_string(total));
         }));
   }
+  std::vector<BandCoverage> bands;
+  if (FLAGS_bands) {
+    BandOptions asked;
+    asked.seed = FLAGS_seed;
+    bands = CrossValidateBands(
+        pendulums, folds.value(), options.value(), asked, NumThreads(),
+        [&line](int done, int total) {
+          line.Show("bands: fold " + std::to_string(done) + " of " + std::to_string(total));
+        });
+  }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());
+  if (FLAGS_bands) std::printf("\n%s", BandCoverageText(bands).c_str());
   if (!FLAGS_json_out.empty()) {
     nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
     for (const CrossValidation& validation : validations) {
