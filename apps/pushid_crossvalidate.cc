@@ -13,6 +13,7 @@
 #include "datasets/json_file.h"
 #include "ident/frontier_svg.h"
 #include "ident/option_names.h"
+#include "ident/predictive_bands.h"
 #include "ident/predictors.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
@@ -31,6 +32,8 @@ DEFINE_string(
 DEFINE_bool(yardsticks, true, "also static, constant velocity and ridge regression");
 DEFINE_string(frontier_out, "",
               "draw accuracy against settling, a point for each configuration, here (SVG)");
+DEFINE_bool(bands, false,
+            "also how often predictive 50 and 90 % bands hold the recordings that were not fitted");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace {
@@ -108,12 +111,23 @@ int Run() {
                     std::to_string(total));
         }));
   }
+  std::vector<BandCoverage> bands;
+  if (FLAGS_bands) {
+    BandOptions asked;
+    asked.seed = FLAGS_seed;
+    bands = CrossValidateBands(
+        pendulums, folds.value(), options.value(), asked, NumThreads(),
+        [&line](int done, int total) {
+          line.Show("bands: fold " + std::to_string(done) + " of " + std::to_string(total));
+        });
+  }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());
   if (!FLAGS_frontier_out.empty()) {
     const std::string svg = FrontierSvg(validations);
     if (MaybeError error = WriteFileAtomically(FLAGS_frontier_out, svg)) return Fail(*error);
   }
+  if (FLAGS_bands) std::printf("\n%s", BandCoverageText(bands).c_str());
   if (!FLAGS_json_out.empty()) {
     nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
     for (const CrossValidation& validation : validations) {

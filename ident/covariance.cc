@@ -9,24 +9,38 @@
 namespace pushid {
 namespace {
 
-// In the coordinates of `jacobian`'s columns: an orthonormal base of the identified subspace.
-Eigen::MatrixXd LeaveOneOutMoves(const ScoreBlocks& score, const Eigen::MatrixXd& jacobian) {
-  const int groups = static_cast<int>(score.clusters.size());
-  const Eigen::MatrixXd hessian = jacobian.transpose() * jacobian;
-  Eigen::MatrixXd moves(jacobian.cols(), groups);
-  for (int g = 0; g < groups; ++g) {
+constexpr double kDetermined = 1e-9;  // share of a direction's information that is left
+
+bool IsMinimum(const Eigen::LDLT<Eigen::MatrixXd>& hessian) {
+  return hessian.isPositive() && hessian.rcond() > 1e-12;
+}
+
+// In the coordinates of `back`'s columns (a base of the identified subspace), with their Hessian H.
+// For each cluster H^-1/2 (1 - M)^-power H^-1/2 s_g, M = H^-1/2 J_g'J_g H^-1/2: power 1 leaves the
+// cluster out, power 1/2 is what CR2 takes.
+struct Moves {
+  Eigen::MatrixXd left_out, unbiased;
+};
+Moves ClusterMoves(const ScoreBlocks& score, const Eigen::MatrixXd& back,
+                   const Eigen::MatrixXd& hessian) {
+  const Eigen::Index groups = static_cast<Eigen::Index>(score.clusters.size());
+  const Eigen::MatrixXd root =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).operatorInverseSqrt();
+  Moves moves{Eigen::MatrixXd(back.cols(), groups), Eigen::MatrixXd(back.cols(), groups)};
+  for (Eigen::Index g = 0; g < groups; ++g) {
     std::vector<int> rows;
     for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
       if (score.cluster_of_row[row] == score.clusters[g]) rows.push_back(row);
     }
-    const Eigen::MatrixXd own = jacobian(rows, Eigen::all);
-    const Eigen::VectorXd gradient = own.transpose() * score.residuals(rows);
-    const Eigen::MatrixXd rest = hessian - own.transpose() * own;
-    // A cluster without which something is undetermined keeps its full leverage.
-    const Eigen::LDLT<Eigen::MatrixXd> without(rest);
-    const bool determined = without.isPositive() && without.rcond() > 1e-12;
-    moves.col(g) = determined ? Eigen::VectorXd(without.solve(gradient))
-                              : Eigen::VectorXd(hessian.ldlt().solve(gradient));
+    const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all) * back * root;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(own.transpose() * own);
+    const Eigen::MatrixXd& v = leverage.eigenvectors();
+    const Eigen::ArrayXd rest = 1.0 - leverage.eigenvalues().array();
+    // A direction that is undetermined without the cluster keeps the cluster's full leverage.
+    const Eigen::ArrayXd kept = (rest > kDetermined).select(rest, 1.0);
+    const Eigen::VectorXd gradient = v.transpose() * (own.transpose() * score.residuals(rows));
+    moves.left_out.col(g) = root * v * (gradient.array() / kept).matrix();
+    moves.unbiased.col(g) = root * v * (gradient.array() / kept.sqrt()).matrix();
   }
   return moves;
 }
@@ -71,15 +85,23 @@ Covariance ComputeCovariance(const ScoreBlocks& score, const Eigen::VectorXd& un
   // In the base of the identified directions, then back to the columns as they came.
   const Eigen::MatrixXd base = c.directions.v.leftCols(rank);
   const Eigen::MatrixXd back = unit.asDiagonal() * base;
-  const Eigen::VectorXd inverse = c.directions.singular.head(rank).cwiseInverse();
-  c.inverse_hessian = back * inverse.cwiseAbs2().asDiagonal() * back.transpose();
-  c.naive = c.sigma * c.sigma * c.inverse_hessian;
-  const double groups = static_cast<double>(score.clusters.size());
-  if (groups < 2) return c;
+  const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
+  c.naive = c.sigma * c.sigma * back * squared.cwiseInverse().asDiagonal() * back.transpose();
+
+  Eigen::MatrixXd hessian = squared.asDiagonal();
+  if (score.curvature.size() > 0) {
+    const Eigen::MatrixXd full = hessian + back.transpose() * score.curvature * back;
+    c.full_hessian = IsMinimum(Eigen::LDLT<Eigen::MatrixXd>(full));
+    if (c.full_hessian) hessian = full;
+  }
+  c.inverse_hessian = back * hessian.ldlt().solve(back.transpose());
+  if (score.clusters.size() < 2) return c;
   c.clusters = score.clusters;
-  c.moves = back * LeaveOneOutMoves(score, scaled * base);
-  const Eigen::MatrixXd centred = c.moves.colwise() - c.moves.rowwise().mean().eval();
-  c.clustered = (groups - 1.0) / groups * centred * centred.transpose();
+  const Moves moves = ClusterMoves(score, back, hessian);
+  c.moves = back * moves.left_out;
+  const Eigen::MatrixXd unbiased = back * moves.unbiased;
+  const Eigen::MatrixXd centred = unbiased.colwise() - unbiased.rowwise().mean().eval();
+  c.clustered = centred * centred.transpose();
   return c;
 }
 

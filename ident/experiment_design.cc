@@ -160,7 +160,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   const Eigen::MatrixXd hessian =
       Eigen::MatrixXd(covariance.inverse_hessian(known, known)).inverse();
   const Eigen::MatrixXd scores = hessian * now * hessian;
-  const double noisier = (now * hessian).trace() / size;
+  const double groups = std::max(1, uncertainty.num_clusters);
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
     bool fell = candidate.states.empty();
@@ -173,7 +173,8 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
         CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
     const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
     const Eigen::MatrixXd bread = (hessian + information).inverse();
-    const Eigen::MatrixXd then = bread * (scores + noisier * information) * bread;
+    const Eigen::MatrixXd then =
+        bread * (scores + groups * information * now * information) * bread;
     DesignRow row;
     row.push = push;
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));
@@ -200,18 +201,24 @@ Result<std::string> DesignText(const ExperimentDesign& design, const std::string
   std::stable_sort(rows.begin(), rows.end(),
                    [&](const DesignRow& a, const DesignRow& b) { return score(a) < score(b); });
   const auto change = [](double ratio) { return Significant(100.0 * (ratio - 1.0), 2) + " %"; };
-  const std::string chosen = all ? "mean of all errors" : "error of " + parameter;
-  TextTable table({"one more push", "m/s^2", "height", "s", "kg", chosen, "mean of all errors"},
-                  {true, false, false, false, false, false, false});
+  std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg"};
+  if (!all) header.push_back("error of " + parameter);
+  header.push_back("mean of all errors");
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  TextTable table(header, left);
   const auto add = [&](const DesignRow& row) {
     const double degrees = row.push.direction_deg;
     const std::string direction = degrees == 0.0     ? "forwards"
                                   : degrees == 90.0  ? "to the left"
                                   : degrees == 180.0 ? "backwards"
                                                      : Significant(degrees) + " degrees left";
-    table.Add({direction, Significant(row.push.acceleration, 3), Significant(row.push.height, 2),
-               Significant(row.push.duration_s, 2), Significant(row.push.mass_kg, 3),
-               change(score(row)), change(row.volume_ratio)});
+    std::vector<std::string> cells = {
+        direction, Significant(row.push.acceleration, 3), Significant(row.push.height, 2),
+        Significant(row.push.duration_s, 2), Significant(row.push.mass_kg, 3)};
+    if (!all) cells.push_back(change(score(row)));
+    cells.push_back(change(row.volume_ratio));
+    table.Add(cells);
   };
   const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
   for (size_t i = 0; i < shown; ++i) add(rows[i]);
@@ -220,7 +227,7 @@ Result<std::string> DesignText(const ExperimentDesign& design, const std::string
     add(rows.back());
   }
   std::string text = "what one more recording would change, best first, and the least useful of " +
-                     std::to_string(rows.size()) + " last\n" + table.ToString();
+                     std::to_string(rows.size()) + " candidates last\n" + table.ToString();
   if (!all) {
     text += "now: " + parameter + " +- " + Significant(design.standard_error[index], 3) + " " +
             design.units[index] + "\n";

@@ -1,14 +1,16 @@
 // ident: which further recording would tell most: the drop of standard errors that one more push of
 // a kind would bring.
 //
-// With H = J'J of the present recordings, V their clustered covariance and H_c = J_c'J_c of a
-// candidate, whose Jacobian comes from rolling the model out at the estimate (no data needed):
+// With H the Hessian of the G present recordings, V their clustered covariance and H_c = J_c'J_c of
+// a candidate, whose Jacobian comes from rolling the model out at the estimate (no data needed):
 //
-//   V' = (H + H_c)^-1 (B + k H_c) (H + H_c)^-1,   B = H V H,   k = tr(V H) / P
+//   V' = (H + H_c)^-1 (H V H + G H_c V H_c) (H + H_c)^-1
 //
-// The candidate's score is taken to be as much noisier than its information says as those of the
-// present recordings are on average (k = 1 sigma^2 for independent frames). Rejected: det(H + H_c)
-// alone, which believes frames to be independent and promises far too much of one recording.
+// Gains differ from recording to recording; those of the candidate are taken to deviate like the
+// others', with covariance G V, so that a candidate with a G-th of the information lowers V by
+// G / (G + 1), as one more of the same should. One that outweighs the rest can make things worse:
+// the fit would follow that one recording. Rejected: det(H + H_c) alone, which believes frames to
+// be independent and promises far too much of one recording.
 //   c-optimal: smallest V'_ii of a chosen parameter; D-optimal: smallest det V'.
 // Errors of parameters on a bound, and null directions, are left out.
 #pragma once

@@ -121,6 +121,7 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.clustered = json.at("clustered_by") == "recording";
   u.num_clusters = json.at("clusters");
   u.num_residuals = json.at("residuals");
+  u.full_hessian = json.value("full_hessian", false);
   u.sigma = json.at("sigma");
   u.t_quantile = json.at("t_quantile");
   u.condition_number = NumberFrom(json.at("condition_number"));

@@ -85,6 +85,7 @@ Json UncertaintyJson(const Uncertainty& u) {
   return {{"clustered_by", u.clustered ? "recording" : "none"},
           {"clusters", u.num_clusters},
           {"residuals", u.num_residuals},
+          {"full_hessian", u.full_hessian},
           {"sigma", u.sigma},
           {"t_quantile", u.t_quantile},
           {"condition_number", NumberJson(u.condition_number)},

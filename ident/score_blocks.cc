@@ -51,4 +51,37 @@ ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
   return score;
 }
 
+namespace {
+
+constexpr double kDifference = 1e-4;
+
+}  // namespace
+
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit, ScoreBlocks* score) {
+  const Eigen::Index size = score->jacobian.cols();
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
+  Eigen::Index column = 0;
+  for (double* block : built.parameter_blocks) {
+    for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
+      const double step = kDifference * unit[column];
+      if (step == 0.0) continue;
+      const double value = block[k];
+      block[k] = value + step;
+      const ScoreBlocks above = EvaluateScoreBlocks(built);
+      block[k] = value - step;
+      const ScoreBlocks below = EvaluateScoreBlocks(built);
+      block[k] = value;
+      if (above.cluster_of_row != score->cluster_of_row ||
+          below.cluster_of_row != score->cluster_of_row) {
+        return;
+      }
+      hessian.col(column) = (above.jacobian.transpose() * above.residuals -
+                             below.jacobian.transpose() * below.residuals) /
+                            (2.0 * step);
+    }
+  }
+  score->curvature =
+      0.5 * (hessian + hessian.transpose()) - score->jacobian.transpose() * score->jacobian;
+}
+
 }  // namespace pushid

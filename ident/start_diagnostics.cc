@@ -104,7 +104,7 @@ std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& reco
 }
 
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
-  const Uncertainty at_start = ComputeUncertainty(problem, start.from);
+  const Conditioning at_start = ComputeConditioning(problem, start.from);
   StartDiagnostics d;
   d.condition_number = at_start.condition_number;
   d.null_directions = at_start.null_directions;

@@ -12,6 +12,8 @@ namespace pushid {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Pooled fits of many subjects: two Jacobians for each column would take longer than the fit.
+constexpr Eigen::Index kMostColumnsWithCurvature = 60;
 constexpr double kTouched = 1e-4;  // share of a null direction that counts
 
 // What is known of each fitted number besides its estimate.
@@ -138,19 +140,43 @@ Eigen::VectorXd Units(const std::vector<Column>& columns) {
   return unit;
 }
 
+// Residuals, Jacobian and, unless there are too many columns, second derivatives.
+struct Evaluated {
+  ScoreBlocks score;
+  std::vector<Column> columns;
+  Eigen::VectorXd unit;
+};
+Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  Evaluated e{EvaluateScoreBlocks(built), Columns(problem, point), {}};
+  e.unit = Units(e.columns);
+  if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
+    AddCurvature(built, e.unit, &e.score);
+  }
+  return e;
+}
+
 }  // namespace
 
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
-  FitPoint copy = point;
-  return ComputeCovariance(EvaluateScoreBlocks(problem.Build(&copy, 0)),
-                           Units(Columns(problem, point)));
+  const Evaluated e = Evaluate(problem, point, true);
+  return ComputeCovariance(e.score, e.unit);
+}
+
+Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point) {
+  const Evaluated e = Evaluate(problem, point, false);
+  const Covariance c = ComputeCovariance(e.score, e.unit);
+  Uncertainty u;
+  u.covariance = c.naive;
+  u.t_quantile = StudentQuantile95(c.freedom);
+  const Eigen::MatrixXd scaled = e.score.jacobian * e.unit.asDiagonal();
+  return {c.directions.Condition(),
+          DescribeNullSpace(problem, point, DataNullSpace(e.score, scaled, e.columns), u)};
 }
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
-  FitPoint copy = point;
-  const ScoreBlocks score = EvaluateScoreBlocks(problem.Build(&copy, 0));
-  const std::vector<Column> columns = Columns(problem, point);
-  const Eigen::VectorXd unit = Units(columns);
+  const auto [score, columns, unit] = Evaluate(problem, point, true);
   const int size = static_cast<int>(columns.size());
   const Covariance c = ComputeCovariance(score, unit);
 
@@ -159,6 +185,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
   u.num_clusters = static_cast<int>(score.clusters.size());
   u.clustered = u.num_clusters > 1;
   u.condition_number = c.directions.Condition();
+  u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;
   u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : c.freedom);
   u.covariance = u.clustered ? c.clustered : c.naive;

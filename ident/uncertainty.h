@@ -49,6 +49,7 @@ struct Uncertainty {
   double sigma = 0.0;               // residual standard deviation, in sigmas
   double t_quantile = 0.0;          // of the 95 % interval
   double condition_number = 0.0;    // of the scaled Jacobian, without null directions
+  bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
   Eigen::MatrixXd correlation;      // of that covariance
@@ -59,6 +60,14 @@ struct Uncertainty {
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point);
+
+// What the recordings alone leave undetermined at a point, and how badly conditioned the rest is;
+// cheaper than all of Uncertainty.
+struct Conditioning {
+  double condition_number = 0.0;
+  std::vector<NullDirection> null_directions;
+};
+Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point);
 
 // A linear combination of natural values of shared parameters, and its error by the delta method.
 struct Term {

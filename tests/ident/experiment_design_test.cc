@@ -60,9 +60,10 @@ TEST_F(Design, CandidatesCountAsRecordings) {
   const Covariance now = CovarianceAt(*problem_, estimate_), then = CovarianceAt(with, estimate_);
   const Eigen::MatrixXd h = now.inverse_hessian.inverse(), h2 = then.inverse_hessian.inverse();
   const Eigen::MatrixXd v = uncertainty_.covariance;
-  const double noisier = (v * h).trace() / static_cast<double>(v.rows());
   const Eigen::MatrixXd expected =
-      then.inverse_hessian * (h * v * h + noisier * (h2 - h)) * then.inverse_hessian;
+      then.inverse_hessian *
+      (h * v * h + static_cast<double>(recordings_.size()) * (h2 - h) * v * (h2 - h)) *
+      then.inverse_hessian;
   const ExperimentDesign d = Of({push});
   for (int i = 0; i < v.rows(); ++i) {
     EXPECT_NEAR(d.rows[0].error_ratio[i], std::sqrt(expected(i, i) / v(i, i)), 1e-6);

@@ -61,43 +61,76 @@ void ExpectRelativelyEqual(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, d
   }
 }
 
-// One Gauss-Newton step from the optimum, as if the recording had never been there.
-TEST(Uncertainty, ClusteredIsTheGaussNewtonJackknife) {
+double CostAt(const Solved& s, const std::vector<double>& shared) {
+  FitPoint point = s.point;
+  point.shared = shared;
+  double cost = 0.0;
+  s.problem->Build(&point, 0).problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
+
+// Second differences of the cost itself.
+TEST(Uncertainty, HessianIsThatOfTheCost) {
+  const auto s = SolveSmall(6, 0.5);
+  const Covariance c = CovarianceAt(*s->problem, s->point);
+  ASSERT_TRUE(c.full_hessian);
+  const Eigen::MatrixXd hessian = c.inverse_hessian.inverse();
+  Eigen::Vector3d step;
+  for (int i = 0; i < 3; ++i) step[i] = 1e-2 * std::sqrt(1.0 / hessian(i, i));
+  const auto cost = [&](int i, double a, int j, double b) {
+    std::vector<double> shared = s->point.shared;
+    shared[i] += a * step[i];
+    shared[j] += b * step[j];
+    return CostAt(*s, shared);
+  };
+  Eigen::MatrixXd differences(3, 3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      differences(i, j) =
+          (cost(i, 1, j, 1) - cost(i, 1, j, -1) - cost(i, -1, j, 1) + cost(i, -1, j, -1)) /
+          (4.0 * step[i] * step[j]);
+    }
+  }
+  ExpectRelativelyEqual(hessian, differences, 1e-3);
+}
+
+// Bell and McCaffrey's correction by its definition, on the rows of each recording.
+TEST(Uncertainty, ClusteredIsBiasReduced) {
   for (double prior : {0.0, 0.5}) {
     const auto s = SolveSmall(6, prior);
     const int groups = static_cast<int>(s->score.clusters.size());
     ASSERT_EQ(groups, 6);
-    Eigen::MatrixXd steps(3, groups);
+    const Eigen::MatrixXd inverse = CovarianceAt(*s->problem, s->point).inverse_hessian;
+    Eigen::MatrixXd moves(3, groups);
     for (int g = 0; g < groups; ++g) {
-      const std::vector<int> rows = RowsOf(s->score, s->score.clusters[g], false);
-      const Eigen::MatrixXd jacobian = s->score.jacobian(rows, Eigen::all);
-      steps.col(g) =
-          -jacobian.colPivHouseholderQr().solve(Eigen::VectorXd(s->score.residuals(rows)));
+      const std::vector<int> rows = RowsOf(s->score, s->score.clusters[g], true);
+      const Eigen::MatrixXd own = s->score.jacobian(rows, Eigen::all);
+      const Eigen::MatrixXd hat = own * inverse * own.transpose();
+      const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat;
+      moves.col(g) = inverse * own.transpose() *
+                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).operatorInverseSqrt() *
+                     s->score.residuals(rows);
     }
-    const Eigen::VectorXd mean = steps.rowwise().mean();
-    Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3, 3);
-    for (int g = 0; g < groups; ++g) {
-      expected +=
-          (groups - 1.0) / groups * (steps.col(g) - mean) * (steps.col(g) - mean).transpose();
-    }
-    ExpectRelativelyEqual(s->uncertainty.covariance, expected, 1e-4);
+    moves.colwise() -= moves.rowwise().mean().eval();
+    ExpectRelativelyEqual(s->uncertainty.covariance, moves * moves.transpose(), 1e-4);
   }
 }
 
-// The first order is what leaving a recording out really moves.
-TEST(Uncertainty, JackknifeIsCloseToRefitting) {
+// One Newton step is what leaving a recording out really moves.
+TEST(Uncertainty, MovesAreCloseToRefitting) {
   const auto s = SolveSmall(6, 0.0);
-  Eigen::MatrixXd moved(3, 6);
+  const Eigen::MatrixXd moves = CovarianceAt(*s->problem, s->point).moves;
   for (int g = 0; g < 6; ++g) {
     std::vector<PendulumRecording> others = s->recordings;
     others.erase(others.begin() + g);
     const FitProblem problem(others, s->options);
     const FitPoint point = SolveFrom(problem, s->point, "nominal", "", nullptr).to;
-    moved.col(g) = Eigen::Map<const Eigen::VectorXd>(point.shared.data(), 3);
+    for (int i = 0; i < 3; ++i) {
+      const double error = std::sqrt(s->uncertainty.covariance(i, i));
+      EXPECT_NEAR(moves(i, g) / error, (point.shared[i] - s->point.shared[i]) / error, 0.05)
+          << g << " " << i;
+    }
   }
-  moved.colwise() -= moved.rowwise().mean().eval();
-  const Eigen::MatrixXd expected = 5.0 / 6.0 * moved * moved.transpose();
-  ExpectRelativelyEqual(s->uncertainty.covariance, expected, 0.1);
 }
 
 TEST(Uncertainty, NaiveIsTheTextbookOne) {
