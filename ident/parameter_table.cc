@@ -99,7 +99,8 @@ Preset GroupPreset() {
   preset.pool = "all";
   preset.pool_by = PoolBy::kSetting;
   preset.pooling_sigma = 0.3;
-  // The last iterations move nothing by a hundredth of its error.
+  // Going on to 1e-10 takes twice as long and moves no parameter by more than 4 % of its standard
+  // error, except the contact distance, by a third of its millimetre.
   preset.function_tolerance = 1e-6;
   return preset;
 }
