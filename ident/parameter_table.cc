@@ -99,8 +99,8 @@ Preset GroupPreset() {
   preset.pool = "all";
   preset.pool_by = PoolBy::kSetting;
   preset.pooling_sigma = 0.3;
-  // Going on to 1e-10 takes twice as long and moves nothing by more than 4 % of its standard error,
-  // but the shared contact distance by a third of its (1 mm).
+  // Going on to 1e-10 takes twice as long and moves no parameter by more than 4 % of its standard
+  // error; only the contact distance moves by a third of it, 0.3 mm.
   preset.function_tolerance = 1e-6;
   return preset;
 }
