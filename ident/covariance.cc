@@ -15,23 +15,15 @@ bool IsMinimum(const Eigen::LDLT<Eigen::MatrixXd>& hessian) {
   return hessian.isPositive() && hessian.rcond() > 1e-12;
 }
 
-// In the coordinates of `back`'s columns (a base of the identified subspace), with their Hessian H.
-// For each cluster H^-1/2 (1 - M)^-power H^-1/2 s_g, M = H^-1/2 J_g'J_g H^-1/2: power 1 leaves the
-// cluster out, power 1/2 is what CR2 takes.
-struct Moves {
-  Eigen::MatrixXd left_out, unbiased;
-};
-Moves ClusterMoves(const ScoreBlocks& score, const Eigen::MatrixXd& back,
-                   const Eigen::MatrixXd& hessian) {
-  const Eigen::Index groups = static_cast<Eigen::Index>(score.clusters.size());
+// In the coordinates of `back`'s columns (a base of the identified subspace), with their Hessian H:
+// H^-1/2 (1 - M)^-1/2 H^-1/2 s_g for each cluster, M = H^-1/2 J_g'J_g H^-1/2.
+Eigen::MatrixXd UnbiasedMoves(const ScoreBlocks& score, const Eigen::MatrixXd& back,
+                              const Eigen::MatrixXd& hessian) {
   const Eigen::MatrixXd root =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).operatorInverseSqrt();
-  Moves moves{Eigen::MatrixXd(back.cols(), groups), Eigen::MatrixXd(back.cols(), groups)};
-  for (Eigen::Index g = 0; g < groups; ++g) {
-    std::vector<int> rows;
-    for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-      if (score.cluster_of_row[row] == score.clusters[g]) rows.push_back(row);
-    }
+  Eigen::MatrixXd moves(back.cols(), score.clusters.size());
+  for (size_t g = 0; g < score.clusters.size(); ++g) {
+    const std::vector<int> rows = score.RowsOf(score.clusters[g]);
     const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all) * back * root;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(own.transpose() * own);
     const Eigen::MatrixXd& v = leverage.eigenvectors();
@@ -39,8 +31,20 @@ Moves ClusterMoves(const ScoreBlocks& score, const Eigen::MatrixXd& back,
     // A direction that is undetermined without the cluster keeps the cluster's full leverage.
     const Eigen::ArrayXd kept = (rest > kDetermined).select(rest, 1.0);
     const Eigen::VectorXd gradient = v.transpose() * (own.transpose() * score.residuals(rows));
-    moves.left_out.col(g) = root * v * (gradient.array() / kept).matrix();
-    moves.unbiased.col(g) = root * v * (gradient.array() / kept.sqrt()).matrix();
+    moves.col(g) = root * v * (gradient.array() / kept.sqrt()).matrix();
+  }
+  return moves;
+}
+
+// H^-1 s_g G / (G - 1) for each cluster.
+Eigen::MatrixXd LeftOutMoves(const ScoreBlocks& score, const Eigen::MatrixXd& inverse_hessian) {
+  const double groups = static_cast<double>(score.clusters.size());
+  Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
+  for (size_t g = 0; g < score.clusters.size(); ++g) {
+    const std::vector<int> rows = score.RowsOf(score.clusters[g]);
+    const Eigen::VectorXd gradient =
+        score.jacobian(rows, Eigen::all).transpose() * score.residuals(rows);
+    moves.col(g) = groups / (groups - 1.0) * inverse_hessian * gradient;
   }
   return moves;
 }
@@ -97,9 +101,8 @@ Covariance ComputeCovariance(const ScoreBlocks& score, const Eigen::VectorXd& un
   c.inverse_hessian = back * hessian.ldlt().solve(back.transpose());
   if (score.clusters.size() < 2) return c;
   c.clusters = score.clusters;
-  const Moves moves = ClusterMoves(score, back, hessian);
-  c.moves = back * moves.left_out;
-  const Eigen::MatrixXd unbiased = back * moves.unbiased;
+  c.moves = LeftOutMoves(score, c.inverse_hessian);
+  const Eigen::MatrixXd unbiased = back * UnbiasedMoves(score, back, hessian);
   const Eigen::MatrixXd centred = unbiased.colwise() - unbiased.rowwise().mean().eval();
   c.clustered = centred * centred.transpose();
   return c;

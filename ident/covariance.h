@@ -6,8 +6,10 @@
 //   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
 //   clustered  sum over g of D_g D_g', D_g centred,
 //              D_g = H^-1/2 (1 - M_g)^-1/2 H^-1/2 s_g,  M_g = H^-1/2 J_g'J_g H^-1/2
-// (CR2; Bell & McCaffrey 2002). What leaving a cluster out would move, by one Newton step, is the
-// same with the power -1.
+// (CR2; Bell & McCaffrey 2002). What leaving a cluster out would move: H^-1 s_g G / (G - 1), one
+// step with the mean Hessian of the rest. Against refits of the 32 single-person recordings it is
+// off by 15 % (root mean square over all moves); by H less the cluster's own J_g'J_g by 39 %, less
+// its second derivatives too by 42 %, by J'J less J_g'J_g by 28 %.
 //
 // Rejected, by the share of 95 % intervals that held the truth where recordings differ
 // (tests/studies/coverage_study.cc): J'J alone for H, which the robust loss makes too large (73 to

@@ -135,6 +135,29 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
   return candidate;
 }
 
+namespace {
+
+// L with L L' = T = G (V - V_naive), without the directions where noise is all there is.
+Eigen::MatrixXd SpreadRoot(const Eigen::MatrixXd& clustered, const Eigen::MatrixXd& naive,
+                           int groups) {
+  const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt();
+  const Eigen::VectorXd inverse = error.cwiseInverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
+  return error.asDiagonal() * solver.eigenvectors() *
+         solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+// (I^-1 + L L')^-1, also where I is singular (Woodbury).
+Eigen::MatrixXd WithSpread(const Eigen::MatrixXd& information, const Eigen::MatrixXd& spread) {
+  const Eigen::MatrixXd mixed = information * spread;
+  const Eigen::MatrixXd inner =
+      Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
+  return information - mixed * inner.ldlt().solve(mixed.transpose());
+}
+
+}  // namespace
+
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                    const Uncertainty& uncertainty,
                                    const std::vector<CandidatePush>& candidates) {
@@ -157,10 +180,9 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   const int size = static_cast<int>(known.size());
   if (size == 0) return design;
   const Eigen::MatrixXd now = uncertainty.covariance(known, known);
-  const Eigen::MatrixXd hessian =
-      Eigen::MatrixXd(covariance.inverse_hessian(known, known)).inverse();
-  const Eigen::MatrixXd scores = hessian * now * hessian;
-  const double groups = std::max(1, uncertainty.num_clusters);
+  const Eigen::MatrixXd present = now.inverse();
+  const Eigen::MatrixXd spread =
+      SpreadRoot(now, covariance.naive(known, known), std::max(1, uncertainty.num_clusters));
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
     bool fell = candidate.states.empty();
@@ -171,10 +193,9 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
     if (fell) continue;
     const Eigen::MatrixXd jacobian =
         CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
-    const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
-    const Eigen::MatrixXd bread = (hessian + information).inverse();
-    const Eigen::MatrixXd then =
-        bread * (scores + groups * information * now * information) * bread;
+    const Eigen::MatrixXd information =
+        jacobian.transpose() * jacobian / (covariance.sigma * covariance.sigma);
+    const Eigen::MatrixXd then = (present + WithSpread(information, spread)).inverse();
     DesignRow row;
     row.push = push;
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));

@@ -1,16 +1,18 @@
 // ident: which further recording would tell most: the drop of standard errors that one more push of
 // a kind would bring.
 //
-// With H the Hessian of the G present recordings, V their clustered covariance and H_c = J_c'J_c of
-// a candidate, whose Jacobian comes from rolling the model out at the estimate (no data needed):
+// A recording's own gains deviate from everybody's by the spread T between recordings, and are seen
+// through noise. With V the clustered covariance of the G present recordings, V_naive the one that
+// takes all errors for noise, and I_c = J_c'J_c / sigma^2 of a candidate, whose Jacobian comes from
+// rolling the model out at the estimate (no data needed):
 //
-//   V' = (H + H_c)^-1 (H V H + G H_c V H_c) (H + H_c)^-1
+//   V' = (V^-1 + (I_c^-1 + T)^-1)^-1,   T = G (V - V_naive), its positive part
 //
-// Gains differ from recording to recording; those of the candidate are taken to deviate like the
-// others', with covariance G V, so that a candidate with a G-th of the information lowers V by
-// G / (G + 1), as one more of the same should. One that outweighs the rest can make things worse:
-// the fit would follow that one recording. Rejected: det(H + H_c) alone, which believes frames to
-// be independent and promises far too much of one recording.
+// However strong the push, one more recording lowers the error of a parameter that recordings
+// disagree on by no more than about sqrt(G / (G + 1)); one that is only drowned in noise may gain
+// more. Rejected: det(J'J + J_c'J_c) alone, which believes that people are alike and promises far
+// too much of one recording; the error of the very fit that would follow, which a single strong
+// recording can make worse.
 //   c-optimal: smallest V'_ii of a chosen parameter; D-optimal: smallest det V'.
 // Errors of parameters on a bound, and null directions, are left out.
 #pragma once

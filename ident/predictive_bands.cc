@@ -72,6 +72,27 @@ std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
   return sets;
 }
 
+// The model with another draw of its shared values; units it knows keep their deviation from them
+// on the fitted scale.
+IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
+  IdentifiedModel drawn = model;
+  drawn.parameters = shared;
+  for (auto& [unit, set] : drawn.by_unit) {
+    for (const ParameterSpec& spec : model.table.specs) {
+      const auto fitted = [&](const ParameterSet<double>& of) {
+        return ToFitted(spec.transform, of[spec.id]);
+      };
+      if (set[spec.id] == model.parameters[spec.id]) {
+        set[spec.id] = shared[spec.id];
+      } else {
+        set[spec.id] =
+            ToNatural(spec.transform, fitted(shared) + fitted(set) - fitted(model.parameters));
+      }
+    }
+  }
+  return drawn;
+}
+
 // Quantiles over samples of one person's path.
 PathBand QuantilesOf(const std::vector<std::vector<Vector3<double>>>& paths) {
   PathBand band;
@@ -128,14 +149,10 @@ PredictiveBands ComputeBands(const FitResult& result,
   const double speed = PushSpeed(recording);
   Random random(seed);
   std::vector<std::vector<std::vector<Vector3<double>>>> paths(recording.scene.num_people());
-  IdentifiedModel model = ModelOf(result);
+  const IdentifiedModel model = ModelOf(result);
   for (const ParameterSet<double>& sample : samples) {
-    // Subjects keep their ratio (or difference) to the shared values out of it: a new person has
-    // none.
-    model.parameters = sample;
-    model.by_subject.clear();
     const double draw = random.Unit();
-    Prediction prediction = Predict(model, recording);
+    Prediction prediction = Predict(WithShared(model, sample), recording);
     if (!prediction.status.ok) {
       ++bands.failed;
       continue;

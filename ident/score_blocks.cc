@@ -51,6 +51,14 @@ ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
   return score;
 }
 
+std::vector<int> ScoreBlocks::RowsOf(int cluster) const {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(cluster_of_row.size()); ++row) {
+    if (cluster_of_row[row] == cluster) rows.push_back(row);
+  }
+  return rows;
+}
+
 namespace {
 
 constexpr double kDifference = 1e-4;

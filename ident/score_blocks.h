@@ -17,6 +17,8 @@ struct ScoreBlocks {
   // What J'J leaves out of the Hessian: the sum over rows of r times its second derivatives. Empty
   // until AddCurvature.
   Eigen::MatrixXd curvature;
+
+  std::vector<int> RowsOf(int cluster) const;
 };
 
 ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built);

@@ -152,12 +152,12 @@ TEST(Leverage, IsWhatRefitsFind) {
       const double step = leverage.change[g][p] / error;
       off += (real - step) * (real - step);
       size += real * real;
-      EXPECT_NEAR(step, real, 0.03 + 0.2 * std::abs(real))
+      EXPECT_NEAR(step, real, 0.05 + 0.4 * std::abs(real))
           << leverage.recordings[g] << " " << leverage.parameters[p];
     }
   }
   RecordProperty("relative_error", std::to_string(std::sqrt(off / size)));
-  EXPECT_LT(std::sqrt(off / size), 0.1);  // over all recordings and parameters
+  EXPECT_LT(std::sqrt(off / size), 0.25);  // over all recordings and parameters
 }
 
 TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
