@@ -94,17 +94,21 @@ std::string DiagnosticsText(const FitResult& result) {
   return text;
 }
 
-std::string AgreementText(const FitResult& result) {
-  const std::vector<Agreement> rows = CompareIntervals(result);
-  if (rows.empty()) return "";
+TextTable AgreementTable(const FitResult& result) {
   TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class"},
                   {true, false, true, true, true, true, true});
-  for (const Agreement& row : rows) {
+  for (const Agreement& row : CompareIntervals(result)) {
     table.Add({row.name, Significant(row.value), IntervalText(row.clustered),
                IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
                row.classification ? NameOf(*row.classification) : ""});
   }
-  std::string text = table.ToString() + Disagreements(rows);
+  return table;
+}
+
+std::string AgreementNote(const FitResult& result) {
+  const std::vector<Agreement> rows = CompareIntervals(result);
+  if (rows.empty()) return "";
+  std::string text = Disagreements(rows);
   if (result.bootstrap) {
     text += "bootstrap over recordings: " + std::to_string(result.bootstrap->values.size()) +
             " of " + std::to_string(result.bootstrap->replicas) + " replicas, seed " +

@@ -4,11 +4,14 @@
 #include <string>
 
 #include "ident/fit_result.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 
-// Clustered, profile and bootstrap intervals side by side; empty when neither was asked for.
-std::string AgreementText(const FitResult& result);
+// Clustered, profile and bootstrap intervals side by side (only a header when neither was asked
+// for), and whether they agree.
+TextTable AgreementTable(const FitResult& result);
+std::string AgreementNote(const FitResult& result);
 
 // What was noted before the solve, the recordings that fit worst or move most, whether residuals
 // are white, and what to try next.

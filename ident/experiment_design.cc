@@ -205,8 +205,8 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   return design;
 }
 
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
-                               int count) {
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count) {
   const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
   const bool all = parameter == "all";
   if (!all && at == design.parameters.end()) {
@@ -247,9 +247,19 @@ Result<std::string> DesignText(const ExperimentDesign& design, const std::string
     table.AddGap();
     add(rows.back());
   }
+  return table;
+}
+
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
+                               int count) {
+  const Result<TextTable> table = DesignTable(design, parameter, count);
+  if (!table.ok()) return table.error();
   std::string text = "what one more recording would change, best first, and the least useful of " +
-                     std::to_string(rows.size()) + " candidates last\n" + table.ToString();
-  if (!all) {
+                     std::to_string(design.rows.size()) + " candidates last\n" +
+                     table.value().ToString();
+  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
+  if (at != design.parameters.end()) {
+    const size_t index = static_cast<size_t>(at - design.parameters.begin());
     text += "now: " + parameter + " +- " + Significant(design.standard_error[index], 3) + " " +
             design.units[index] + "\n";
   }

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "ident/text_table.h"
 #include "ident/uncertainty.h"
 
 namespace pushid {
@@ -53,8 +54,12 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
                                    const Uncertainty& uncertainty,
                                    const std::vector<CandidatePush>& candidates);
 
-// The best `count` candidates for a parameter, or for all together ("all"), and the present spread
-// of pushes below them. Errors: no such parameter.
+// The best `count` candidates for a parameter, or for all together ("all"), best first, and after a
+// gap the least useful one. Errors: no such parameter.
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count);
+
+// With a heading and the present error below it. Errors: no such parameter.
 Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
                                int count);
 

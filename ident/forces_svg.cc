@@ -34,20 +34,6 @@ std::string PartLook(std::string_view part) {
 constexpr char kNetLook[] = "ink net";
 constexpr double kSmallestRange = 10.0;  // N or N m, so that nothing is not blown up
 
-// Without the middle ones of each run of points of the same height.
-Points WithoutFlats(const Points& points) {
-  Points kept;
-  for (size_t i = 0; i < points.size(); ++i) {
-    const bool inner = i > 0 && i + 1 < points.size();
-    if (inner && std::abs(points[i].second - points[i - 1].second) < 0.01 &&
-        std::abs(points[i].second - points[i + 1].second) < 0.01) {
-      continue;
-    }
-    kept.push_back(points[i]);
-  }
-  return kept;
-}
-
 class ForcesPicture {
  public:
   ForcesPicture(const FormationRun& run, const std::string& title)
@@ -57,14 +43,14 @@ class ForcesPicture {
     svg_.Text(kLeft[0], 22, title, "ink bold");
   }
 
-  std::string Draw() {
+  SvgPicture Draw() {
     Legend();
     for (int n = 0; n < run_.num_people(); ++n) {
       svg_.Text(16, Top(n) + 0.5 * kHeight + 4, "person " + std::to_string(n), "ink small bold");
       for (int column : {0, 1}) Panel(n, column);
     }
     for (int column : {0, 1}) Axis(column);
-    return svg_.ToString();
+    return svg_;
   }
 
  private:
@@ -118,7 +104,7 @@ class ForcesPicture {
         acts = acts || force != 0.0;
         points.emplace_back(time(run_.Seconds(t)), value(force));
       }
-      if (acts) svg_.Polyline(WithoutFlats(points), look);
+      if (acts) svg_.Polyline(points, look);
     };
     // Thick and first, so that a part that is all of it shows on top.
     line([](const NetForce<double>& force) { return force.Total(); }, kNetLook);
@@ -146,8 +132,12 @@ class ForcesPicture {
 
 }  // namespace
 
-std::string ForcesSvg(const FormationRun& run, const std::string& title) {
+SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title) {
   return ForcesPicture(run, title).Draw();
+}
+
+std::string ForcesSvg(const FormationRun& run, const std::string& title) {
+  return ForcesPictureOf(run, title).ToString();
 }
 
 }  // namespace pushid

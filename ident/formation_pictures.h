@@ -4,6 +4,7 @@
 #include <string>
 
 #include "ident/formation_run.h"
+#include "ident/svg.h"
 
 namespace pushid {
 
@@ -18,5 +19,6 @@ std::string WaveSvg(const FormationRun& run, const std::string& title);
 // One row of panels for each person: the net force along the push (N) and the torque about y (N m)
 // over time with their parts.
 std::string ForcesSvg(const FormationRun& run, const std::string& title);
+SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title);
 
 }  // namespace pushid

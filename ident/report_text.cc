@@ -6,140 +6,15 @@
 
 #include "ident/confidence_text.h"
 #include "ident/option_names.h"
+#include "ident/report_tables.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {
 namespace {
 
-std::string Interval(double lower, double upper) {
-  return "[" + Significant(lower) + ", " + Significant(upper) + "]";
-}
-
 std::string Count(int number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
-}
-
-std::string HowSure(const FitResult& result) {
-  const Uncertainty& u = result.uncertainty;
-  if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
-  return "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
-         "; Student's t = " + Significant(u.t_quantile, 3) + "); naive ones beside them\n";
-}
-
-std::string ParameterTableText(const FitResult& result) {
-  TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
-                   "naive error", "prior"},
-                  {true, false, false, true, true, true, false, true});
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* spec = result.options.table.Find(e.name);
-    if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Significant(e.value), "-", "-", e.unit, "fixed", "-", ""});
-      continue;
-    }
-    const std::string prior =
-        spec != nullptr && spec->prior
-            ? Significant(spec->prior->mean, 3) + " +- " + Significant(spec->prior->sigma, 3)
-            : "";
-    const bool unknown = e.status == EstimateStatus::kUnidentifiable;
-    table.Add({e.name, Significant(e.value),
-               unknown ? "infinite" : Significant(e.standard_error, 3),
-               unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
-               unknown ? "infinite" : Significant(e.standard_error_naive, 3), prior});
-  }
-  return table.ToString();
-}
-
-std::string DerivedText(const FitResult& result) {
-  TextTable table({"derived", "value", "std error", "95 % interval", "unit"},
-                  {true, false, false, true, true});
-  for (const Combination& c : result.derived) {
-    const bool fixed = c.standard_error == 0.0;
-    table.Add({c.name, Significant(c.value), fixed ? "-" : Significant(c.standard_error, 3),
-               fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
-  }
-  const ParameterTable& specs = result.options.table;
-  const std::string held = specs[kKpX].free || specs[kKpY].free
-                               ? "Here Kp is fitted too."
-                               : "Convention: Kp_x = " + Significant(result.parameters[kKpX]) +
-                                     ", Kp_y = " + Significant(result.parameters[kKpY]) +
-                                     " N s/m held, mu = c - Kp.";
-  return table.ToString() +
-         "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " + held +
-         "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-         NameOf(result.options.model.gain_scaling) + ").\n";
-}
-
-std::string CorrelationText(const FitResult& result) {
-  const Uncertainty& u = result.uncertainty;
-  std::string text;
-  for (int i = 0; i < u.correlation.rows(); ++i) {
-    for (int j = i + 1; j < u.correlation.cols(); ++j) {
-      if (std::abs(u.correlation(i, j)) < 0.9) continue;
-      if (u.estimates[j].name.find('[') != std::string::npos) continue;  // a unit's deviation
-      text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
-              Significant(u.correlation(i, j), 2) + "\n";
-    }
-  }
-  return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
-}
-
-std::string DemonstrationName(const Demonstration& d) {
-  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
-  const std::string where = d.setting.empty() ? "" : d.setting + ": ";
-  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
-}
-
-std::string BehaviourText(const FitResult& result) {
-  const Behaviour& b = result.behaviour;
-  std::string text, line;
-  for (const Demonstration& d : b.demonstrations) {
-    if (d.people == 1) continue;
-    line += "  " + DemonstrationName(d) + ": they move on by " + Significant(d.distance, 2) +
-            " m on average\n";
-  }
-  if (b.settles) {
-    text =
-        "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within two "
-        "seconds" +
-        std::string(line.empty() ? "\n" : "; so do\n" + line);
-  } else {
-    text = "NOT SETTLING, two seconds after a push:\n";
-    for (const Demonstration& d : b.demonstrations) {
-      if (d.settled) continue;
-      text += "  " + DemonstrationName(d) + ": " +
-              (d.fell ? "fell"
-                      : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
-                            " rad from rest") +
-              "\n";
-    }
-    text += line;
-  }
-  if (!b.harder_moves_farther) text += "a harder push does NOT move the line farther\n";
-  text += "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
-          (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
-  return text;
-}
-
-std::string PooledText(const FitResult& result) {
-  const bool by_setting = !result.settings.empty();
-  TextTable table({by_setting ? "setting" : "subject", "kg", "parameter", "value", "std error",
-                   "95 % interval", "unit"},
-                  {true, false, true, false, false, true, true});
-  bool any = false;
-  const auto add = [&](const std::string& unit, const std::string& mass,
-                       const std::map<std::string, Estimate>& pooled) {
-    for (const auto& [name, e] : pooled) {
-      table.Add({unit, mass, name, Significant(e.value), Significant(e.standard_error, 3),
-                 Interval(e.lower95, e.upper95), e.unit});
-      any = true;
-    }
-  };
-  for (const auto& [id, subject] : result.subjects) {
-    add(id, Significant(subject.mass_kg), subject.pooled);
-  }
-  for (const auto& [setting, pooled] : result.settings) add(setting, "", pooled);
-  return any ? table.ToString() + "\n" : "";
 }
 
 std::string WithError(double value, double error, const MeanScore& mean) {
@@ -168,15 +43,18 @@ std::string ReportText(const FitResult& result) {
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
                      ", self force " + NameOf(o.self_force) + ", interaction " +
                      NameOf(o.model.interaction) + "\n\n";
-  text += ParameterTableText(result) + HowSure(result) + "\n" + DerivedText(result) + "\n";
+  text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
+          DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
-  const std::string agreement = AgreementText(result);
-  if (!agreement.empty()) text += agreement + "\n";
+  const TextTable agreement = AgreementTable(result);
+  if (agreement.rows().size() > 1) {
+    text += agreement.ToString() + AgreementNote(result) + "\n";
+  }
   text += CorrelationText(result);
-  const std::string pooled = PooledText(result);
-  text += (pooled.empty() ? "" : "\n") + pooled;
+  const TextTable pooled = PooledTable(result);
+  if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
   text += BehaviourText(result) + "\n";
   text += "cost " + Significant(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +

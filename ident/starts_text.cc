@@ -5,25 +5,38 @@
 #include <cmath>
 
 #include "ident/report_text.h"
-#include "ident/text_table.h"
 
 namespace pushid {
+namespace {
 
-std::string AcrossStartsText(const FitResult& result) {
+bool Ended(const SolveStart& start) { return start.usable && start.failed.empty(); }
+
+std::vector<const SolveStart*> AsGood(const FitResult& result) {
   std::vector<const SolveStart*> as_good;
+  for (const SolveStart& start : result.starts) {
+    if (Ended(start) && start.cost <= (1.0 + kSameCost) * result.cost) as_good.push_back(&start);
+  }
+  return as_good;
+}
+
+}  // namespace
+
+std::string AcrossStartsNote(const FitResult& result) {
+  if (result.starts.size() < 2) return "";
   double worst = result.cost;
   for (const SolveStart& start : result.starts) {
-    if (!start.usable || !start.failed.empty()) continue;
-    worst = std::max(worst, start.cost);
-    if (start.cost <= (1.0 + kSameCost) * result.cost) as_good.push_back(&start);
+    if (Ended(start)) worst = std::max(worst, start.cost);
   }
-  if (result.starts.size() < 2) return "";
-  std::string text = std::to_string(as_good.size()) + " of " +
-                     std::to_string(result.starts.size()) +
-                     " starts end within 1 % of the lowest cost, " + Significant(result.cost, 6) +
-                     "; the highest is " + Significant(worst, 6) + "\n";
+  return std::to_string(AsGood(result).size()) + " of " + std::to_string(result.starts.size()) +
+         " starts end within 1 % of the lowest cost, " + Significant(result.cost, 6) +
+         "; the highest is " + Significant(worst, 6) + "\n";
+}
+
+TextTable AcrossStartsTable(const FitResult& result) {
   TextTable table({"across these starts", "lowest", "highest", "unit", "in standard errors"},
                   {true, false, false, true, false});
+  const std::vector<const SolveStart*> as_good = AsGood(result);
+  if (result.starts.size() < 2 || as_good.empty()) return table;
   size_t index = 0;
   for (Parameter id : result.options.table.Free()) {
     const ParameterSpec& spec = result.options.table[id];
@@ -40,7 +53,12 @@ std::string AcrossStartsText(const FitResult& result) {
                known ? Significant((high - low) / estimate->standard_error, 2) : "-"});
     ++index;
   }
-  return as_good.empty() ? text : text + table.ToString();
+  return table;
+}
+
+std::string AcrossStartsText(const FitResult& result) {
+  const TextTable table = AcrossStartsTable(result);
+  return AcrossStartsNote(result) + (table.rows().size() > 1 ? table.ToString() : "");
 }
 
 }  // namespace pushid

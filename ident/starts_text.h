@@ -4,6 +4,7 @@
 #include <string>
 
 #include "ident/fit_result.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 
@@ -13,5 +14,9 @@ inline constexpr double kSameCost = 0.01;  // relative
 // How many starts ended as well as the best one, and over which range their parameters spread
 // beside the best one's standard errors; empty for a single start.
 std::string AcrossStartsText(const FitResult& result);
+
+// The same in parts: a sentence, and a table (only a header when none is as good).
+std::string AcrossStartsNote(const FitResult& result);
+TextTable AcrossStartsTable(const FitResult& result);
 
 }  // namespace pushid

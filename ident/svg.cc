@@ -21,7 +21,35 @@ constexpr char kStyle[] =
     ".faint{fill:#a0a0a0}line.axis,polyline.ink{stroke:#e8e8e8}line.grid{stroke:#3a3f46}"
     "polyline.ink{fill:none}.ring{stroke:#e8e8e8}}";
 
+using Points = std::vector<std::pair<double, double>>;
+
+constexpr double kTolerance = 0.1;  // pixels
+
+// Douglas and Peucker: keeps the farthest point of a stretch while it is too far from the chord.
+void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* kept) {
+  const auto [x1, y1] = points[first];
+  const double dx = points[last].first - x1, dy = points[last].second - y1;
+  const double length = std::hypot(dx, dy);
+  double farthest = kTolerance;
+  size_t at = first;
+  for (size_t i = first + 1; i < last; ++i) {
+    const double px = points[i].first - x1, py = points[i].second - y1;
+    const double off =
+        length > 0.0 ? std::abs(px * dy - py * dx) / length : std::hypot(px, py);
+    if (off > farthest) {
+      farthest = off;
+      at = i;
+    }
+  }
+  if (at == first) return;
+  (*kept)[at] = true;
+  Thin(points, first, at, kept);
+  Thin(points, at, last, kept);
+}
+
 }  // namespace
+
+std::string_view SvgStyle() { return kStyle; }
 
 std::string EscapeXml(std::string_view text) {
   std::string escaped;
@@ -100,13 +128,14 @@ void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_vi
   body_ += "/>\n";
 }
 
-void SvgPicture::Circle(double x, double y, double radius, std::string_view look) {
+void SvgPicture::Circle(double x, double y, double radius, std::string_view look,
+                        std::string_view tooltip) {
   Open("circle");
   Number("cx", x);
   Number("cy", y);
   Number("r", radius);
   Look(look);
-  body_ += "/>\n";
+  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></circle>\n";
 }
 
 void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
@@ -115,7 +144,12 @@ void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
   Open("polyline");
   Look(look);
   body_ += " points=\"";
-  for (const auto& [x, y] : points) body_ += SvgNumber(x) + ',' + SvgNumber(y) + ' ';
+  std::vector<bool> kept(points.size(), false);
+  kept.front() = kept.back() = true;
+  Thin(points, 0, points.size() - 1, &kept);
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (kept[i]) body_ += SvgNumber(points[i].first) + ',' + SvgNumber(points[i].second) + ' ';
+  }
   body_.back() = '"';
   body_ += "/>\n";
 }
@@ -129,10 +163,16 @@ void SvgPicture::Text(double x, double y, std::string_view text, std::string_vie
 }
 
 std::string SvgPicture::ToString() const {
+  return Drawn("<style>" + std::string(kStyle) + "</style>\n");
+}
+
+std::string SvgPicture::ToInline() const { return Drawn(""); }
+
+std::string SvgPicture::Drawn(std::string_view style) const {
   const std::string width = SvgNumber(width_), height = SvgNumber(height_);
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
-         "\" viewBox=\"0 0 " + width + ' ' + height + "\" role=\"img\">\n<style>" + kStyle +
-         "</style>\n" + body_ + "</svg>\n";
+         "\" viewBox=\"0 0 " + width + ' ' + height + "\" role=\"img\">\n" + std::string(style) +
+         body_ + "</svg>\n";
 }
 
 SvgScale::SvgScale(double from, double to, double from_pixel, double to_pixel)

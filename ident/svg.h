@@ -22,6 +22,9 @@ std::string EscapeXml(std::string_view text);
 // Shortest of two decimals: enough for a pixel.
 std::string SvgNumber(double value);
 
+// The style sheet that every picture carries, for a page that holds many.
+std::string_view SvgStyle();
+
 struct SvgBox {
   double x, y, width, height;
 };
@@ -34,15 +37,19 @@ class SvgPicture {
   // `look`: a CSS declaration ("fill:#fff;opacity:0.5") where it has a colon, else class names.
   void Rect(const SvgBox& box, std::string_view look, std::string_view tooltip = "");
   void Line(double x1, double y1, double x2, double y2, std::string_view look);
-  void Circle(double x, double y, double radius, std::string_view look);
-  // Fewer than two points draw nothing.
+  void Circle(double x, double y, double radius, std::string_view look,
+              std::string_view tooltip = "");
+  // Fewer than two points draw nothing; points within a tenth of a pixel of the line are left out.
   void Polyline(const std::vector<std::pair<double, double>>& points, std::string_view look);
   // Classes middle and end set the anchor, small and bold the font.
   void Text(double x, double y, std::string_view text, std::string_view look = "ink");
 
   std::string ToString() const;
+  // For a page that has SvgStyle: without a style sheet of its own.
+  std::string ToInline() const;
 
  private:
+  std::string Drawn(std::string_view style) const;
   void Open(std::string_view element);
   void Number(std::string_view name, double value);
   void Look(std::string_view look);

@@ -15,6 +15,10 @@ class TextTable {
   void AddGap();
   std::string ToString() const;
 
+  // The header first; a gap is an empty row.
+  const std::vector<std::vector<std::string>>& rows() const { return rows_; }
+  bool IsWords(size_t column) const { return left_[column]; }
+
  private:
   std::vector<std::vector<std::string>> rows_;
   std::vector<bool> left_;

@@ -1,0 +1,29 @@
+// ident: what a result says, as tables and sentences: the terminal's report and the page show the
+// same ones. Pure functions of the result; empty where there is nothing to say.
+#pragma once
+
+#include <string>
+
+#include "ident/fit_result.h"
+#include "ident/text_table.h"
+
+namespace pushid {
+
+TextTable EstimateTable(const FitResult& result);
+std::string HowSure(const FitResult& result);
+
+// c_x, c_y and gains per mass, and by which convention mu is told from Kp.
+TextTable DerivedTable(const FitResult& result);
+std::string ConventionText(const FitResult& result);
+
+// Values of each subject or setting; only a header where nothing is pooled.
+TextTable PooledTable(const FitResult& result);
+
+// Pairs of parameters that the data separate poorly.
+std::string CorrelationText(const FitResult& result);
+
+// What people do after a push, in words, and demonstration by demonstration.
+std::string BehaviourText(const FitResult& result);
+TextTable BehaviourTable(const FitResult& result);
+
+}  // namespace pushid
