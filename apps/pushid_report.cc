@@ -1,20 +1,69 @@
-// apps: pushid-report: an identified model in words and tables.
+// apps: pushid-report: an identified model in words and tables, and as a page with pictures.
 #include <gflags/gflags.h>
 
 #include <cstdio>
 
 #include "apps/app_support.h"
+#include "apps/recording_flags.h"
+#include "datasets/atomic_file.h"
+#include "ident/report/build_report.h"
+#include "ident/report/document_files.h"
+#include "ident/report/page.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 #include "ident/truth_table.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
+DEFINE_string(html_out, "", "write the whole report here: one page that opens from disk");
+DEFINE_bool(text, false, "print the whole report, not only the parameters");
+DEFINE_int32(num_threads, 1, "threads");
+DEFINE_string(csv_dir, "", "write the numbers behind every plot into this folder (CSV)");
 
 namespace {
 
+using namespace pushid;
+
+// The recordings to draw: those of the flags, or those that were fitted.
+Result<std::vector<Recording>> RecordingsOf(const FitResult& result) {
+  if (FLAGS_recordings.empty()) return std::vector<Recording>();
+  std::vector<std::string> ids;
+  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != "all";
+  for (const FittedRecording& r : result.recordings) {
+    if (!chosen) ids.push_back(r.id);
+  }
+  return LoadFlaggedRecordings(ids, true);
+}
+
+int WriteWhole(const FitResult& result) {
+  if (!FLAGS_html_out.empty()) {
+    if (MaybeError error = CheckWritable(FLAGS_html_out)) return Fail(*error);
+  }
+  const Result<std::vector<Recording>> recordings = RecordingsOf(result);
+  if (!recordings.ok()) return Fail(recordings.error());
+  ProgressLine line;
+  BuildReportOptions options;
+  options.num_threads = FLAGS_num_threads;
+  options.progress = [&line](int done, int total) {
+    line.Show("recording " + std::to_string(done) + " of " + std::to_string(total));
+  };
+  const Report report = BuildReport(result, recordings.value(), options);
+  line.Finish();
+  if (FLAGS_text) std::printf("%s", ToText(report).c_str());
+  if (!FLAGS_csv_dir.empty()) {
+    if (MaybeError error = WriteNumbers(report, FLAGS_csv_dir)) return Fail(*error);
+    std::fprintf(stderr, "numbers written to %s\n", FLAGS_csv_dir.c_str());
+  }
+  if (FLAGS_html_out.empty()) return kDone;
+  if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
+  std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
+  if (recordings.value().empty()) {
+    Warn("without --recordings the report shows no motion and no figure");
+  }
+  return kDone;
+}
+
 int Run() {
-  using namespace pushid;
   if (MaybeError missing =
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return Fail(*missing);
@@ -27,6 +76,9 @@ int Run() {
     std::printf("%s", TruthTable(result.value(), truth.value()).c_str());
     return kDone;
   }
+  if (FLAGS_text || !FLAGS_html_out.empty() || !FLAGS_csv_dir.empty()) {
+    return WriteWhole(result.value());
+  }
   std::printf("%s", ReportText(result.value()).c_str());
   return kDone;
 }
@@ -34,8 +86,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-report prints an identified model.\n\n  pushid-report "
-                        "--model=model.json",
-                        Run);
+  return RunApp(argc, argv,
+                "pushid-report prints an identified model, or draws it.\n\n"
+                "  pushid-report --model=model.json\n"
+                "  pushid-report --model=model.json --recordings=M/manifest.json "
+                "--html_out=report.html",
+                Run);
 }

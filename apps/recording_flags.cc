@@ -41,13 +41,15 @@ MaybeError LeaveOut(std::vector<Recording>* recordings) {
 
 }  // namespace
 
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids) {
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
+                                                     bool keep_all_joints) {
   if (MaybeError missing =
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
   }
   LoadOptions options;
   options.setting = FLAGS_setting;
+  options.keep_all_joints = keep_all_joints;
   options.ids = ids.empty() ? SplitList(FLAGS_ids) : ids;
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);

@@ -11,12 +11,14 @@
 
 DECLARE_string(recordings);
 DECLARE_string(setting);
+DECLARE_string(ids);
 
 namespace pushid {
 
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr. Other
-// ids than the flags' may be asked for.
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {});
+// ids than the flags' may be asked for, and all joints instead of hip and ankles.
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
+                                                     bool keep_all_joints = false);
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);

@@ -30,8 +30,8 @@ struct ReportFold {
 
 struct ReportSection {
   std::string id, title;
-  std::vector<std::string> paragraphs;  // line breaks are kept
-  std::vector<std::string> commands;    // to try next
+  std::vector<std::string> paragraphs;                      // line breaks are kept
+  std::vector<std::pair<std::string, std::string>> advice;  // a sentence, and what to type next
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;

@@ -25,8 +25,6 @@ struct ForestRow {
   std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
 };
 
-bool Finite(const Interval& i) { return std::isfinite(i.lower) && std::isfinite(i.upper); }
-
 // Every row on a scale of its own, its ends written beside it: units differ.
 class Forest {
  public:
@@ -75,9 +73,9 @@ class Forest {
     svg_.Line(kForestLeft, y + 14, kForestRight, y + 14, "grid");
     for (double tick : scale.Ticks(6)) {
       svg_.Line(scale(tick), y + 14, scale(tick), y + 17, "axis");
-      svg_.Text(scale(tick), y + 26, Significant(tick, 3), "faint small middle");
+      svg_.Text(scale(tick), y + 26, Significant(tick, 6), "faint small middle");
     }
-    svg_.Text(kForestRight + 8, y + 17, row.unit, "faint small");
+    if (row.unit != "1") svg_.Text(kForestRight + 8, y + 17, row.unit, "faint small");
     double at = y - 3.0 * (static_cast<double>(row.intervals.size()) - 1.0);
     for (const auto& [interval, look] : row.intervals) {
       const double lower = std::isfinite(interval.lower) ? scale(interval.lower) : kForestLeft;

@@ -21,7 +21,7 @@ struct RecordingView {
 
 // In the order given. The recordings must outlive the views.
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
-                                          const std::vector<Recording>& recordings,
-                                          int num_threads, const JobProgress& progress = nullptr);
+                                          const std::vector<Recording>& recordings, int num_threads,
+                                          const JobProgress& progress = nullptr);
 
 }  // namespace pushid

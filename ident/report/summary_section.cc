@@ -56,8 +56,7 @@ ReportSection SummarySection(const FitResult& result) {
     section.paragraphs.push_back("Units? " + warning);
   }
   for (const Advice& advice : result.diagnostics.advice) {
-    section.paragraphs.push_back("Advice: " + advice.sentence);
-    section.commands.push_back(advice.command);
+    section.advice.emplace_back(advice.sentence, advice.command);
   }
   return section;
 }

@@ -38,9 +38,8 @@ inline std::string ReadFromStart(std::FILE* file) {
 
 // Output goes to unnamed files rather than pipes: nothing can fill up and block. An app that is not
 // done after `seconds` is killed.
-inline AppRun RunApp(const std::string& name, const std::vector<std::string>& arguments,
-                     double seconds = 120.0) {
-  const std::string path = std::string(PUSHID_BIN_DIR) + "/" + name;
+inline AppRun RunProgram(const std::string& path, const std::vector<std::string>& arguments,
+                         double seconds = 120.0) {
   std::vector<char*> argv = {const_cast<char*>(path.c_str())};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -78,6 +77,12 @@ inline AppRun RunApp(const std::string& name, const std::vector<std::string>& ar
   run.err = failed == 0 ? ReadFromStart(err) : "cannot start " + path;
   if (failed != 0) std::fclose(err);
   return run;
+}
+
+// One of the project's own.
+inline AppRun RunApp(const std::string& name, const std::vector<std::string>& arguments,
+                     double seconds = 120.0) {
+  return RunProgram(std::string(PUSHID_BIN_DIR) + "/" + name, arguments, seconds);
 }
 
 }  // namespace pushid

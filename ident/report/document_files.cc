@@ -1,0 +1,93 @@
+// ident: reports as text and as CSV.
+#include "ident/report/document_files.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "datasets/atomic_file.h"
+
+namespace pushid {
+namespace {
+
+std::string FigureText(const ReportFigure& figure) {
+  return "figure " + figure.name + (figure.caption.empty() ? "" : ": " + figure.caption) + "\n";
+}
+
+std::string SectionText(const ReportSection& section) {
+  std::string text;
+  for (std::string paragraph : section.paragraphs) {
+    while (!paragraph.empty() && paragraph.back() == '\n') paragraph.pop_back();
+    if (!paragraph.empty()) text += paragraph + "\n";
+  }
+  for (const auto& [sentence, command] : section.advice) {
+    text += "advice: " + sentence + "\n";
+    if (!command.empty()) text += "  " + command + "\n";
+  }
+  for (const ReportTable& table : section.tables) {
+    if (table.table.rows().size() < 2) continue;
+    text += (text.empty() ? "" : "\n") + (table.caption.empty() ? "" : table.caption + "\n") +
+            table.table.ToString();
+  }
+  for (const ReportFigure& figure : section.figures) text += "\n" + FigureText(figure);
+  for (const ReportFold& fold : section.folds) text += fold.title + "\n";
+  if (text.empty()) return "";
+  return section.title + "\n" + std::string(section.title.size(), '=') + "\n" + text + "\n";
+}
+
+// A comma or a quote in a name must not shift the columns.
+std::string Field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string CsvOf(const TextTable& table) {
+  std::string csv;
+  for (const auto& row : table.rows()) {
+    for (size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + Field(row[i]);
+    csv += "\n";
+  }
+  return csv;
+}
+
+// Names hold ids of recordings and parameters.
+std::string FileName(const std::string& name) {
+  std::string file = name;
+  for (char& c : file) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
+    if (!plain) c = '_';
+  }
+  return file + ".csv";
+}
+
+}  // namespace
+
+std::string ToText(const Report& report) {
+  std::string text = report.title + "\n" + report.subtitle + "\n\n";
+  for (const ReportSection& section : report.sections) text += SectionText(section);
+  return text;
+}
+
+MaybeError WriteNumbers(const Report& report, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Error{"cannot make the folder " + folder + ": " + error.message()};
+  const auto write = [&folder](const ReportFigure& figure) {
+    return WriteFileAtomically((std::filesystem::path(folder) / FileName(figure.name)).string(),
+                               CsvOf(figure.numbers));
+  };
+  for (const ReportSection& section : report.sections) {
+    for (const ReportFigure& figure : section.figures) {
+      if (MaybeError failed = write(figure)) return failed;
+    }
+    for (const ReportFold& fold : section.folds) {
+      for (const ReportFigure& figure : fold.figures) {
+        if (MaybeError failed = write(figure)) return failed;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

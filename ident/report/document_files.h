@@ -1,0 +1,17 @@
+// ident: a report for a terminal, and the numbers behind its figures as CSV files.
+#pragma once
+
+#include <string>
+
+#include "datasets/result.h"
+#include "ident/report/document.h"
+
+namespace pushid {
+
+// All sentences and tables; of a figure its caption and the name of its file of numbers.
+std::string ToText(const Report& report);
+
+// One file <name>.csv for each figure, in a folder that is made where it is missing.
+MaybeError WriteNumbers(const Report& report, const std::string& folder);
+
+}  // namespace pushid
