@@ -129,9 +129,8 @@ TEST_F(ReportPage, WithoutRecordingsTheRestStands) {
 
 TEST_F(ReportPage, RecordingsThatChangedAreNamed) {
   const std::string model = FitModel();
-  nlohmann::ordered_json manifest = Json(manifest_);
-  manifest["recordings"][0]["subjects"][0]["mass_kg"] = 123.0;
-  WriteText("manifest.json", manifest.dump(1));
+  const std::string push = Json(manifest_)["recordings"][0]["push_csv"];
+  WriteText(push, ReadText(Path(push)) + "\n");
   const AppRun run = RunApp("pushid-report", {"--model=" + model, Recordings(), "--text"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, id_));
