@@ -12,10 +12,16 @@
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
 #include "ident/advice.h"
+#include "ident/bootstrap.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
+DECLARE_uint64(seed);
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
+DEFINE_int32(
+    resample, 0,
+    "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
+    "k; 0: the recordings as they are");
 
 namespace {
 
@@ -26,12 +32,25 @@ std::string Today() {
   return text;
 }
 
+// The recordings of replica k, those drawn several times standing there several times.
+std::vector<pushid::Recording> Resampled(const std::vector<pushid::Recording>& recordings) {
+  if (FLAGS_resample == 0) return recordings;
+  const std::vector<int> counts =
+      pushid::DrawRecordings(static_cast<int>(recordings.size()), FLAGS_seed, FLAGS_resample);
+  std::vector<pushid::Recording> drawn;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    drawn.insert(drawn.end(), counts[i], recordings[i]);
+  }
+  return drawn;
+}
+
 int Run() {
   using namespace pushid;
   const auto begin = std::chrono::steady_clock::now();
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
+  if (FLAGS_resample < 0) return Fail("--resample must not be negative");
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
@@ -39,7 +58,7 @@ int Run() {
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
-      MapRecordings(recordings.value(), options.value().mapping);
+      MapRecordings(Resampled(recordings.value()), options.value().mapping);
 
   for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
   if (MaybeError error = CheckEffects(FitProblem(pendulums, options.value()))) return Fail(*error);

@@ -4,7 +4,8 @@
 # As root (or with password-less sudo) it installs; otherwise it names the exact command and fails.
 
 build_packages=(g++ cmake ninja-build ccache
-  libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libxxhash-dev)
+  libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libtomlplusplus-dev
+  libxxhash-dev)
 test_packages=(libgtest-dev libbenchmark-dev chromium)
 
 install_packages() {

@@ -42,15 +42,6 @@ std::string Field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string CsvOf(const TextTable& table) {
-  std::string csv;
-  for (const auto& row : table.rows()) {
-    for (size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + Field(row[i]);
-    csv += "\n";
-  }
-  return csv;
-}
-
 // Names hold ids of recordings and parameters.
 std::string FileName(const std::string& name) {
   std::string file = name;
@@ -62,6 +53,15 @@ std::string FileName(const std::string& name) {
 }
 
 }  // namespace
+
+std::string CsvOf(const TextTable& table) {
+  std::string csv;
+  for (const auto& row : table.rows()) {
+    for (size_t i = 0; i < row.size(); ++i) csv += (i > 0 ? "," : "") + Field(row[i]);
+    csv += "\n";
+  }
+  return csv;
+}
 
 std::string ToText(const Report& report) {
   std::string text = report.title + "\n" + report.subtitle + "\n\n";

@@ -1,0 +1,201 @@
+// apps: expanding plans.
+#include "apps/batch_jobs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "apps/app_support.h"
+#include "datasets/content_hash.h"
+#include "datasets/select_recordings.h"
+#include "ident/crossvalidation.h"
+
+namespace pushid {
+namespace {
+
+// A separator that no id holds, so that "ab","c" and "a","bc" differ.
+void AddPiece(const std::string& text, ContentHash* hash) {
+  hash->Add(text);
+  hash->Add(std::string_view("\0", 1));
+}
+
+// What a manifest's entry says, with the contents of every file it names. Whatever text of it is a
+// file counts: the keys that name files are the reader's business.
+MaybeError HashFiles(const nlohmann::ordered_json& json, const std::string& manifest,
+                     ContentHash* hash) {
+  if (json.is_structured()) {
+    for (const auto& part : json) {
+      if (MaybeError error = HashFiles(part, manifest, hash)) return error;
+    }
+    return std::nullopt;
+  }
+  if (!json.is_string()) return std::nullopt;
+  const std::string path = ResolvePath(manifest, json.get<std::string>());
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+  const Result<std::string> contents = HashFile(path);
+  if (!contents.ok()) return contents.error();
+  AddPiece(contents.value(), hash);
+  return std::nullopt;
+}
+
+Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecording& entry) {
+  ContentHash hash;
+  AddPiece(entry.json.dump(), &hash);
+  if (MaybeError error = HashFiles(entry.json, manifest.path, &hash)) return *error;
+  return hash.Hex();
+}
+
+std::string GroupOf(GroupBy by, const ManifestRecording& entry) {
+  switch (by) {
+    case GroupBy::kRecording:
+      return entry.id;
+    case GroupBy::kSubject:
+      return entry.subjects[entry.pushed_person].id;
+    case GroupBy::kSetting:
+      return entry.setting;
+    case GroupBy::kNone:
+      break;
+  }
+  return "all";
+}
+
+// All that MakeFolds looks at.
+PendulumRecording AsKnown(const ManifestRecording& entry) {
+  PendulumRecording recording;
+  recording.id = entry.id;
+  recording.setting = entry.setting;
+  recording.magnitude = entry.magnitude;
+  recording.pushed_person = entry.pushed_person;
+  for (const ManifestSubject& subject : entry.subjects) {
+    recording.subject_ids.push_back(subject.id);
+  }
+  return recording;
+}
+
+struct Part {
+  std::string name;
+  std::vector<int> train, held_out;  // indices into the manifest
+};
+
+Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifest,
+                                  const std::string& group, const std::vector<int>& members) {
+  if (plan.folds == 0) return std::vector<Part>{{group, members, {}}};
+  std::vector<PendulumRecording> known;
+  for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
+  const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
+  if (!folds.ok()) {
+    return Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                     " folds: " + folds.error().message,
+                 plan.path};
+  }
+  std::vector<Part> parts;
+  for (size_t f = 0; f < folds.value().size(); ++f) {
+    Part part{
+        group + " fold " + std::to_string(f + 1) + " of " + std::to_string(plan.folds), {}, {}};
+    const std::vector<int>& out = folds.value()[f].held_out;
+    for (int k = 0; k < static_cast<int>(members.size()); ++k) {
+      const bool held = std::find(out.begin(), out.end(), k) != out.end();
+      (held ? part.held_out : part.train).push_back(members[k]);
+    }
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+std::string JoinIds(const std::vector<std::string>& ids) {
+  std::string list;
+  for (const std::string& id : ids) list += (list.empty() ? "" : ",") + id;
+  return list;
+}
+
+class Expander {
+ public:
+  Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
+
+  Result<std::vector<BatchJob>> Expand() {
+    const auto chosen = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    if (!chosen.ok()) return chosen.error();
+    hashes_.resize(manifest_.recordings.size());
+    std::vector<std::pair<std::string, std::vector<int>>> groups;
+    for (int i : chosen.value()) {
+      const Result<std::string> hash = RecordingHash(manifest_, manifest_.recordings[i]);
+      if (!hash.ok()) return hash.error();
+      hashes_[i] = hash.value();
+      const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
+      auto at = std::find_if(groups.begin(), groups.end(),
+                             [&name](const auto& group) { return group.first == name; });
+      if (at == groups.end()) at = groups.insert(groups.end(), {name, {}});
+      at->second.push_back(i);
+    }
+    for (const BatchVariant& variant : plan_.variants) {
+      for (const auto& [name, members] : groups) {
+        const auto parts = PartsOf(plan_, manifest_, name, members);
+        if (!parts.ok()) return parts.error();
+        for (const Part& part : parts.value()) AddPart(variant, part);
+      }
+    }
+    return jobs_;
+  }
+
+ private:
+  void AddPart(const BatchVariant& variant, const Part& part) {
+    for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
+      BatchJob job;
+      job.variant = variant.name;
+      job.group = part.name;
+      job.replica = replica;
+      for (int i : part.train) job.recordings.push_back(manifest_.recordings[i].id);
+      for (int i : part.held_out) job.held_out.push_back(manifest_.recordings[i].id);
+      job.fit_flags = variant.flags;
+      job.fit_flags.push_back("--seed=" + std::to_string(plan_.seed));
+      if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
+      ContentHash hash;
+      AddPiece(Version(), &hash);
+      for (const std::string& flag : job.fit_flags) AddPiece(flag, &hash);
+      for (int i : part.train) AddPiece(hashes_[i], &hash);
+      AddPiece("held out", &hash);
+      for (int i : part.held_out) AddPiece(hashes_[i], &hash);
+      job.id = hash.Hex();
+      jobs_.push_back(std::move(job));
+    }
+  }
+
+  const BatchPlan& plan_;
+  const Manifest& manifest_;
+  std::vector<std::string> hashes_;
+  std::vector<BatchJob> jobs_;
+};
+
+}  // namespace
+
+Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& manifest) {
+  return Expander(plan, manifest).Expand();
+}
+
+std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
+                                                  const std::string& folder,
+                                                  const std::string& bin) {
+  const std::string model = folder + "/model.json";
+  std::vector<std::string> fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
+                                  "--ids=" + JoinIds(job.recordings), "--model_out=" + model,
+                                  "--quiet"};
+  fit.insert(fit.end(), job.fit_flags.begin(), job.fit_flags.end());
+  std::vector<std::vector<std::string>> commands = {fit};
+  if (!job.held_out.empty()) {
+    commands.push_back({bin + "/pushid-evaluate", "--model=" + model,
+                        "--recordings=" + plan.manifest, "--ids=" + JoinIds(job.held_out),
+                        "--json_out=" + folder + "/scores.json", "--quiet"});
+  }
+  return commands;
+}
+
+std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n) {
+  std::vector<BatchJob> part;
+  for (size_t k = static_cast<size_t>(i) - 1; k < jobs.size(); k += static_cast<size_t>(n)) {
+    part.push_back(jobs[k]);
+  }
+  return part;
+}
+
+}  // namespace pushid

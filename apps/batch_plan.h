@@ -1,0 +1,57 @@
+// apps: the plan of pushid-batch, a TOML file:
+//
+//   [data]
+//   recordings = "M/manifest.json"   # relative to the plan
+//   setting = "single"               # as --setting; default all
+//   ids = ["a", "b"]                 # only these; default all of the setting
+//
+//   [jobs]
+//   group_by = "subject"             # recording, subject, setting or none (default)
+//   folds = 0                        # k: each group in k folds, held-out recordings scored
+//   bootstrap = 0                    # replicas of each group, besides the recordings as they are
+//   seed = 1
+//   time_limit_s = 0.0               # of one job; 0: none
+//   memory_limit_mb = 0              # of one job; 0: none
+//
+//   [[variant]]                      # one or more
+//   name = "physics"
+//   flags = ["--self_force=none"]    # any flag of pushid-fit
+//
+//   [output]
+//   dir = "out"                      # relative to the plan
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/result.h"
+
+namespace pushid {
+
+enum class GroupBy { kNone, kRecording, kSubject, kSetting };
+
+struct BatchVariant {
+  std::string name;
+  std::vector<std::string> flags;
+};
+
+struct BatchPlan {
+  std::string path;      // of the plan
+  std::string manifest;  // as the programs can open it
+  std::string setting = "all";
+  std::vector<std::string> ids;
+  GroupBy group_by = GroupBy::kNone;
+  int folds = 0, bootstrap = 0;
+  uint64_t seed = 1;
+  double time_limit_s = 0.0;
+  int memory_limit_mb = 0;
+  std::vector<BatchVariant> variants;
+  std::string dir;
+};
+
+// Errors: file:line, what is wrong: TOML syntax, unknown or missing keys, wrong types, values out
+// of range, two variants of one name, flags that the batch sets itself.
+Result<BatchPlan> ReadPlan(const std::string& path);
+
+}  // namespace pushid

@@ -1,0 +1,269 @@
+// apps: the pool of jobs.
+#include "apps/batch_run.h"
+
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/app_support.h"
+#include "apps/child_process.h"
+#include "datasets/json_file.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double Since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// Takes SIGINT, SIGTERM and SIGCHLD as things to read, so that nothing happens between two looks.
+class Signals {
+ public:
+  Signals() {
+    sigemptyset(&taken_);
+    for (int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&taken_, number);
+    sigprocmask(SIG_BLOCK, &taken_, &before_);
+    descriptor_ = signalfd(-1, &taken_, SFD_NONBLOCK | SFD_CLOEXEC);
+  }
+  ~Signals() {
+    close(descriptor_);
+    sigprocmask(SIG_SETMASK, &before_, nullptr);
+  }
+
+  // Until a child ends, somebody interrupts, or the time is up.
+  void Wait(int milliseconds) {
+    pollfd waiting{descriptor_, POLLIN, 0};
+    poll(&waiting, 1, milliseconds);
+    signalfd_siginfo info;
+    while (read(descriptor_, &info, sizeof info) == sizeof info) {
+      if (info.ssi_signo != SIGCHLD) interrupted_ = true;
+    }
+  }
+  bool interrupted() const { return interrupted_; }
+
+ private:
+  sigset_t taken_, before_;
+  int descriptor_ = -1;
+  bool interrupted_ = false;
+};
+
+// The last line that says something.
+std::string LastLine(const std::string& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty()) last = line;
+  }
+  constexpr size_t kMost = 400;
+  return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
+}
+
+struct Running {
+  const BatchJob* job = nullptr;
+  std::string folder;
+  std::vector<std::vector<std::string>> commands;
+  size_t step = 0;
+  pid_t pid = 0;
+  Clock::time_point begin;
+  bool out_of_time = false;
+};
+
+class Pool {
+ public:
+  Pool(const BatchPlan& plan, const BatchRunOptions& options,
+       const std::function<void(const BatchProgress&)>& progress)
+      : plan_(plan), options_(options), progress_(progress), begin_(Clock::now()) {}
+
+  Result<BatchOutcome> Run(const std::vector<const BatchJob*>& waiting, int skipped) {
+    outcome_.skipped = skipped;
+    size_t next = 0;
+    while (!error_) {
+      const bool open = !outcome_.stopped && !signals_.interrupted();
+      while (open && !error_ && next < waiting.size() &&
+             static_cast<int>(running_.size()) < options_.jobs) {
+        Begin(*waiting[next++]);
+      }
+      left_ = static_cast<int>(waiting.size() - next + running_.size());
+      Report();
+      if (signals_.interrupted() || running_.empty()) break;
+      signals_.Wait(EndOfWait());
+      Collect();
+    }
+    outcome_.interrupted = signals_.interrupted();
+    EndAll();
+    if (error_) return *error_;
+    return outcome_;
+  }
+
+ private:
+  void Begin(const BatchJob& job) {
+    Running running;
+    running.job = &job;
+    running.folder = JobFolder(plan_, job);
+    std::error_code failed;
+    fs::remove_all(running.folder, failed);  // half-written
+    fs::create_directories(running.folder, failed);
+    if (failed) {
+      error_ = Error{"cannot be made: " + failed.message(), running.folder};
+      return;
+    }
+    running.commands = JobCommands(job, plan_, running.folder, options_.bin);
+    running.begin = Clock::now();
+    if (Start(&running)) running_.push_back(std::move(running));
+  }
+
+  // Its next command; false when that cannot even be started.
+  bool Start(Running* running) {
+    ChildSpec spec;
+    spec.command = running->commands[running->step];
+    spec.out = running->folder + "/stdout.txt";
+    spec.err = running->folder + "/stderr.txt";
+    spec.memory_limit_mb = options_.memory_limit_mb;
+    const Result<pid_t> child = StartChild(spec);
+    if (!child.ok()) {
+      error_ = child.error();
+      return false;
+    }
+    running->pid = child.value();
+    return true;
+  }
+
+  void Collect() {
+    for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+      const auto at = std::find_if(running_.begin(), running_.end(),
+                                   [&end](const Running& r) { return r.pid == end.pid; });
+      if (at == running_.end()) continue;
+      if (end.exit_code == 0 && ++at->step < at->commands.size()) {
+        if (!Start(&*at)) return;
+        continue;
+      }
+      Finish(*at, end);
+      running_.erase(at);
+    }
+    if (options_.time_limit_s <= 0.0) return;
+    for (Running& running : running_) {
+      if (running.out_of_time || Since(running.begin) < options_.time_limit_s) continue;
+      running.out_of_time = true;
+      KillChild(running.pid, SIGKILL);
+    }
+  }
+
+  std::string ReasonOf(const Running& running, const ChildEnd& end) const {
+    if (running.out_of_time) {
+      return "out of time after " + std::to_string(static_cast<int>(options_.time_limit_s)) + " s";
+    }
+    const std::string last = LastLine(running.folder + "/stderr.txt");
+    if (end.signal != 0) {
+      return std::string("killed by signal ") + strsignal(end.signal) +
+             (last.empty() ? "" : "; it last said: " + last);
+    }
+    if (!last.empty()) return last;
+    return end.exit_code == kFitFailed ? "the fit did not converge"
+                                       : "exit code " + std::to_string(end.exit_code);
+  }
+
+  void Finish(const Running& running, const ChildEnd& end) {
+    const bool done = end.exit_code == 0;
+    ++(done ? outcome_.done : outcome_.failed);
+    if (!done && !options_.keep_going) outcome_.stopped = true;
+    nlohmann::ordered_json json = {{"id", running.job->id},
+                                   {"variant", running.job->variant},
+                                   {"group", running.job->group},
+                                   {"replica", running.job->replica},
+                                   {"status", done ? "done" : "failed"},
+                                   {"reason", done ? "" : ReasonOf(running, end)},
+                                   {"commands", running.commands},
+                                   {"run", {{"seconds", Since(running.begin)}}}};
+    if (MaybeError error = WriteJson(running.folder + "/status.json", json)) error_ = error;
+  }
+
+  // What runs is ended and will be redone: it has no status.
+  void EndAll() {
+    for (const Running& running : running_) KillChild(running.pid, SIGKILL);
+    const auto begin = Clock::now();
+    while (!running_.empty() && Since(begin) < 10.0) {
+      signals_.Wait(100);
+      for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+        running_.erase(std::remove_if(running_.begin(), running_.end(),
+                                      [&end](const Running& r) { return r.pid == end.pid; }),
+                       running_.end());
+      }
+    }
+  }
+
+  int EndOfWait() const { return options_.time_limit_s > 0.0 ? 50 : 500; }
+
+  void Report() {
+    const int finished = outcome_.done + outcome_.failed;
+    const double each = finished > 0 ? Since(begin_) / finished : 0.0;
+    progress_({outcome_.done, outcome_.failed, left_, each * left_});
+  }
+
+  const BatchPlan& plan_;
+  const BatchRunOptions& options_;
+  const std::function<void(const BatchProgress&)>& progress_;
+  const Clock::time_point begin_;
+  Signals signals_;
+  std::vector<Running> running_;
+  BatchOutcome outcome_;
+  int left_ = 0;
+  MaybeError error_;
+};
+
+}  // namespace
+
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
+  return plan.dir + "/jobs/" + job.id;
+}
+
+Result<std::optional<JobStatus>> ReadStatus(const BatchPlan& plan, const BatchJob& job) {
+  const std::string path = JobFolder(plan, job) + "/status.json";
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return std::optional<JobStatus>();
+  const auto document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  const auto& json = document.value().content;
+  JobStatus status;
+  try {
+    status.done = json.at("status") == "done";
+    status.reason = json.at("reason");
+    status.seconds = json.at("run").at("seconds");
+  } catch (const nlohmann::json::exception&) {
+    return Error{"is no status of a job; remove it, and the job is done again", path};
+  }
+  return std::optional<JobStatus>(status);
+}
+
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                              const BatchRunOptions& options,
+                              const std::function<void(const BatchProgress&)>& progress) {
+  std::vector<const BatchJob*> waiting;
+  std::set<std::string> seen;  // variants of the same flags share their jobs
+  int skipped = 0;
+  for (const BatchJob& job : jobs) {
+    if (!seen.insert(job.id).second) continue;
+    if (options.resume) {
+      const auto status = ReadStatus(plan, job);
+      if (!status.ok()) return status.error();
+      if (status.value() && status.value()->done) {
+        ++skipped;
+        continue;
+      }
+    }
+    waiting.push_back(&job);
+  }
+  return Pool(plan, options, progress).Run(waiting, skipped);
+}
+
+}  // namespace pushid

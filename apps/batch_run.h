@@ -1,0 +1,51 @@
+// apps: running a batch's jobs, several at a time, each in a folder and in processes of its own.
+//
+// A job is finished when jobs/<id>/status.json stands; it is written last and whole. Everything
+// else in a job's folder may be half-written by a kill and is made again.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/batch_jobs.h"
+
+namespace pushid {
+
+struct JobStatus {
+  bool done = false;   // false: failed
+  std::string reason;  // of a failure
+  double seconds = 0.0;
+};
+
+struct BatchRunOptions {
+  int jobs = 1;             // at a time
+  bool resume = true;       // skip those that are done; failed ones are tried again
+  bool keep_going = true;   // after a failure
+  double time_limit_s = 0;  // of one job; 0: none
+  int memory_limit_mb = 0;
+  std::string bin;  // where the programs are
+};
+
+struct BatchProgress {
+  int done = 0, failed = 0, left = 0;
+  double seconds_left = 0.0;  // by what the jobs so far took
+};
+
+struct BatchOutcome {
+  int skipped = 0, done = 0, failed = 0;
+  bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
+  bool stopped = false;      // by the first failure
+};
+
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
+
+// Nothing when the job is not finished. Errors: a status that cannot be read.
+Result<std::optional<JobStatus>> ReadStatus(const BatchPlan& plan, const BatchJob& job);
+
+// Errors: the output folder or a status cannot be written; nothing is lost by trying again.
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                              const BatchRunOptions& options,
+                              const std::function<void(const BatchProgress&)>& progress);
+
+}  // namespace pushid

@@ -1,0 +1,83 @@
+// apps: fork, limits, exec.
+#include "apps/child_process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+namespace pushid {
+namespace {
+
+constexpr int kCannotStart = 127;
+
+// Between fork and exec: only calls that are safe there.
+[[noreturn]] void RunInChild(const ChildSpec& spec, char* const* argv, pid_t parent, int out,
+                             int err) {
+  setpgid(0, 0);  // so that a terminal's Ctrl-C reaches the batch alone
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(kCannotStart);  // it died before that was asked for
+  if (spec.memory_limit_mb > 0) {
+    const rlim_t bytes = static_cast<rlim_t>(spec.memory_limit_mb) << 20;
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  dup2(out, STDOUT_FILENO);
+  dup2(err, STDERR_FILENO);
+  sigset_t none;  // the parent's mask would be inherited
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv(argv[0], argv);
+  _exit(kCannotStart);
+}
+
+}  // namespace
+
+Result<pid_t> StartChild(const ChildSpec& spec) {
+  if (access(spec.command[0].c_str(), X_OK) != 0) {
+    return Error{"cannot be run: " + std::string(std::strerror(errno)), spec.command[0]};
+  }
+  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
+  const int out = open(spec.out.c_str(), flags, 0644);
+  if (out < 0) return Error{"cannot be written: " + std::string(std::strerror(errno)), spec.out};
+  const int err = open(spec.err.c_str(), flags, 0644);
+  if (err < 0) {
+    const std::string reason = std::strerror(errno);
+    close(out);
+    return Error{"cannot be written: " + reason, spec.err};
+  }
+  std::vector<char*> argv;
+  for (const std::string& word : spec.command) argv.push_back(const_cast<char*>(word.c_str()));
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) RunInChild(spec, argv.data(), parent, out, err);
+  const int reason = errno;
+  close(out);
+  close(err);
+  if (child < 0) return Error{"no process can be started: " + std::string(std::strerror(reason))};
+  setpgid(child, child);  // in both, so that it is done whoever comes first
+  return child;
+}
+
+ChildEnd NextEnded() {
+  ChildEnd end;
+  int status = 0;
+  const pid_t pid = waitpid(-1, &status, WNOHANG);
+  if (pid <= 0) return end;
+  end.pid = pid;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  return end;
+}
+
+void KillChild(pid_t pid, int signal) { kill(-pid, signal); }
+
+}  // namespace pushid

@@ -1,0 +1,148 @@
+// apps: pushid-batch: many fits from one plan, each in a process of its own.
+#include <gflags/gflags.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/app_support.h"
+#include "apps/batch_summary.h"
+#include "datasets/manifest.h"
+
+DEFINE_string(plan, "", "the plan (TOML); batch_plan.h and the README give its keys");
+DEFINE_bool(list, false, "only list the jobs: id, variant, group, replica, recordings");
+DEFINE_bool(dry_run, false, "only print the commands of every job that is not done yet");
+DEFINE_int32(jobs, 1, "jobs at a time");
+DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
+DEFINE_string(job, "", "only the job of this id (or the start of one)");
+DEFINE_bool(resume, true, "skip jobs that are done; false does all of them again");
+DEFINE_bool(keep_going, true, "go on after a job that failed");
+DEFINE_bool(summary, true,
+            "write summary.csv, summary.json and summary.html; false with shards "
+            "that run at the same time");
+DEFINE_double(time_limit, -1.0, "seconds for one job, instead of the plan's; 0: none");
+DEFINE_int32(memory_limit, -1, "MB of one job's address space, instead of the plan's; 0: none");
+
+namespace {
+
+using namespace pushid;
+
+constexpr int kInterrupted = 130;  // as a shell has it
+
+std::string BinFolder() {
+  std::error_code failed;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return failed ? "." : self.parent_path().string();
+}
+
+Result<std::vector<BatchJob>> ChosenJobs(const std::vector<BatchJob>& all) {
+  std::vector<BatchJob> jobs = all;
+  if (!FLAGS_shard.empty()) {
+    int i = 0, n = 0;
+    char rest = 0;
+    if (std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &i, &n, &rest) != 2 || n < 1 || i < 1 ||
+        i > n) {
+      return Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
+    }
+    jobs = Shard(jobs, i, n);
+  }
+  if (FLAGS_job.empty()) return jobs;
+  std::vector<BatchJob> named;
+  for (const BatchJob& job : jobs) {
+    if (job.id.rfind(FLAGS_job, 0) == 0) named.push_back(job);
+  }
+  if (named.empty()) return Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
+  return named;
+}
+
+int List(const std::vector<BatchJob>& jobs) {
+  std::string text = "id,variant,group,replica,recordings,held_out\n";
+  for (const BatchJob& job : jobs) {
+    text += job.id + "," + job.variant + "," + job.group + "," + std::to_string(job.replica) + "," +
+            std::to_string(job.recordings.size()) + "," + std::to_string(job.held_out.size()) +
+            "\n";
+  }
+  std::fputs(text.c_str(), stdout);
+  return kDone;
+}
+
+int DryRun(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
+  for (const BatchJob& job : jobs) {
+    const auto status = ReadStatus(plan, job);
+    if (!status.ok()) return Fail(status.error());
+    if (FLAGS_resume && status.value() && status.value()->done) continue;
+    for (const auto& command : JobCommands(job, plan, JobFolder(plan, job), BinFolder())) {
+      for (size_t i = 0; i < command.size(); ++i) {
+        std::printf("%s'%s'", i > 0 ? " " : "", command[i].c_str());
+      }
+      std::printf("\n");
+    }
+  }
+  return kDone;
+}
+
+std::string TimeText(double seconds) {
+  const int s = static_cast<int>(seconds + 0.5);
+  if (s < 100) return std::to_string(s) + " s";
+  return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
+}
+
+int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
+            const std::vector<BatchJob>& jobs) {
+  BatchRunOptions options;
+  options.jobs = FLAGS_jobs;
+  options.resume = FLAGS_resume;
+  options.keep_going = FLAGS_keep_going;
+  options.time_limit_s = FLAGS_time_limit >= 0.0 ? FLAGS_time_limit : plan.time_limit_s;
+  options.memory_limit_mb = FLAGS_memory_limit >= 0 ? FLAGS_memory_limit : plan.memory_limit_mb;
+  options.bin = BinFolder();
+  ProgressLine line;
+  const Result<BatchOutcome> outcome =
+      RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
+        line.Show(std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
+                  std::to_string(p.left) + " left" +
+                  (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""));
+      });
+  line.Finish();
+  if (!outcome.ok()) return Fail(outcome.error());
+  const BatchOutcome& o = outcome.value();
+  if (FLAGS_summary) {
+    // Of all jobs of the plan, whichever of them ran now.
+    const std::vector<SummaryRow> rows = CollectRows(plan, all);
+    if (MaybeError error = WriteSummary(plan, rows)) return Fail(*error);
+    std::printf("%s", SummaryText(rows).c_str());
+  }
+  std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
+              plan.dir.c_str());
+  if (o.interrupted) {
+    std::fprintf(stderr, "pushid-batch: interrupted; the same command goes on from here\n");
+    return kInterrupted;
+  }
+  return o.failed > 0 ? kFitFailed : kDone;
+}
+
+int Run() {
+  if (MaybeError missing = Require("plan", FLAGS_plan, "name the TOML file of the batch")) {
+    return Fail(*missing);
+  }
+  if (FLAGS_jobs < 1) return Fail("--jobs must be at least 1");
+  const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
+  if (!plan.ok()) return Fail(plan.error());
+  const Result<Manifest> manifest = ReadManifest(plan.value().manifest);
+  if (!manifest.ok()) return Fail(manifest.error());
+  const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
+  if (!all.ok()) return Fail(all.error());
+  const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
+  if (!jobs.ok()) return Fail(jobs.error());
+  if (FLAGS_list) return List(jobs.value());
+  if (FLAGS_dry_run) return DryRun(plan.value(), jobs.value());
+  return RunJobs(plan.value(), all.value(), jobs.value());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return RunApp(argc, argv,
+                "pushid-batch runs the fits of a plan and gathers them in one table.\n\n"
+                "  pushid-batch --plan=plan.toml --jobs=2",
+                Run);
+}

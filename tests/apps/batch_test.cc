@@ -1,0 +1,237 @@
+// pushid-batch: plans, ids, failures that cost one job only, kills that cost nothing.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+class BatchTest : public AppTest {
+ protected:
+  // jobs: lines of [jobs]; variants: name and flags.
+  std::string Plan(const std::string& jobs,
+                   const std::vector<std::pair<std::string, std::string>>& variants,
+                   const std::string& dir = "out", const std::string& name = "plan.toml") const {
+    std::string text = "[data]\nrecordings = \"manifest.json\"\n[jobs]\n" + jobs + "\n";
+    for (const auto& [variant, flags] : variants) {
+      text += "[[variant]]\nname = \"" + variant + "\"\nflags = [" + flags + "]\n";
+    }
+    return "--plan=" + WriteText(name, text + "[output]\ndir = \"" + dir + "\"\n");
+  }
+
+  AppRun Batch(const std::string& plan, std::vector<std::string> more = {}) const {
+    more.insert(more.begin(), plan);
+    more.push_back("--quiet");
+    return RunApp("pushid-batch", more);
+  }
+
+  // summary.csv without what changes from run to run: the last two columns.
+  std::vector<std::string> Table(const std::string& dir) const {
+    std::vector<std::string> rows;
+    for (std::string row : Lines(ReadText(Path(dir + "/summary.csv")))) {
+      for (int i = 0; i < 2; ++i) row.erase(row.rfind(','));
+      rows.push_back(row);
+    }
+    return rows;
+  }
+
+  static std::set<std::string> Ids(const std::string& listing) {
+    std::set<std::string> ids;
+    for (const std::string& line : Lines(listing)) ids.insert(line.substr(0, line.find(',')));
+    ids.erase("id");
+    return ids;
+  }
+};
+
+TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
+  const std::string plan =
+      Plan("group_by = \"subject\"\nbootstrap = 1",
+           {{"physics", "\"--self_force=none\""}, {"bad", "\"--self_force=nonsense\""}});
+  const AppRun run = Batch(plan, {"--jobs=2"});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  const std::vector<std::string> rows = Table("out");
+  ASSERT_EQ(rows.size(), 1u + 8u);  // header; 2 subjects, 2 replicas, 2 variants
+  int done = 0, failed = 0;
+  for (const std::string& row : rows) {
+    done += row.find(",physics,") != std::string::npos && row.find(",done,") != std::string::npos;
+    failed += row.find(",bad,") != std::string::npos &&
+              row.find("--self_force is 'nonsense'") != std::string::npos;
+  }
+  EXPECT_EQ(done, 4);
+  EXPECT_EQ(failed, 4);
+  EXPECT_TRUE(Contains(run.out, "4 done, 4 failed, 0 done before"));
+  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "--self_force is &#39;nonsense&#39;"));
+  EXPECT_EQ(Json(Path("out/summary.json"))["jobs"].size(), 8u);
+  // What is done is not done again; what failed is tried again.
+  EXPECT_TRUE(Contains(Batch(plan).out, "0 done, 4 failed, 4 done before"));
+  EXPECT_EQ(Table("out"), rows);
+  const AppRun stops = Batch(plan, {"--keep_going=false", "--resume=false", "--jobs=1"});
+  EXPECT_TRUE(Contains(stops.out, "4 done, 1 failed"));
+}
+
+TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
+  FitModel("model.json", {"--bootstrap=2", "--seed=7", "--settling_weight=0"});
+  const nlohmann::ordered_json model = Json(Path("model.json"));
+  Batch(Plan("bootstrap = 2\nseed = 7", {{"physics", "\"--settling_weight=0\""}}));
+  const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
+  ASSERT_EQ(summary["jobs"].size(), 3u);
+  EXPECT_NEAR(summary["jobs"][0]["parameters"]["mu"]["value"].get<double>(),
+              model["values"]["mu"].get<double>(), 1e-9);
+  const nlohmann::ordered_json& names = model["bootstrap"]["parameters"];
+  size_t mu = 0;
+  while (names[mu]["name"] != "mu") ++mu;
+  for (int replica : {1, 2}) {
+    const double own = summary["jobs"][replica]["parameters"]["mu"]["value"].get<double>();
+    bool found = false;
+    for (const auto& row : model["bootstrap"]["values"]) {
+      found = found || std::abs(row[mu].get<double>() / own - 1.0) < 1e-3;
+    }
+    EXPECT_TRUE(found) << "replica " << replica << ": mu " << own;
+  }
+}
+
+TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
+  const AppRun run = Batch(Plan("folds = 3", {{"physics", ""}}), {"--jobs=2"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const nlohmann::ordered_json jobs = Json(Path("out/summary.json"))["jobs"];
+  ASSERT_EQ(jobs.size(), 3u);
+  for (const auto& job : jobs) {
+    EXPECT_GT(job["held_out"]["hipADE_m"].get<double>(), 0.0);
+    EXPECT_LT(job["held_out"]["hipADE_m"].get<double>(), 0.1);
+  }
+}
+
+TEST_F(BatchTest, IdsFollowTheContent) {
+  const std::string jobs = "group_by = \"recording\"";
+  const std::string plan = Plan(jobs, {{"a", ""}, {"b", "\"--posture=upright\""}});
+  const std::set<std::string> ids = Ids(Batch(plan, {"--list"}).out);
+  EXPECT_EQ(ids.size(), 24u);
+  // Another order, another folder: the same jobs.
+  const std::string again =
+      Plan(jobs, {{"b", "\"--posture=upright\""}, {"a", ""}}, "elsewhere", "again.toml");
+  EXPECT_EQ(Ids(Batch(again, {"--list"}).out), ids);
+  // Shards are parts of the whole, without overlap.
+  std::set<std::string> parts;
+  size_t total = 0;
+  for (const char* shard : {"--shard=1/3", "--shard=2/3", "--shard=3/3"}) {
+    const std::set<std::string> part = Ids(Batch(plan, {"--list", shard}).out);
+    total += part.size();
+    parts.insert(part.begin(), part.end());
+  }
+  EXPECT_EQ(parts, ids);
+  EXPECT_EQ(total, ids.size());
+  // A changed push makes new jobs of its recording, and of no other.
+  const std::string push = Json(manifest_)["recordings"][0]["push_csv"];
+  WriteText(push, ReadText(Path(push)) + "\n");
+  const std::set<std::string> changed = Ids(Batch(plan, {"--list"}).out);
+  size_t kept = 0;
+  for (const std::string& id : changed) kept += ids.count(id);
+  EXPECT_EQ(kept, 22u);
+}
+
+TEST_F(BatchTest, LimitsEndAJobAndSaySo) {
+  const std::string endless = "\"--bootstrap=100000\"";
+  const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
+  EXPECT_EQ(slow.exit_code, 2) << slow.err;
+  EXPECT_TRUE(Contains(slow.out, "out of time"));
+  const AppRun big = Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"));
+  EXPECT_EQ(big.exit_code, 2) << big.err;
+  EXPECT_TRUE(Contains(big.out, "1 failed"));
+}
+
+// Killed outright at random moments, the batch ends with exactly the table of an unbroken run.
+// PUSHID_BATCH_KILLS=100 does it a hundred times.
+TEST_F(BatchTest, KillsCostNothing) {
+  const char* wanted = std::getenv("PUSHID_BATCH_KILLS");
+  const int kills = wanted != nullptr ? std::atoi(wanted) : 5;
+  const std::string jobs = "group_by = \"recording\"";
+  const std::vector<std::pair<std::string, std::string>> variants = {{"a", ""}};
+  ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml")).exit_code, 0);
+  const std::string plan = Plan(jobs, variants, "broken", "broken.toml");
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> moment(0.01, 0.3);
+  for (int k = 0; k < kills; ++k) {
+    // Out of time: RunApp kills it.
+    RunApp("pushid-batch", {plan, "--jobs=2", "--quiet"}, moment(random));
+    if (k % 10 == 9) fs::remove_all(Path("broken"));  // so that there is something left to break
+  }
+  const AppRun last = Batch(plan, {"--jobs=2"});
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(Table("broken"), Table("whole"));
+}
+
+TEST_F(BatchTest, InterruptedItGoesOnLater) {
+  const std::string plan = Plan("bootstrap = 200", {{"a", ""}});
+  // "timeout -s INT" sends what Ctrl-C sends.
+  const AppRun run = RunProgram(
+      "/usr/bin/timeout",
+      {"-s", "INT", "1", std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
+  EXPECT_EQ(run.exit_code, 124) << run.err;  // timeout's own
+  EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
+  EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
+  EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
+}
+
+struct BadPlan {
+  std::string text, says;
+};
+
+TEST_F(BatchTest, BadPlansAreToldWhereAndWhy) {
+  const std::string data = "[data]\nrecordings = \"manifest.json\"\n";
+  const std::string rest = "[[variant]]\nname = \"a\"\nflags = []\n[output]\ndir = \"out\"\n";
+  const std::vector<BadPlan> plans = {
+      {"[data\n", "plan.toml:1"},
+      {rest, "no [data]"},
+      {data + "[jobs]\ngroup_by = \"city\"\n" + rest, "plan.toml:4: group_by is 'city'"},
+      {data + "[jobs]\nfolds = 1\n" + rest, "plan.toml:4: folds is 1"},
+      {data + "[jobs]\nfolds = -2\n" + rest, "plan.toml:4: folds is -2"},
+      {data + "[jobs]\nfolds = \"two\"\n" + rest, "folds must be a whole number"},
+      {data + "[jobs]\nbotstrap = 3\n" + rest, "no key 'botstrap'"},
+      {data + "[jobs]\ntime_limit_s = -1\n" + rest, "time_limit_s must be"},
+      {data + "[output]\ndir = \"out\"\n", "at least one [[variant]]"},
+      {data + rest + "[[variant]]\nname = \"a\"\n", "two variants are called 'a'"},
+      {data + "[[variant]]\nname = \"a\"\nflags = [3]\n[output]\ndir = \"o\"\n",
+       "plan.toml:5: flags must be a list of texts"},
+      {data + "[[variant]]\nname = \"a\"\nflags = [\"x\"]\n[output]\ndir = \"o\"\n",
+       "'x' is no flag"},
+      {data + "[[variant]]\nname = \"a\"\nflags = [\"--model_out=x\"]\n[output]\ndir = \"o\"\n",
+       "--model_out is set by the batch"},
+      {"[data]\nrecordings = \"missing.json\"\n" + rest, "missing.json"},
+      {data + "setting = \"moon\"\n" + rest, "moon"},
+      {data + "[jobs]\ngroup_by = \"recording\"\nfolds = 2\n" + rest, "in 2 folds"},
+  };
+  for (const BadPlan& bad : plans) {
+    const AppRun run = Batch("--plan=" + WriteText("plan.toml", bad.text), {"--list"});
+    EXPECT_TRUE(Refused(run, {bad.says})) << bad.text;
+  }
+  EXPECT_TRUE(Refused(Batch("--plan=" + Path("none.toml")), {"none.toml", "no such file"}));
+  const std::string good = "--plan=" + WriteText("plan.toml", data + rest);
+  EXPECT_TRUE(Refused(Batch(good, {"--shard=3/2"}), {"--shard is '3/2'"}));
+  EXPECT_TRUE(Refused(Batch(good, {"--job=zz"}), {"no job 'zz'"}));
+  EXPECT_TRUE(Refused(Batch(good, {"--jobs=0"}), {"--jobs must be at least 1"}));
+  WriteText("file", "");
+  EXPECT_TRUE(Refused(
+      Batch("--plan=" + WriteText("blocked.toml", data + "[[variant]]\nname = \"a\"\n[output]\n"
+                                                         "dir = \"file/out\"\n")),
+      {"file/out"}));
+}
+
+}  // namespace
+}  // namespace pushid
