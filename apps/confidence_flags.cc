@@ -64,6 +64,20 @@ MaybeError CheckConfidenceFlags() {
   return FLAGS_bootstrap_file.empty() ? std::nullopt : CheckWritable(FLAGS_bootstrap_file);
 }
 
+MaybeError CheckConfidence(const FitOptions& options, int recordings) {
+  if (FLAGS_bootstrap > 0 && recordings < 2) {
+    return Error{"--bootstrap draws recordings with replacement; it needs at least two"};
+  }
+  if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
+  std::string known = "all";
+  for (Parameter id : options.table.Free()) {
+    known += ", " + options.table[id].name;
+    if (options.table[id].name == FLAGS_design) return std::nullopt;
+  }
+  return Error{"--design: there is no error of '" + FLAGS_design + "' to reduce; choose from " +
+               known};
+}
+
 MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result) {
   ProgressLine line;
   if (!FLAGS_profile.empty()) {
@@ -93,6 +107,7 @@ Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordin
   const FitPoint& estimate = result.starts[result.best_start].to;
   const ExperimentDesign design =
       DesignExperiments(problem, estimate, result.uncertainty, DefaultCandidates(recordings));
+  if (!design.refused.empty()) return "\nno design: " + design.refused + "\n";
   Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
   if (!text.ok()) return Error{"--design: " + text.error().message};
   return "\n" + text.value();

@@ -14,6 +14,9 @@ void AllowBareProfile(int argc, char** argv);
 // What is wrong with the flags, before a long fit.
 MaybeError CheckConfidenceFlags();
 
+// The same against what is to be fitted: recordings to draw from, a parameter to design for.
+MaybeError CheckConfidence(const FitOptions& options, int recordings);
+
 // Adds what the flags ask for.
 MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result);
 

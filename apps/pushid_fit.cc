@@ -17,6 +17,7 @@
 #include "ident/result_json.h"
 
 DECLARE_uint64(seed);
+DECLARE_string(bootstrap_file);
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(
     resample, 0,
@@ -53,6 +54,9 @@ int Run() {
   if (FLAGS_resample < 0) return Fail("--resample must not be negative");
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
+    if (FLAGS_model_out == FLAGS_bootstrap_file) {
+      return Fail("--model_out and --bootstrap_file name the same file");
+    }
   }
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
@@ -60,6 +64,8 @@ int Run() {
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(Resampled(recordings.value()), options.value().mapping);
 
+  const int count = static_cast<int>(pendulums.size());
+  if (MaybeError error = CheckConfidence(options.value(), count)) return Fail(*error);
   for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
   if (MaybeError error = CheckEffects(FitProblem(pendulums, options.value()))) return Fail(*error);
 

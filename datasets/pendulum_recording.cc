@@ -1,7 +1,37 @@
 // datasets: mapping a recording's skeletons to pendulums.
 #include "datasets/pendulum_recording.h"
 
+#include "datasets/content_hash.h"
+
 namespace pushid {
+namespace {
+
+void AddNumbers(const double* numbers, size_t count, ContentHash* hash) {
+  hash->Add({reinterpret_cast<const char*>(numbers), count * sizeof(double)});
+}
+
+// Of the files and of what the manifest makes of them: masses, units, rate, pushes.
+std::string HashOf(const PendulumRecording& recording, const std::string& files) {
+  ContentHash hash;
+  hash.Add(files);
+  AddNumbers(&recording.scene.dt, 1, &hash);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const ScenePerson& person = recording.scene.people[n];
+    const double body[] = {person.body.mass, person.body.rod_length, person.body.cart_height};
+    AddNumbers(body, 3, &hash);
+    AddNumbers(person.start.qd.data(), 4, &hash);
+    for (const Vector3<double>& hip : recording.hip[n]) AddNumbers(hip.data(), 3, &hash);
+  }
+  for (const ScenePush& push : recording.scene.pushes) {
+    const double kind[] = {static_cast<double>(push.person), static_cast<double>(push.start_frame),
+                           static_cast<double>(push.kind)};
+    AddNumbers(kind, 3, &hash);
+    for (const Vector4<double>& row : push.force) AddNumbers(row.data(), 4, &hash);
+  }
+  return hash.Hex();
+}
+
+}  // namespace
 
 PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
   PendulumRecording result;
@@ -11,7 +41,6 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   result.condition_code = recording.condition_code;
   result.pushed_person = recording.pushed_person;
   result.initial_velocity = recording.initial_velocity;
-  result.content_hash = recording.content_hash;
   result.scene.dt = 1.0 / recording.fps;
 
   for (const RecordedPerson& person : recording.people) {
@@ -41,6 +70,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.scene.pushes.push_back(
         MakeScenePush(push.person, push.start_frame, recording.push_kind, push.force));
   }
+  result.content_hash = HashOf(result, recording.content_hash);
   return result;
 }
 

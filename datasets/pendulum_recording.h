@@ -24,7 +24,7 @@ struct PendulumRecording {
   std::vector<std::vector<PendulumState<double>>> states;
   std::vector<std::vector<double>> rod_length;    // m
   std::vector<std::vector<Vector3<double>>> hip;  // m
-  std::string content_hash;
+  std::string content_hash;  // of the files and of what the manifest makes of them
 
   int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }
   int num_people() const { return static_cast<int>(hip.size()); }

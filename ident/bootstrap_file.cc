@@ -26,6 +26,16 @@ std::string Header(const FitProblem& problem, const BootstrapOptions& options,
   return header.dump();
 }
 
+// False for a line that no run wrote whole.
+bool ReadValues(const Json& row, ReplicaValues* values) {
+  if (!row["replica"].is_number_integer() || !row["values"].is_array()) return false;
+  for (const Json& value : row["values"]) {
+    if (!value.is_number()) return false;
+    values->push_back(value.get<double>());
+  }
+  return true;
+}
+
 std::string Line(int replica, const ReplicaValues& values) {
   return Json{{"replica", replica}, {"values", values}}.dump();
 }
@@ -51,7 +61,8 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
     while (std::getline(old, line)) {
       const Json row = Json::parse(line, nullptr, false);
       if (!row.is_object() || !row.contains("replica") || !row.contains("values")) break;
-      const ReplicaValues values = row["values"].get<ReplicaValues>();
+      ReplicaValues values;
+      if (!ReadValues(row, &values)) break;
       if (!values.empty() && values.size() != names.size()) break;
       finished_[row["replica"].get<int>()] = values;
       kept += line + "\n";

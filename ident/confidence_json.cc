@@ -114,6 +114,15 @@ Leverage LeverageFrom(const Json& json) {
   l.units = json.at("units").get<std::vector<std::string>>();
   l.change = RowsFrom(json.at("change"));
   l.in_errors = RowsFrom(json.at("in_errors"));
+  const auto whole = [&l](const std::vector<std::vector<double>>& rows) {
+    return rows.size() == l.recordings.size() &&
+           std::all_of(rows.begin(), rows.end(), [&l](const std::vector<double>& row) {
+             return row.size() == l.parameters.size();
+           });
+  };
+  if (!whole(l.change) || !whole(l.in_errors) || l.units.size() != l.parameters.size()) {
+    throw std::runtime_error("rows of the leverage have wrong lengths");
+  }
   return l;
 }
 

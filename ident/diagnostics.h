@@ -50,7 +50,7 @@ struct Whiteness {
   double ljung_box_p = 0.0;
 };
 
-// What leaving a recording out would move, by one Gauss-Newton step.
+// What leaving a recording out would move, by one step (covariance.h).
 struct Leverage {
   std::vector<std::string> recordings, parameters, units;
   std::vector<std::vector<double>> change;     // [recording][parameter], natural units

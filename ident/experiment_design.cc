@@ -178,7 +178,12 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
     design.standard_error.push_back(uncertainty.estimates[i].standard_error);
   }
   const int size = static_cast<int>(known.size());
-  if (size == 0) return design;
+  if (size == 0 || uncertainty.num_clusters - 1 < size) {
+    design.refused = "what one more recording would tell needs more recordings (" +
+                     std::to_string(uncertainty.num_clusters) + ") than free parameters (" +
+                     std::to_string(size) + ") and one";
+    return design;
+  }
   const Eigen::MatrixXd now = uncertainty.covariance(known, known);
   const Eigen::MatrixXd present = now.inverse();
   const Eigen::MatrixXd spread =
@@ -207,6 +212,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
 
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
                               int count) {
+  if (!design.refused.empty()) return Error{design.refused};
   const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
   const bool all = parameter == "all";
   if (!all && at == design.parameters.end()) {

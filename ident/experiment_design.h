@@ -40,6 +40,7 @@ struct DesignRow {
 };
 
 struct ExperimentDesign {
+  std::string refused;  // why there is none: people who touch, too few recordings
   std::vector<std::string> parameters, units;
   std::vector<double> standard_error;  // now
   PushKind kind = PushKind::kNet;      // of the candidates: that of most recordings

@@ -124,6 +124,8 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.full_hessian = json.value("full_hessian", false);
   u.sigma = json.at("sigma");
   u.t_quantile = json.at("t_quantile");
+  u.freedom = json.at("freedom");
+  u.too_few_clusters = json.at("too_few_clusters");
   u.condition_number = NumberFrom(json.at("condition_number"));
   u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
   u.correlation = MatrixFrom(json.at("correlation"));
@@ -164,8 +166,12 @@ void CheckConsistent(const FitResult& result) {
     throw std::runtime_error("best_start is none of the starts");
   }
   const Uncertainty& u = result.uncertainty;
-  if (u.correlation.rows() > static_cast<int>(u.estimates.size())) {
-    throw std::runtime_error("correlation and parameters do not belong together");
+  const auto fits = [&u](const Eigen::MatrixXd& matrix) {
+    const int size = static_cast<int>(u.estimates.size());
+    return matrix.rows() == size && matrix.cols() == size;
+  };
+  if (!fits(u.covariance) || !fits(u.correlation)) {
+    throw std::runtime_error("covariance, correlation and parameters do not belong together");
   }
   if (!(result.parameters[kTailTime] > 0.0)) {
     throw std::runtime_error("tail_time must be positive");

@@ -33,7 +33,7 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
       u.covariance.topLeftCorner(size, size));
   const Eigen::MatrixXd root =
       solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  const int freedom = std::max(1, u.num_clusters - 1);
+  const int freedom = std::max(1, u.freedom);
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;
   for (int s = 0; s < options.samples; ++s) {
@@ -72,6 +72,16 @@ std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
   return sets;
 }
 
+BandPoint PointOf(const Vector3<double>& hip, const PendulumState<double>& state) {
+  BandPoint point;
+  point << hip, state.q.tail<2>();
+  return point;
+}
+
+BandPoint PointOf(const Prediction& prediction, int frame, int person) {
+  return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
+}
+
 // The model with another draw of its shared values; units it knows keep their deviation from them
 // on the fitted scale.
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
@@ -94,15 +104,15 @@ IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<doub
 }
 
 // Quantiles over samples of one person's path.
-PathBand QuantilesOf(const std::vector<std::vector<Vector3<double>>>& paths) {
+PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
   PathBand band;
-  std::vector<Vector3<double>>* const rows[] = {&band.lower90, &band.lower50, &band.median,
-                                                &band.upper50, &band.upper90};
+  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.median, &band.upper50,
+                                          &band.upper90};
   const size_t frames = paths[0].size();
-  for (auto* row : rows) row->assign(frames, Vector3<double>::Zero());
+  for (auto* row : rows) row->assign(frames, BandPoint::Zero());
   std::vector<double> values(paths.size());
   for (size_t t = 0; t < frames; ++t) {
-    for (int axis = 0; axis < 3; ++axis) {
+    for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
       for (size_t s = 0; s < paths.size(); ++s) values[s] = paths[s][t][axis];
       for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
     }
@@ -129,10 +139,11 @@ std::vector<ErrorPath> ErrorPaths(const FitResult& result,
     const double speed = PushSpeed(recording);
     const Prediction prediction = Predict(model, recording);
     if (!prediction.status.ok || speed <= 0.0) continue;
-    ErrorPath path;
+    ErrorPath path{recording.id, {}};
     const int person = recording.pushed_person;
     for (int t = 0; t < recording.num_frames(); ++t) {
-      path.push_back((recording.hip[person][t] - prediction.hip[person][t]) / speed);
+      const BandPoint measured = PointOf(recording.hip[person][t], recording.states[person][t]);
+      path.path.push_back((measured - PointOf(prediction, t, person)) / speed);
     }
     paths.push_back(path);
   }
@@ -148,26 +159,33 @@ PredictiveBands ComputeBands(const FitResult& result,
   bands.samples = static_cast<int>(samples.size());
   const double speed = PushSpeed(recording);
   Random random(seed);
-  std::vector<std::vector<std::vector<Vector3<double>>>> paths(recording.scene.num_people());
+  std::vector<const ErrorPath*> others;
+  for (const ErrorPath& error : errors) {
+    if (error.recording != recording.id) others.push_back(&error);
+  }
+  std::vector<std::vector<std::vector<BandPoint>>> paths(recording.scene.num_people());
   const IdentifiedModel model = ModelOf(result);
   for (const ParameterSet<double>& sample : samples) {
     const double draw = random.Unit();
-    Prediction prediction = Predict(WithShared(model, sample), recording);
+    const Prediction prediction = Predict(WithShared(model, sample), recording);
     if (!prediction.status.ok) {
       ++bands.failed;
       continue;
     }
     for (int n = 0; n < recording.scene.num_people(); ++n) {
-      std::vector<Vector3<double>>& hip = prediction.hip[n];
-      if (!errors.empty() && n == recording.pushed_person) {
-        const size_t last = errors.size() - 1;
-        const ErrorPath& error =
-            errors[std::min(last, static_cast<size_t>(draw * static_cast<double>(errors.size())))];
-        for (size_t t = 0; t < hip.size(); ++t) {
-          hip[t] += speed * error[std::min(t, error.size() - 1)];
+      std::vector<BandPoint> path;
+      for (int t = 0; t < prediction.path.num_frames(); ++t) {
+        path.push_back(PointOf(prediction, t, n));
+      }
+      if (!others.empty() && n == recording.pushed_person) {
+        const size_t last = others.size() - 1;
+        const size_t drawn = static_cast<size_t>(draw * static_cast<double>(others.size()));
+        const std::vector<BandPoint>& error = others[std::min(last, drawn)]->path;
+        for (size_t t = 0; t < path.size(); ++t) {
+          path[t] += speed * error[std::min(t, error.size() - 1)];
         }
       }
-      paths[n].push_back(std::move(hip));
+      paths[n].push_back(std::move(path));
     }
   }
   if (bands.failed == bands.samples) return bands;

@@ -18,9 +18,12 @@
 
 namespace pushid {
 
-// Quantiles by frame, m.
+// Hip (m), theta and phi (rad) at one frame.
+using BandPoint = Eigen::Matrix<double, 5, 1>;
+
+// Quantiles by frame.
 struct PathBand {
-  std::vector<Vector3<double>> lower90, lower50, median, upper50, upper90;
+  std::vector<BandPoint> lower90, lower50, median, upper50, upper90;
 };
 
 struct PredictiveBands {
@@ -40,12 +43,16 @@ struct BandOptions {
 Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
                                                            const BandOptions& options);
 
-// Of the pushed person: hip measured less predicted, over impulse per mass, frame by frame.
-using ErrorPath = std::vector<Vector3<double>>;
+// Of the pushed person: measured less predicted, over impulse per mass, frame by frame.
+struct ErrorPath {
+  std::string recording;
+  std::vector<BandPoint> path;
+};
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
                                   const std::vector<PendulumRecording>& fitted);
 
-// errors: empty for bands of the parameters alone.
+// errors: empty for bands of the parameters alone. A recording's own path is no guess about it and
+// is left out.
 PredictiveBands ComputeBands(const FitResult& result,
                              const std::vector<ParameterSet<double>>& samples,
                              const std::vector<ErrorPath>& errors,

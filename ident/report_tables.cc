@@ -47,7 +47,12 @@ TextTable EstimateTable(const FitResult& result) {
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
-  return "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
+  const std::string few = u.too_few_clusters
+                              ? "fewer recordings than free parameters: clustered errors are "
+                                "rough, no parameter counts "
+                                "as identified, and correlations are those of independent frames\n"
+                              : "";
+  return few + "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
          "; Student's t = " + Significant(u.t_quantile, 3) + "); naive ones beside them\n";
 }
 

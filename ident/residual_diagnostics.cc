@@ -158,7 +158,8 @@ Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
       const double error = std::sqrt(std::max(0.0, uncertainty.covariance(i, i)));
       change.push_back(ToNatural(transform, point.shared[i] + move) -
                        ToNatural(transform, point.shared[i]));
-      in_errors.push_back(error > 0.0 ? move / error : 0.0);
+      const bool known = uncertainty.estimates[i].status != EstimateStatus::kUnidentifiable;
+      in_errors.push_back(known && error > 0.0 ? move / error : 0.0);
     }
     l.recordings.push_back(problem.recordings()[covariance.clusters[g]].id);
     l.change.push_back(change);

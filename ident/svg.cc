@@ -34,8 +34,7 @@ void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* ke
   size_t at = first;
   for (size_t i = first + 1; i < last; ++i) {
     const double px = points[i].first - x1, py = points[i].second - y1;
-    const double off =
-        length > 0.0 ? std::abs(px * dy - py * dx) / length : std::hypot(px, py);
+    const double off = length > 0.0 ? std::abs(px * dy - py * dx) / length : std::hypot(px, py);
     if (off > farthest) {
       farthest = off;
       at = i;

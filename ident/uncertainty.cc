@@ -187,9 +187,11 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
   u.condition_number = c.directions.Condition();
   u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;
-  u.t_quantile = StudentQuantile95(u.clustered ? u.num_clusters - 1 : c.freedom);
+  u.freedom = u.clustered ? u.num_clusters - 1 : c.freedom;
+  u.t_quantile = StudentQuantile95(u.freedom);
   u.covariance = u.clustered ? c.clustered : c.naive;
-  u.correlation = Correlation(u.covariance);
+  u.too_few_clusters = u.clustered && u.num_clusters - 1 < c.directions.rank;
+  u.correlation = Correlation(u.too_few_clusters ? c.naive : u.covariance);
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
@@ -198,6 +200,8 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
     u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i), u.t_quantile,
                                        touched && !columns[i].at_bound));
+    EstimateStatus& status = u.estimates.back().status;
+    if (u.too_few_clusters && status == EstimateStatus::kIdentified) status = EstimateStatus::kWeak;
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
   return u;

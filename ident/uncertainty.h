@@ -45,10 +45,14 @@ struct NullDirection {
 struct Uncertainty {
   int num_residuals = 0;  // of data
   int num_clusters = 0;
-  bool clustered = false;           // false with a single recording: naive errors lead
-  double sigma = 0.0;               // residual standard deviation, in sigmas
-  double t_quantile = 0.0;          // of the 95 % interval
-  double condition_number = 0.0;    // of the scaled Jacobian, without null directions
+  bool clustered = false;         // false with a single recording: naive errors lead
+  double sigma = 0.0;             // residual standard deviation, in sigmas
+  int freedom = 1;                // degrees of freedom of Student's t
+  double t_quantile = 0.0;        // of the 95 % interval
+  double condition_number = 0.0;  // of the scaled Jacobian, without null directions
+  // Fewer clusters than fitted numbers and one: the clustered covariance has no full rank, so
+  // correlations are the naive ones, and nobody is called identified.
+  bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order

@@ -11,7 +11,9 @@ namespace {
 
 // The design needs the fit's own recordings, all of them and as they were.
 ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingView>& views) {
-  if (views.size() != result.recordings.size() || result.best_start < 0) return {};
+  ExperimentDesign none;
+  none.refused = "it needs all recordings that were fitted, as they were then, each of one person";
+  if (views.size() != result.recordings.size() || result.best_start < 0) return none;
   std::vector<PendulumRecording> recordings;
   for (const RecordingView& view : views) {
     const bool same = std::any_of(
@@ -19,7 +21,7 @@ ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingVi
           return r.id == view.run.recording.id && r.content_hash == view.run.recording.content_hash;
         });
     // A candidate is one person alone.
-    if (!same || view.run.recording.num_people() > 1) return {};
+    if (!same || view.run.recording.num_people() > 1) return none;
     recordings.push_back(view.run.recording);
   }
   const FitProblem problem(recordings, result.options);

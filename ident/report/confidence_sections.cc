@@ -5,7 +5,6 @@
 #include "datasets/number_text.h"
 #include "ident/confidence.h"
 #include "ident/confidence_text.h"
-#include "ident/option_names.h"
 #include "ident/report/chart.h"
 #include "ident/report/heat_map.h"
 #include "ident/report/sections.h"
@@ -43,11 +42,22 @@ ReportFigure CorrelationFigure(const FitResult& result) {
           DrawHeatMap(map), numbers};
 }
 
+// A multiple of one parameter draws that parameter's curve again.
+bool IsAlias(const FitResult& result, const Profile& p) {
+  const bool parameter = result.options.table.Find(p.name) != nullptr;
+  return !parameter &&
+         std::any_of(result.profiles.begin(), result.profiles.end(), [&](const auto& q) {
+           return &q != &p && result.options.table.Find(q.name) != nullptr &&
+                  q.points.size() == p.points.size() && q.threshold == p.threshold &&
+                  q.cost == p.cost &&
+                  std::abs(q.lower95 / q.estimate - p.lower95 / p.estimate) < 1e-9;
+         });
+}
+
 Chart ProfileChart(const Profile& p) {
   Chart chart;
   chart.title = p.name;
   chart.x_label = p.unit == "1" ? "" : p.unit;
-  chart.y_label = "cost above the best / threshold";
   ChartLine line{{}, kPredictedLook, false}, dots{{}, kPredictedLook, true};
   for (const ProfilePoint& point : p.points) {
     line.points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
@@ -118,24 +128,24 @@ ReportSection ProfileSection(const FitResult& result) {
   section.paragraphs.push_back(AgreementNote(result));
   section.tables.push_back({"three kinds of intervals", AgreementTable(result)});
   std::vector<Chart> charts;
-  TextTable classes({"profile of", "class", "95 % interval", "lower end", "upper end"},
-                    std::vector<bool>(5, true));
+  TextTable ends({"profile of", "why it ended below", "above"}, std::vector<bool>(3, true));
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"},
                     std::vector<bool>(5, true));
   for (const Profile& p : result.profiles) {
-    const auto side = [](double x) { return std::isfinite(x) ? Significant(x) : "open"; };
-    classes.Add({p.name, NameOf(p.classification),
-                 "[" + side(p.lower95) + ", " + side(p.upper95) + "]", p.lower_end, p.upper_end});
-    if (p.points.size() > 1) charts.push_back(ProfileChart(p));
+    if (p.lower_end != "threshold" || p.upper_end != "threshold") {
+      ends.Add({p.name, p.lower_end, p.upper_end});
+    }
+    if (p.points.size() > 1 && !IsAlias(result, p)) charts.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
       numbers.Add({p.name, p.unit, DoubleText(point.value), DoubleText(point.cost - p.cost),
                    DoubleText(p.threshold)});
     }
   }
-  section.tables.push_back({"", classes});
-  section.figures.push_back({"profiles", "Cost above the optimum over the 95 % threshold.",
-                             DrawCharts(charts, "profiles", kColumns, kPanelWidth, kPanelHeight),
-                             numbers});
+  section.tables.push_back({"profiles that ended elsewhere than at the threshold", ends});
+  section.figures.push_back(
+      {"profiles",
+       "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
+       DrawCharts(charts, "profiles", kColumns, kPanelWidth, kPanelHeight), numbers});
   return section;
 }
 

@@ -5,12 +5,34 @@
 #include <system_error>
 
 #include "datasets/atomic_file.h"
+#include "datasets/number_text.h"
 
 namespace pushid {
 namespace {
 
+constexpr size_t kMostRowsInText = 60;
+
+// Numbers as people read them; words stay.
+std::string ForReading(const std::string& cell) {
+  double value = 0.0;
+  return ParseDouble(cell, &value) ? Rounded(value, 4) : cell;
+}
+
+// Its numbers where they fit on a terminal; otherwise the file they go to.
 std::string FigureText(const ReportFigure& figure) {
-  return "figure " + figure.name + (figure.caption.empty() ? "" : ": " + figure.caption) + "\n";
+  const auto& rows = figure.numbers.rows();
+  std::string text = figure.caption + (figure.caption.empty() ? "" : "\n");
+  if (rows.size() > kMostRowsInText) {
+    return text + "  (" + std::to_string(rows.size() - 1) + " rows: --csv_dir writes them to " +
+           figure.name + ".csv)\n";
+  }
+  TextTable table(rows[0], std::vector<bool>(rows[0].size(), true));
+  for (size_t i = 1; i < rows.size(); ++i) {
+    std::vector<std::string> cells;
+    for (const std::string& cell : rows[i]) cells.push_back(ForReading(cell));
+    table.Add(cells);
+  }
+  return text + table.ToString();
 }
 
 std::string SectionText(const ReportSection& section) {

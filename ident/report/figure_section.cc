@@ -1,5 +1,5 @@
 // ident: the moving figure: pendulums measured and predicted, skeletons where they were recorded,
-// as numbers that the page's script draws (page_script.h).
+// as numbers that the page's script draws (page_parts.h).
 //
 // Positions are millimetres as whole numbers, each the difference from the sample before: small,
 // and exact enough for a picture.

@@ -33,7 +33,7 @@ Chart HipChart(const RecordingView& view, int person, int axis, const std::strin
   if (!view.bands.people.empty()) {
     const PathBand& band = view.bands.people[person];
     const double start = run.recording.hip[person][0][axis];
-    const auto shifted = [&](const std::vector<Vector3<double>>& edge) {
+    const auto shifted = [&](const std::vector<BandPoint>& edge) {
       ChartPoints points;
       for (size_t t = 0; t < edge.size(); ++t) {
         points.emplace_back(run.Seconds(static_cast<int>(t)), edge[t][axis] - start);
@@ -55,6 +55,18 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
   Chart chart;
   chart.title = title;
   chart.x_label = "s";
+  if (!view.bands.people.empty()) {
+    const PathBand& band = view.bands.people[person];
+    const auto edge = [&](const std::vector<BandPoint>& points) {
+      ChartPoints placed;
+      for (size_t t = 0; t < points.size(); ++t) {
+        placed.emplace_back(run.Seconds(static_cast<int>(t)), points[t][row + 1]);
+      }
+      return placed;
+    };
+    chart.bands.push_back({edge(band.lower90), edge(band.upper90), kWideBandLook});
+    chart.bands.push_back({edge(band.lower50), edge(band.upper50), kNarrowBandLook});
+  }
   ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false};
   const int frames = run.recording.num_frames();
   const int valid = run.prediction.status.ok ? frames : run.prediction.status.frame;
@@ -68,11 +80,11 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
 }
 
 TextTable PathNumbers(const RecordingView& view) {
-  TextTable table(
-      {"person", "frame", "time_s", "measured_x_m", "measured_y_m", "predicted_x_m",
-       "predicted_y_m", "lower90_x_m", "upper90_x_m", "lower90_y_m", "upper90_y_m",
-       "measured_theta_rad", "predicted_theta_rad", "measured_phi_rad", "predicted_phi_rad"},
-      Words(15));
+  TextTable table({"person", "frame", "time_s", "measured_x_m", "measured_y_m", "predicted_x_m",
+                   "predicted_y_m", "lower90_x_m", "upper90_x_m", "lower90_y_m", "upper90_y_m",
+                   "lower50_x_m", "upper50_x_m", "lower50_y_m", "upper50_y_m", "measured_theta_rad",
+                   "predicted_theta_rad", "measured_phi_rad", "predicted_phi_rad"},
+                  Words(15));
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -88,6 +100,10 @@ TextTable PathNumbers(const RecordingView& view) {
         add(bands, bands ? view.bands.people[n].lower90[t][axis] : 0.0);
         add(bands, bands ? view.bands.people[n].upper90[t][axis] : 0.0);
       }
+      for (int axis : {0, 1}) {
+        add(bands, bands ? view.bands.people[n].lower50[t][axis] : 0.0);
+        add(bands, bands ? view.bands.people[n].upper50[t][axis] : 0.0);
+      }
       for (int row : {2, 3}) {
         add(true, run.recording.states[n][t].q[row]);
         add(ok, ok ? run.prediction.path.At(t, n).q[row] : 0.0);
@@ -100,15 +116,17 @@ TextTable PathNumbers(const RecordingView& view) {
 
 TextTable ForceNumbers(const FormationRun& run) {
   TextTable table({"person", "frame", "part", "fx_N", "fy_N", "ftheta_Nm", "fphi_Nm"}, Words(7));
+  const std::vector<ForcePart> parts = ActingParts(run);
   for (int n = 0; n < run.num_people(); ++n) {
     for (int t = 0; t < run.num_frames(); ++t) {
-      for (const ForcePart& part : ActingParts(run)) {
-        const Vector4<double>& force = run.Force(n, t).*part.value;
+      const auto add = [&](std::string_view part, const Vector4<double>& force) {
         std::vector<std::string> cells = {run.recording.subject_ids[n], std::to_string(t),
-                                          std::string(part.name)};
+                                          std::string(part)};
         for (int i = 0; i < 4; ++i) cells.push_back(DoubleText(force[i]));
         table.Add(cells);
-      }
+      };
+      add("net", run.Force(n, t).Total());
+      for (const ForcePart& part : parts) add(part.name, run.Force(n, t).*part.value);
     }
   }
   return table;
@@ -120,7 +138,7 @@ std::string PathPicture(const RecordingView& view) {
   DrawLegend({{"measured", kMeasuredLook},
               {"predicted", kPredictedLook},
               {"50 %", kNarrowBandLook},
-              {"90 % of such people", kWideBandLook}},
+              {"90 %", kWideBandLook}},
              52, 16, &svg);
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
@@ -174,6 +192,7 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
 
 ReportSection DesignSection(const ExperimentDesign& design) {
   ReportSection section{"design", "Which push to record next", {}, {}, {}, {}, {}, ""};
+  if (!design.refused.empty()) section.paragraphs = {"Left out: " + design.refused + "."};
   if (design.rows.empty()) return section;
   section.paragraphs = {
       "What one more recording of a kind would do to the standard errors, from the sensitivities "

@@ -16,7 +16,7 @@ std::string Element(const std::string& name, const std::string& text) {
 std::string TableHtml(const ReportTable& table) {
   const auto& rows = table.table.rows();
   if (rows.size() < 2) return "";
-  std::string html = "<div class=\"scroll\"><table>\n";
+  std::string html = "<div class=\"scroll\" tabindex=\"0\"><table>\n";
   if (!table.caption.empty()) html += Element("caption", table.caption);
   for (size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].empty()) continue;  // a gap
@@ -33,7 +33,7 @@ std::string TableHtml(const ReportTable& table) {
 }
 
 std::string FigureHtml(const ReportFigure& figure) {
-  std::string html = "<figure><div class=\"scroll\">" + figure.svg + "</div>";
+  std::string html = "<figure><div class=\"scroll\" tabindex=\"0\">" + figure.svg + "</div>";
   if (!figure.caption.empty()) html += Element("figcaption", figure.caption);
   return html + "</figure>\n";
 }

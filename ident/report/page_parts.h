@@ -12,7 +12,7 @@ h1{margin:1.4rem 0 .2rem;font-size:1.7rem}
 h2{margin:2.6rem 0 .6rem;font-size:1.25rem;border-bottom:1px solid var(--line);padding-bottom:.2rem;scroll-margin-top:3rem}
 header p{color:var(--faint);margin:.2rem 0 1rem}
 nav{position:sticky;top:0;background:var(--paper);border-bottom:1px solid var(--line);z-index:1}
-nav ul{display:flex;flex-wrap:wrap;gap:.1rem 1rem;margin:0;padding:.5rem 0;list-style:none;font-size:.85rem}
+nav ul{display:flex;gap:1rem;margin:0;padding:.5rem 0;list-style:none;font-size:.85rem;overflow-x:auto;white-space:nowrap}
 a{color:var(--link)}
 p{max-width:78ch}
 pre{background:var(--box);padding:.5rem .7rem;overflow-x:auto;font-size:.85rem;border-radius:4px}
@@ -26,6 +26,7 @@ th{font-weight:600}
 figure{margin:1rem 0;break-inside:avoid}
 figcaption{color:var(--faint);font-size:.85rem;max-width:78ch}
 svg{max-width:100%;height:auto}
+@media(max-width:700px){.scroll svg{min-width:640px}}
 details{border-bottom:1px solid var(--line);padding:.3rem 0}
 summary{cursor:pointer}
 .controls{display:flex;flex-wrap:wrap;gap:.6rem 1.2rem;align-items:center;margin:.6rem 0}
@@ -165,8 +166,13 @@ inline constexpr char kPageScript[] = R"js(
   time.addEventListener('input', () => { stop(); draw(); });
   turn.addEventListener('input', draw);
   // On paper everything is open.
+  let closed = [];
   addEventListener('beforeprint', () => {
-    for (const fold of document.querySelectorAll('details')) fold.open = true;
+    closed = [...document.querySelectorAll('details:not([open])')];
+    for (const fold of closed) fold.open = true;
+  });
+  addEventListener('afterprint', () => {
+    for (const fold of closed) fold.open = false;
   });
   choose();
 })();

@@ -25,7 +25,7 @@ struct ForestRow {
   std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
 };
 
-// Every row on a scale of its own, its ends written beside it: units differ.
+// Every row on a scale of its own: units differ.
 class Forest {
  public:
   Forest(std::vector<ForestRow> rows, const std::string& title, bool common_scale)
@@ -137,7 +137,7 @@ ReportSection ParameterSection(const FitResult& result) {
   std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
   if (!result.profiles.empty()) legend.push_back({"profile", kProfileLook});
   if (result.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
-  legend.push_back({"nominal (start of the fit)", kNominalLook});
+  legend.push_back({"nominal", kNominalLook});
   section.figures.push_back(
       {"forest",
        "Identified values (dots) with their 95 % intervals against the nominal values (diamonds). "

@@ -12,7 +12,7 @@ std::string Verdict(const FitResult& result) {
   int unsure = 0, free = 0;
   for (const Estimate& e : result.estimates) {
     free += e.status != EstimateStatus::kFixed;
-    unsure += e.status == EstimateStatus::kWeak || e.status == EstimateStatus::kUnidentifiable;
+    unsure += e.status != EstimateStatus::kFixed && e.status != EstimateStatus::kIdentified;
   }
   text += std::to_string(free - unsure) + " of " + std::to_string(free) +
           " free parameters are identified by the data. ";
@@ -74,7 +74,7 @@ ReportSection ProvenanceSection(const FitResult& result) {
                         result.manifest_hash + ")"};
   TextTable flags({"flag", "value"}, {true, true});
   for (const auto& [name, value] : result.configuration) flags.Add({"--" + name, value});
-  section.tables.push_back({"effective configuration", flags});
+  section.tables.push_back({"flags of the fit (what is empty or negative is the preset's)", flags});
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
   for (const FittedRecording& r : result.recordings) {
     files.Add({r.id, std::to_string(r.frames), r.content_hash});

@@ -44,8 +44,9 @@ TEST(ReportDocument, PageEscapesAndLeavesOutEmptySections) {
 
 TEST(ReportDocument, TextHasTheSameContent) {
   const std::string text = ToText(Sample());
-  for (const char* part : {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n",
-                           "a<b       1\n", "figure a/../b: see\n", "fold <1>\n"}) {
+  for (const char* part :
+       {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n", "a<b       1\n",
+        "see\ntime_s  what\n0.5     say \"x\", y\n", "fold <1>\n"}) {
     EXPECT_TRUE(Contains(text, part));
   }
   EXPECT_EQ(text.find("Nothing"), std::string::npos);
