@@ -14,13 +14,15 @@ DEFINE_string(length_unit, "", "unit of the BVH files, mm, cm or m, whatever the
 
 namespace pushid {
 
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids) {
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
+                                                     bool all_joints) {
   if (MaybeError missing =
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
   }
   LoadOptions options;
   options.setting = FLAGS_setting;
+  options.keep_all_joints = all_joints;
   options.ids = ids;
   if (ids.empty()) {
     std::stringstream list(FLAGS_ids);

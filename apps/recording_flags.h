@@ -15,8 +15,9 @@ DECLARE_string(setting);
 namespace pushid {
 
 // The recordings of --recordings, --setting and --ids; warnings go to stderr. Other ids than the
-// flag's may be asked for.
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {});
+// flag's may be asked for. all_joints: keep whole bodies, not only what the pendulum needs.
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
+                                                     bool all_joints = false);
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);
