@@ -9,6 +9,7 @@
 #include "datasets/json_fields.h"
 #include "datasets/json_file.h"
 #include "datasets/npy.h"
+#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
 
@@ -128,6 +129,14 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
     weights.inputs = TakeScaling("inputs", kWindowInputs, &reader);
     weights.network = TakeNetwork("network", 3, kWindowInputs, kWindowOutputs, &reader);
     restoration = std::make_unique<WindowRestoration>(std::move(weights));
+  } else if (file.kind == "cvae") {
+    const std::string coordinates = file.settings.value("coordinates", "tip");
+    if (coordinates != "tip" && coordinates != "ldp") {
+      return Error{"coordinates is " + Quoted(coordinates) + "; it must be tip or ldp",
+                   InFolder(folder, kJsonFile)};
+    }
+    restoration = std::make_unique<CvaeRestoration>(
+        TakeCvae(&reader), coordinates == "tip" ? CvaeCoordinates::kTip : CvaeCoordinates::kLdp);
   } else {
     return Error{"the kind is " + Quoted(file.kind) + "; known are window and cvae",
                  InFolder(folder, kJsonFile)};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ident/restoration_training_checkpoint.h"
+#include "ident/restoration_training_kinds.h"
 #include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
 
@@ -32,13 +33,6 @@ RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, S
   return all;
 }
 
-std::string KeyOf(const std::vector<RestorationSample>& training,
-                  const std::vector<RestorationSample>& held,
-                  const RestorationTrainingOptions& options) {
-  return "1 " + options.kind + " " + options.coordinates + " " + std::to_string(options.effort) +
-         " " + std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
-}
-
 constexpr int kWindowEpochs = 40;
 
 Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& training,
@@ -54,7 +48,7 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
   regression.num_threads = options.num_threads;
   RegressionTrainer trainer(learnt, judged, regression);
   TrainedRestoration trained;
-  Checkpoint checkpoint(options.checkpoint, KeyOf(training, held, options),
+  Checkpoint checkpoint(options.checkpoint, KeyOfTraining(training, held, options),
                         options.checkpoint_seconds);
   std::string state;
   trained.resumed = checkpoint.Load(&state, &trained.curve) && trainer.Resume(state);
@@ -80,10 +74,12 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
                                             const std::vector<RestorationSample>& held,
                                             const RestorationTrainingOptions& options,
                                             const TrainingProgress& progress) {
-  if (options.kind != "window") {
+  if (options.kind != "window" && options.kind != "cvae") {
     return Error{"--kind is '" + options.kind + "'; it must be window or cvae"};
   }
-  Result<TrainedRestoration> trained = TrainWindow(training, held, options, progress);
+  Result<TrainedRestoration> trained = options.kind == "window"
+                                           ? TrainWindow(training, held, options, progress)
+                                           : TrainCvae(training, held, options, progress);
   if (trained.ok()) trained.value().file.kind = options.kind;
   return trained;
 }

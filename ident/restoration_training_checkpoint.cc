@@ -79,6 +79,13 @@ void Checkpoint::Remove() const {
   if (!path_.empty()) std::filesystem::remove(path_, ignored);
 }
 
+std::string KeyOfTraining(const std::vector<RestorationSample>& training,
+                          const std::vector<RestorationSample>& held,
+                          const RestorationTrainingOptions& options) {
+  return "1 " + options.kind + " " + options.coordinates + " " + std::to_string(options.effort) +
+         " " + std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+}
+
 std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
   ContentHash hash;
   const auto add = [&hash](const auto& values) {

@@ -25,6 +25,11 @@ class Checkpoint {
   double seconds_, last_;
 };
 
+// What a training depends on.
+std::string KeyOfTraining(const std::vector<RestorationSample>& training,
+                          const std::vector<RestorationSample>& held,
+                          const RestorationTrainingOptions& options);
+
 // A hash of everything a sample holds.
 std::string KeyOfSamples(const std::vector<RestorationSample>& samples);
 
