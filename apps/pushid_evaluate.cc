@@ -6,8 +6,10 @@
 #include "apps/app_support.h"
 #include "apps/model_flags.h"
 #include "apps/recording_flags.h"
+#include "apps/restoration_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
+#include "ident/body_report.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
@@ -16,20 +18,41 @@ DEFINE_bool(per_recording, true, "print a line for every recording");
 
 namespace {
 
+using namespace pushid;
+
+// Bodies beside pendulums, where --restoration asks for them.
+MaybeError AddBodies(const IdentifiedModel& model, const std::vector<Recording>& recordings,
+                     nlohmann::ordered_json* json) {
+  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  if (!restoration.ok()) return restoration.error();
+  const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
+  if (!postprocess.ok()) return postprocess.error();
+  const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
+  if (!bodies.ok()) return bodies.error();
+  const BodyEvaluation evaluation =
+      EvaluateBodies(model, *restoration.value(), postprocess.value(), bodies.value());
+  std::printf("\n%s", BodyText(evaluation).c_str());
+  AddBodyJson(evaluation, json);
+  return std::nullopt;
+}
+
 int Run() {
-  using namespace pushid;
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (!FLAGS_json_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
   }
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
+  const bool with_bodies = !FLAGS_restoration.empty();
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, with_bodies);
   if (!recordings.ok()) return Fail(recordings.error());
   const Evaluation evaluation =
       Evaluate(model.value(), MapRecordings(recordings.value(), model.value().mapping));
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
+  nlohmann::ordered_json json = ToJson(evaluation);
+  if (with_bodies) {
+    if (MaybeError error = AddBodies(model.value(), recordings.value(), &json)) return Fail(*error);
+  }
   if (!FLAGS_json_out.empty()) {
-    nlohmann::ordered_json json = ToJson(evaluation);
     json["version"] = Version();
     json["configuration"] = EffectiveFlags();
     if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);

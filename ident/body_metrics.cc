@@ -8,7 +8,7 @@ namespace pushid {
 namespace {
 
 constexpr double kTouchHeight = 0.025;  // m
-constexpr double kCentimetres = 100.0;    // per m
+constexpr double kCentimetres = 100.0;  // per m
 
 // The metrics of one person, but the FSE.
 BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted) {
