@@ -133,8 +133,7 @@ Tensor CvaeTrainer::Torch::AutoencoderLoss(const Tensor& next, const Tensor& con
   const Gaussian g = Half().Encode(next, condition);
   const Tensor z = g.mean + torch::exp(0.5 * g.log_variance) * torch::randn_like(g.mean);
   *output = Half().decoder->Forward(z, condition);
-  const Tensor kl =
-      -0.5 * (1.0 + g.log_variance - g.mean.pow(2) - g.log_variance.exp()).mean();
+  const Tensor kl = -0.5 * (1.0 + g.log_variance - g.mean.pow(2) - g.log_variance.exp()).mean();
   return (*output - next).pow(2).mean() + options.kl_weight * kl;
 }
 

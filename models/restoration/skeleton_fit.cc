@@ -23,6 +23,7 @@ const Children& BodyChildren() {
 
 // A stretched knee has no direction to bend in, hence never quite stretched.
 constexpr double kMostStretched = 0.9995;
+constexpr double kStraight = 1e-4;  // m
 
 }  // namespace
 
@@ -69,8 +70,13 @@ double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose) {
   // Law of cosines: how far along the line, and how far beside it, the knee stands.
   const double foot = (thigh * thigh + distance * distance - shank * shank) / (2.0 * distance);
   const double beside = std::sqrt(std::max(0.0, thigh * thigh - foot * foot));
-  Eigen::Vector3d bend = (k - h) - along.dot(k - h) * along;
-  if (!(bend.norm() > 1e-6)) bend = Eigen::Vector3d::UnitX() - along.x() * along;  // forwards
+  // The knee bends to the side it bent to, carried along with the leg; a straight leg bends towards
+  // the toe.
+  const Eigen::Vector3d was = (a - h).normalized();
+  Eigen::Vector3d bend = (k - h) - was.dot(k - h) * was;
+  if (!(bend.norm() > kStraight)) bend = pose->col(toe) - a;
+  bend = SwingBetween(was, along) * bend;
+  bend -= along.dot(bend) * along;
   const Eigen::Vector3d reached = h + distance * along;
   pose->col(toe) += reached - a;
   pose->col(knee) = h + foot * along + beside * bend.normalized();
