@@ -31,6 +31,9 @@ DEFINE_double(held_out, 0.15, "share of the recordings by which training stops e
 DEFINE_double(effort, 1.0, "multiplies the number of training steps");
 DEFINE_bool(predicted_pendulums, true, "learn from out-of-fold predicted pendulums too");
 DEFINE_bool(mirrored, true, "learn from mirrored copies too");
+DEFINE_string(more_settings, "",
+              "also learn how bodies follow recorded pendulums from these settings (as --setting "
+              "names them); their pendulums are not fitted and nothing of them is scored");
 DEFINE_uint64(seed, 1, "seed of weights, batches, noise and folds");
 DEFINE_int32(num_threads, 1, "threads of the training; only one repeats to the last bit");
 
@@ -185,9 +188,25 @@ int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions op
   return kDone;
 }
 
+// Those of --more_settings, without the ones that are learnt from (and scored) anyway.
+MaybeError AddMoreRecordings(const std::vector<Recording>& known, RestorationRunOptions* options) {
+  if (FLAGS_more_settings.empty()) return std::nullopt;
+  const Result<std::vector<Recording>> more = LoadBodiesOfSetting(FLAGS_more_settings);
+  if (!more.ok()) return more.error();
+  for (const Recording& recording : more.value()) {
+    bool is_known = false;
+    for (const Recording& other : known) is_known = is_known || other.id == recording.id;
+    if (is_known) continue;
+    Result<BodyRecording> body = MakeBodyRecording(recording, options->fit.mapping);
+    if (!body.ok()) return body.error();
+    options->more.push_back(std::move(body.value()));
+  }
+  return std::nullopt;
+}
+
 int Run() {
   if (MaybeError error = CheckFlags()) return Fail(*error);
-  const Result<RestorationRunOptions> options = RunOptions();
+  Result<RestorationRunOptions> options = RunOptions();
   if (!options.ok()) return Fail(options.error());
   if (!FLAGS_json_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
@@ -198,6 +217,9 @@ int Run() {
   const Result<std::vector<BodyRecording>> bodies =
       MakeBodyRecordings(recordings.value(), options.value().fit.mapping);
   if (!bodies.ok()) return Fail(bodies.error());
+  if (MaybeError error = AddMoreRecordings(recordings.value(), &options.value())) {
+    return Fail(*error);
+  }
   if (FLAGS_crossvalidate > 0) return CrossValidate(bodies.value(), options.value());
   return Train(bodies.value(), options.value());
 }

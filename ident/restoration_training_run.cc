@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "ident/crossvalidation.h"
 
@@ -17,6 +18,12 @@ std::vector<int> Picked(const std::vector<int>& from, const std::vector<int>& po
   std::vector<int> picked;
   for (int k : positions) picked.push_back(from[k]);
   return picked;
+}
+
+std::vector<int> All(const std::vector<BodyRecording>& recordings) {
+  std::vector<int> all(recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 template <typename Value>
@@ -52,8 +59,12 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
         "there are too few recordings to learn from and to stop the training early by; "
         "two are the least"};
   }
-  const auto training =
+  auto training =
       MakeSamples(recordings, Picked(among, learnt), PickedValues(paths, learnt), options.mirrored);
+  for (RestorationSample& sample :
+       MakeSamples(options.more, All(options.more), {}, options.mirrored)) {
+    training.push_back(std::move(sample));
+  }
   const auto held =
       MakeSamples(recordings, Picked(among, judged), PickedValues(paths, judged), false);
   return TrainRestoration(training, held, options.training,

@@ -19,6 +19,8 @@ struct RestorationRunOptions {
   int inner_folds = 4;     // of the out-of-fold predictions
   double held_out = 0.15;  // share of the recordings that stop the training early
   bool predicted_pendulums = true, mirrored = true;
+  // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
+  std::vector<BodyRecording> more;
 };
 
 // step: "pendulum 2/4", "window epoch 12"; done: share of this step.
