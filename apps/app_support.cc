@@ -105,7 +105,7 @@ MaybeError Require(const std::string& flag, const std::string& value, const std:
 
 std::map<std::string, std::string> EffectiveFlags() {
   // What names outputs or only changes speed and talk is no part of a result.
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads"};
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds"};
   std::map<std::string, std::string> flags;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
     const bool output =

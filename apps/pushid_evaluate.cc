@@ -2,6 +2,7 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "apps/app_support.h"
 #include "apps/model_flags.h"
@@ -20,20 +21,18 @@ namespace {
 
 using namespace pushid;
 
-// Bodies beside pendulums, where --restoration asks for them.
-MaybeError AddBodies(const IdentifiedModel& model, const std::vector<Recording>& recordings,
-                     nlohmann::ordered_json* json) {
+// Bodies beside pendulums, where --restoration asks for them; else nothing.
+Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
+                                             const std::vector<Recording>& recordings) {
+  if (FLAGS_restoration.empty()) return std::optional<BodyEvaluation>();
   const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
   if (!restoration.ok()) return restoration.error();
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
   if (!postprocess.ok()) return postprocess.error();
   const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
   if (!bodies.ok()) return bodies.error();
-  const BodyEvaluation evaluation =
-      EvaluateBodies(model, *restoration.value(), postprocess.value(), bodies.value());
-  std::printf("\n%s", BodyText(evaluation).c_str());
-  AddBodyJson(evaluation, json);
-  return std::nullopt;
+  return std::optional<BodyEvaluation>(
+      EvaluateBodies(model, *restoration.value(), postprocess.value(), bodies.value()));
 }
 
 int Run() {
@@ -42,15 +41,18 @@ int Run() {
   if (!FLAGS_json_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
   }
-  const bool with_bodies = !FLAGS_restoration.empty();
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, with_bodies);
+  const Result<std::vector<Recording>> recordings =
+      LoadFlaggedRecordings({}, !FLAGS_restoration.empty());
   if (!recordings.ok()) return Fail(recordings.error());
+  const Result<std::optional<BodyEvaluation>> bodies = Bodies(model.value(), recordings.value());
+  if (!bodies.ok()) return Fail(bodies.error());
   const Evaluation evaluation =
       Evaluate(model.value(), MapRecordings(recordings.value(), model.value().mapping));
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
-  if (with_bodies) {
-    if (MaybeError error = AddBodies(model.value(), recordings.value(), &json)) return Fail(*error);
+  if (bodies.value()) {
+    std::printf("\n%s", BodyText(*bodies.value()).c_str());
+    AddBodyJson(*bodies.value(), &json);
   }
   if (!FLAGS_json_out.empty()) {
     json["version"] = Version();

@@ -28,6 +28,7 @@ DEFINE_int32(crossvalidate, 0,
              "fold and score the recordings held out; 0: off");
 DEFINE_int32(inner_folds, 4, "folds of the out-of-fold pendulum predictions");
 DEFINE_double(held_out, 0.15, "share of the recordings by which training stops early");
+DEFINE_double(checkpoint_seconds, 20.0, "time between two checkpoints in --out");
 DEFINE_double(effort, 1.0, "multiplies the number of training steps");
 DEFINE_bool(predicted_pendulums, true, "learn from out-of-fold predicted pendulums too");
 DEFINE_bool(mirrored, true, "learn from mirrored copies too");
@@ -68,6 +69,7 @@ MaybeError CheckFlags() {
   if (!(FLAGS_effort > 0.0 && FLAGS_effort <= 100.0)) {
     return Error{"--effort must lie above 0 and not above 100"};
   }
+  if (!(FLAGS_checkpoint_seconds >= 0.0)) return Error{"--checkpoint_seconds must not be negative"};
   if (FLAGS_num_threads < 1) return Error{"--num_threads must be positive"};
   return std::nullopt;
 }
@@ -90,6 +92,7 @@ Result<RestorationRunOptions> RunOptions() {
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;
   options.training.num_threads = FLAGS_num_threads;
+  options.training.checkpoint_seconds = FLAGS_checkpoint_seconds;
   return options;
 }
 
