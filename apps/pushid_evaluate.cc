@@ -11,10 +11,15 @@
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
 #include "ident/body_report.h"
+#include "ident/peer.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
 DEFINE_string(json_out, "", "write the scores here (JSON)");
+DEFINE_string(
+    peer, "",
+    "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe) to "
+    "compare with");
 DEFINE_bool(per_recording, true, "print a line for every recording");
 
 namespace {
@@ -24,6 +29,9 @@ using namespace pushid;
 // Bodies beside pendulums, where --restoration asks for them; else nothing.
 Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
                                              const std::vector<Recording>& recordings) {
+  if (FLAGS_restoration.empty() && !FLAGS_peer.empty()) {
+    return Error{"--peer needs --restoration to be compared with"};
+  }
   if (FLAGS_restoration.empty()) return std::optional<BodyEvaluation>();
   const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
   if (!restoration.ok()) return restoration.error();
@@ -31,8 +39,16 @@ Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
   if (!postprocess.ok()) return postprocess.error();
   const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
   if (!bodies.ok()) return bodies.error();
-  return std::optional<BodyEvaluation>(
-      EvaluateBodies(model, *restoration.value(), postprocess.value(), bodies.value()));
+  BodyScores scores;
+  for (const BodyRecording& body : bodies.value()) {
+    ScoreRestoration(model, *restoration.value(), postprocess.value(), body, &scores);
+  }
+  if (!FLAGS_peer.empty()) {
+    const Result<PeerWeights> peer = LoadPeer(FLAGS_peer);
+    if (!peer.ok()) return peer.error();
+    for (const BodyRecording& body : bodies.value()) ScorePeer(peer.value(), body, &scores);
+  }
+  return std::optional<BodyEvaluation>(SummarizeAll(bodies.value(), scores));
 }
 
 int Run() {

@@ -18,7 +18,9 @@
 #include "ident/result_json.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
-DEFINE_string(kind, "window", "what is trained: window (fast, default) or cvae (LDP's chain)");
+DEFINE_string(kind, "window",
+              "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (a peer that "
+              "continues 12 given frames, for --peer of pushid-evaluate)");
 DEFINE_string(coordinates, "tip",
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
@@ -51,8 +53,8 @@ MaybeError CheckFlags() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return missing;
   }
-  if (FLAGS_kind != "window" && FLAGS_kind != "cvae") {
-    return Error{"--kind is '" + FLAGS_kind + "'; it must be window or cvae"};
+  if (FLAGS_kind != "window" && FLAGS_kind != "cvae" && FLAGS_kind != "simlpe") {
+    return Error{"--kind is '" + FLAGS_kind + "'; it must be window, cvae or simlpe"};
   }
   if (FLAGS_coordinates != "tip" && FLAGS_coordinates != "ldp") {
     return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};

@@ -81,14 +81,4 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
   return evaluation;
 }
 
-BodyEvaluation EvaluateBodies(const IdentifiedModel& model, const Restoration& restoration,
-                              const PostprocessOptions& options,
-                              const std::vector<BodyRecording>& recordings) {
-  BodyScores scores;
-  for (const BodyRecording& recording : recordings) {
-    ScoreRestoration(model, restoration, options, recording, &scores);
-  }
-  return SummarizeAll(recordings, scores);
-}
-
 }  // namespace pushid

@@ -37,8 +37,4 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
 using BodyEvaluation = std::map<std::string, BodySummary>;
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores);
 
-BodyEvaluation EvaluateBodies(const IdentifiedModel& model, const Restoration& restoration,
-                              const PostprocessOptions& options,
-                              const std::vector<BodyRecording>& recordings);
-
 }  // namespace pushid

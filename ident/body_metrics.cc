@@ -11,10 +11,10 @@ constexpr double kTouchHeight = 0.025;  // m
 constexpr double kCentimetres = 100.0;  // per m
 
 // The metrics of one person, but the FSE.
-BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted) {
+BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame) {
   BodyMetrics sum{};
   const int frames = static_cast<int>(recorded.size());
-  for (int t = 1; t < frames; ++t) {
+  for (int t = first_frame; t < frames; ++t) {
     const Pose error = predicted[t] - recorded[t];
     const Eigen::Vector3d hip = error.col(0);
     sum[kMpjpe] += error.colwise().norm().mean();
@@ -25,7 +25,7 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted)
     const Pose carried = recorded[t].colwise() + hip;
     sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
   }
-  for (double& value : sum) value /= frames - 1;
+  for (double& value : sum) value /= frames - first_frame;
   sum[kHipFde] = (predicted.back() - recorded.back()).col(0).norm();
   return sum;
 }
@@ -73,14 +73,15 @@ double FootSkate(const BodyMotion& motion) {
   return contacts > 0 ? kCentimetres * sum / contacts : -1.0;
 }
 
-BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted) {
+BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
+                      int first_frame) {
   BodyScore score;
   score.id = recording.pendulum.id;
   score.frames = recording.num_frames();
   const int people = recording.num_people();
   int touching = 0;
   for (int n = 0; n < people; ++n) {
-    const BodyMetrics of_person = ScorePerson(recording.bodies[n], predicted[n]);
+    const BodyMetrics of_person = ScorePerson(recording.bodies[n], predicted[n], first_frame);
     for (int m = 0; m < kNumBodyMetrics; ++m) score.value[m] += of_person[m] / people;
     const double skate = FootSkate(predicted[n]);
     if (skate < 0.0) continue;

@@ -37,8 +37,10 @@ struct BodyScore {
   std::string failure;  // why there is no score; such a recording is in no mean
 };
 
-// predicted: one motion per person, with as many frames as the recording.
-BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted);
+// predicted: one motion per person, with as many frames as the recording. first_frame: the first
+// that counts, for predictors that are given more than frame 0; FSE is of all frames all the same.
+BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
+                      int first_frame = 1);
 
 // FSE of one motion, cm per frame; negative when no ankle ever touches the floor.
 double FootSkate(const BodyMotion& motion);

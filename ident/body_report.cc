@@ -120,14 +120,20 @@ void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
 std::string BodyText(const BodyEvaluation& evaluation) {
   std::string text = "bodies, means over recordings\n";
   TextTable table = NewTable("");
-  table.Add(Row("restoration", evaluation.at("restoration").mean));
-  table.Add(Row("  frame-weighted", evaluation.at("restoration").frame_weighted));
+  const auto found = evaluation.find("restoration");
+  const bool restores = found != evaluation.end();
+  if (restores) {
+    table.Add(Row("restoration", found->second.mean));
+    table.Add(Row("  frame-weighted", found->second.frame_weighted));
+  }
   for (const auto& [name, summary] : evaluation) {
     if (name != "restoration") table.Add(Row(Spaced(name), summary.mean));
   }
-  text += table.ToString() + "\n";
+  text += table.ToString();
+  if (!restores) return text;
+  text += "\n";
   TextTable groups = NewTable("restoration by");
-  const BodySummary& restored = evaluation.at("restoration");
+  const BodySummary& restored = found->second;
   for (const auto* by : {&restored.by_magnitude, &restored.by_setting, &restored.by_subject}) {
     for (const auto& [name, mean] : *by) groups.Add(Row(name, mean));
   }

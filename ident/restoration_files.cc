@@ -138,7 +138,8 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
     restoration = std::make_unique<CvaeRestoration>(
         TakeCvae(&reader), coordinates == "tip" ? CvaeCoordinates::kTip : CvaeCoordinates::kLdp);
   } else {
-    return Error{"the kind is " + Quoted(file.kind) + "; known are window and cvae",
+    return Error{"the kind is " + Quoted(file.kind) +
+                     "; known are window and cvae (a peer, simlpe, is named by --peer)",
                  InFolder(folder, kJsonFile)};
   }
   if (!reader.problem().empty()) {

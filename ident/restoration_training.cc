@@ -46,40 +46,52 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
   regression.epochs = std::max(1, static_cast<int>(std::lround(kWindowEpochs * options.effort)));
   regression.seed = options.seed;
   regression.num_threads = options.num_threads;
-  RegressionTrainer trainer(learnt, judged, regression);
   TrainedRestoration trained;
-  Checkpoint checkpoint(options.checkpoint, KeyOfTraining(training, held, options),
-                        options.checkpoint_seconds);
-  std::string state;
-  trained.resumed = checkpoint.Load(&state, &trained.curve) && trainer.Resume(state);
-  if (!trained.resumed) trained.curve.clear();
-  while (!trainer.Done()) {
-    trained.curve.push_back(trainer.RunEpoch());
-    if (progress) {
-      progress(trained.curve.back(),
-               static_cast<double>(trained.curve.back().epoch) / regression.epochs);
-    }
-    if (!checkpoint.Due()) continue;
-    if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
-  }
+  const Result<DenseNetwork> network =
+      TrainDense(learnt, judged, regression, KeyOfTraining(training, held, options), options,
+                 progress, &trained);
+  if (!network.ok()) return network.error();
   AddTensors("inputs", weights.inputs, &trained.file.tensors);
-  AddTensors("network", trainer.Best(), &trained.file.tensors);
-  checkpoint.Remove();
+  AddTensors("network", network.value(), &trained.file.tensors);
   return trained;
 }
 
 }  // namespace
 
+Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
+                                const RegressionOptions& regression, const std::string& key,
+                                const RestorationTrainingOptions& options,
+                                const TrainingProgress& progress, TrainedRestoration* trained) {
+  RegressionTrainer trainer(learnt, judged, regression);
+  Checkpoint checkpoint(options.checkpoint, key, options.checkpoint_seconds);
+  std::string state;
+  trained->resumed = checkpoint.Load(&state, &trained->curve) && trainer.Resume(state);
+  if (!trained->resumed) trained->curve.clear();
+  while (!trainer.Done()) {
+    trained->curve.push_back(trainer.RunEpoch());
+    if (progress) {
+      progress(trained->curve.back(),
+               static_cast<double>(trained->curve.back().epoch) / regression.epochs);
+    }
+    if (!checkpoint.Due()) continue;
+    if (MaybeError error = checkpoint.Save(trainer.State(), trained->curve)) return *error;
+  }
+  checkpoint.Remove();
+  return trainer.Best();
+}
+
 Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
                                             const std::vector<RestorationSample>& held,
                                             const RestorationTrainingOptions& options,
                                             const TrainingProgress& progress) {
-  if (options.kind != "window" && options.kind != "cvae") {
-    return Error{"--kind is '" + options.kind + "'; it must be window or cvae"};
+  const auto train = options.kind == "window"   ? TrainWindow
+                     : options.kind == "cvae"   ? TrainCvae
+                     : options.kind == "simlpe" ? TrainPeer
+                                                : nullptr;
+  if (train == nullptr) {
+    return Error{"--kind is '" + options.kind + "'; it must be window, cvae or simlpe"};
   }
-  Result<TrainedRestoration> trained = options.kind == "window"
-                                           ? TrainWindow(training, held, options, progress)
-                                           : TrainCvae(training, held, options, progress);
+  Result<TrainedRestoration> trained = train(training, held, options, progress);
   if (trained.ok()) trained.value().file.kind = options.kind;
   return trained;
 }

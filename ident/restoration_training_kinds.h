@@ -12,4 +12,17 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
                                      const RestorationTrainingOptions& options,
                                      const TrainingProgress& progress);
 
+// The peer learns from the true motions alone.
+Result<TrainedRestoration> TrainPeer(const std::vector<RestorationSample>& training,
+                                     const std::vector<RestorationSample>& held,
+                                     const RestorationTrainingOptions& options,
+                                     const TrainingProgress& progress);
+
+// Epochs of a dense network until it is done, with checkpoints. Adds points to trained->curve;
+// returns the best weights.
+Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
+                                const RegressionOptions& regression, const std::string& key,
+                                const RestorationTrainingOptions& options,
+                                const TrainingProgress& progress, TrainedRestoration* trained);
+
 }  // namespace pushid

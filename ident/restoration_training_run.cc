@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "ident/crossvalidation.h"
+#include "ident/peer.h"
 
 namespace pushid {
 namespace {
@@ -35,6 +36,23 @@ std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vecto
   return picked;
 }
 
+// A restoration beside its yardsticks; the peer alone.
+Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
+                                const PostprocessOptions& postprocess,
+                                const BodyRecording& recording) {
+  BodyScores scores;
+  if (file.kind == kPeerKind) {
+    const Result<PeerWeights> peer = MakePeer(file, "");
+    if (!peer.ok()) return peer.error();
+    ScorePeer(peer.value(), recording, &scores);
+    return scores;
+  }
+  const auto restoration = MakeRestoration(file, "");
+  if (!restoration.ok()) return restoration.error();
+  ScoreRestoration(model, *restoration.value(), postprocess, recording, &scores);
+  return scores;
+}
+
 }  // namespace
 
 Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
@@ -43,7 +61,7 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   std::vector<RolloutPath<double>> paths;
-  if (options.predicted_pendulums) {
+  if (options.predicted_pendulums && options.training.kind != kPeerKind) {
     paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
                              options.training.seed, [&](int fold, int folds) {
                                if (progress) {
@@ -100,12 +118,11 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     Result<TrainedRestoration> trained = TrainFromRecordings(recordings, train, options, told);
     if (!trained.ok()) return trained.error();
     validation.training_seconds.push_back(Now() - before);
-    const auto restoration = MakeRestoration(trained.value().file, fold.name);
-    if (!restoration.ok()) return restoration.error();
     for (int i : fold.held_out) {
-      BodyScores scores;
-      ScoreRestoration(*model, *restoration.value(), options.postprocess, recordings[i], &scores);
-      for (auto& [name, of_name] : scores) by_recording[i][name] = of_name.front();
+      const Result<BodyScores> scores =
+          ScoreTrained(trained.value().file, *model, options.postprocess, recordings[i]);
+      if (!scores.ok()) return scores.error();
+      for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }
   }
   BodyScores all;
