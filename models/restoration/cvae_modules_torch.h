@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "models/restoration/cvae_networks.h"
-#include "models/restoration/torch_support.h"
+#include "models/restoration/support_torch.h"
 
 namespace pushid {
 

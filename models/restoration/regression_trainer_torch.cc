@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "models/restoration/regression_trainer.h"
-#include "models/restoration/torch_support.h"
+#include "models/restoration/support_torch.h"
 
 namespace pushid {
 namespace {
