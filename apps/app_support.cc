@@ -105,7 +105,8 @@ MaybeError Require(const std::string& flag, const std::string& value, const std:
 
 std::map<std::string, std::string> EffectiveFlags() {
   // What names outputs or only changes speed and talk is no part of a result.
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "bootstrap_file"};
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "bootstrap_file",
+                                                 "checkpoint_seconds"};
   std::map<std::string, std::string> flags;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
     const bool output =

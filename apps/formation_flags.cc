@@ -137,7 +137,7 @@ bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag)
 const char* GivenFormationFlag() {
   for (const char* flag :
        {"spacing", "pushed", "push", "push_duration", "mass", "rod_length", "duration", "csv_out",
-        "forces_out", "bvh_out", "svg_out", "forces_svg_out"}) {
+        "forces_out", "bvh_out", "svg_out", "forces_svg_out", "restoration"}) {
     if (Given(flag)) return flag;
   }
   return nullptr;

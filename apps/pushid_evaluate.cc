@@ -2,34 +2,75 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "apps/app_support.h"
 #include "apps/model_flags.h"
 #include "apps/recording_flags.h"
+#include "apps/restoration_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
+#include "ident/body_report.h"
+#include "ident/peer.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
 DEFINE_string(json_out, "", "write the scores here (JSON)");
+DEFINE_string(
+    peer, "",
+    "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe) to "
+    "compare with");
 DEFINE_bool(per_recording, true, "print a line for every recording");
 
 namespace {
 
+using namespace pushid;
+
+// Bodies beside pendulums, where --restoration asks for them; else nothing.
+Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
+                                             const std::vector<Recording>& recordings) {
+  if (FLAGS_restoration.empty() && !FLAGS_peer.empty()) {
+    return Error{"--peer needs --restoration to be compared with"};
+  }
+  if (FLAGS_restoration.empty()) return std::optional<BodyEvaluation>();
+  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  if (!restoration.ok()) return restoration.error();
+  const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
+  if (!postprocess.ok()) return postprocess.error();
+  const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
+  if (!bodies.ok()) return bodies.error();
+  BodyScores scores;
+  for (const BodyRecording& body : bodies.value()) {
+    ScoreRestoration(model, *restoration.value(), postprocess.value(), body, &scores);
+  }
+  if (!FLAGS_peer.empty()) {
+    const Result<PeerWeights> peer = LoadPeer(FLAGS_peer);
+    if (!peer.ok()) return peer.error();
+    for (const BodyRecording& body : bodies.value()) ScorePeer(peer.value(), body, &scores);
+  }
+  return std::optional<BodyEvaluation>(SummarizeAll(bodies.value(), scores));
+}
+
 int Run() {
-  using namespace pushid;
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (!FLAGS_json_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_json_out)) return Fail(*error);
   }
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
+  const Result<std::vector<Recording>> recordings =
+      LoadFlaggedRecordings({}, !FLAGS_restoration.empty());
   if (!recordings.ok()) return Fail(recordings.error());
+  const Result<std::optional<BodyEvaluation>> bodies = Bodies(model.value(), recordings.value());
+  if (!bodies.ok()) return Fail(bodies.error());
   const Evaluation evaluation =
       Evaluate(model.value(), MapRecordings(recordings.value(), model.value().mapping));
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
+  nlohmann::ordered_json json = ToJson(evaluation);
+  if (bodies.value()) {
+    std::printf("\n%s", BodyText(*bodies.value()).c_str());
+    AddBodyJson(*bodies.value(), &json);
+  }
   if (!FLAGS_json_out.empty()) {
-    nlohmann::ordered_json json = ToJson(evaluation);
     json["version"] = Version();
     json["configuration"] = EffectiveFlags();
     if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);

@@ -5,13 +5,17 @@
 
 #include "apps/app_support.h"
 #include "apps/model_flags.h"
+#include "apps/predict_bodies.h"
 #include "apps/recording_flags.h"
+#include "apps/restoration_flags.h"
 #include "datasets/atomic_file.h"
 #include "ident/evaluation.h"
 #include "ident/report_text.h"
 
 DEFINE_string(id, "", "the recording whose first frame and push are taken");
-DEFINE_string(out, "", "write the trajectory here (CSV: states, hip, forces by part)");
+DEFINE_string(out, "",
+              "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
+              "and a name that ends with .bvh, the bodies (BVH, one file a person)");
 DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
 
 namespace {
@@ -25,14 +29,16 @@ int Run() {
   if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
     return Fail(*missing);
   }
-  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) {
+  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV or BVH file to write")) {
     return Fail(*missing);
   }
+  if (MaybeError error = CheckBodyFlags(FLAGS_out)) return Fail(*error);
   if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
     return Fail("--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames));
   }
   if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
+  const Result<std::vector<Recording>> recordings =
+      LoadFlaggedRecordings({FLAGS_id}, !FLAGS_restoration.empty());
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.value().mapping);
@@ -45,6 +51,10 @@ int Run() {
                  recording.id.c_str(), std::string(prediction.status.quantity).c_str(),
                  prediction.status.person, prediction.status.frame);
     return kFitFailed;
+  }
+  if (!FLAGS_restoration.empty()) {
+    return WriteBodies(recordings.value().front(), model.value().mapping, prediction, FLAGS_out,
+                       FLAGS_frames == 0);
   }
   if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording, prediction)) {
     return Fail(*error);
@@ -66,6 +76,7 @@ int main(int argc, char** argv) {
       argc, argv,
       "pushid-predict rolls a model out from a recording's first frame and push.\n\n"
       "  pushid-predict --model=model.json --recordings=M/manifest.json "
-      "--id=NAME --out=trajectory.csv",
+      "--id=NAME --out=trajectory.csv\n  pushid-predict --model=model.json "
+      "--restoration=restoration --recordings=M/manifest.json --id=NAME --out=motion.bvh",
       Run);
 }

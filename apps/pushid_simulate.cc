@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "apps/app_support.h"
+#include "apps/formation_bodies_flags.h"
 #include "apps/formation_flags.h"
 #include "apps/model_flags.h"
 #include "apps/output_folder.h"
@@ -81,7 +82,8 @@ void PrintTruth(const IdentifiedModel& truth) {
 
 int Run() {
   if (!FLAGS_formation.empty()) return SimulateFormation();
-  if (const char* flag = GivenFormationFlag()) {
+  const char* flag = GivenFormationFlag() != nullptr ? GivenFormationFlag() : GivenBodyFlag();
+  if (flag != nullptr) {
     return Fail(std::string("--") + flag + " needs --formation: line, diamond or grid");
   }
   if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) {

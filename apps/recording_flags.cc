@@ -65,6 +65,13 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   return recordings;
 }
 
+Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting) {
+  const gflags::FlagSaver saver;
+  FLAGS_setting = setting;
+  FLAGS_ids.clear();
+  return LoadFlaggedRecordings({}, true);
+}
+
 MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty()) continue;

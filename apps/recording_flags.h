@@ -20,6 +20,9 @@ namespace pushid {
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
                                                      bool keep_all_joints = false);
 
+// Those of another --setting, with whole bodies.
+Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
+
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "apps/app_support.h"
+#include "apps/formation_bodies_flags.h"
 #include "apps/formation_flags.h"
 #include "apps/model_flags.h"
 #include "apps/output_folder.h"
@@ -146,8 +147,10 @@ int SimulateFormation() {
                   "--formation");
     }
   }
-  const Result<FormationPlan> plan = PlanOfFlags();
+  Result<FormationPlan> plan = PlanOfFlags();
   if (!plan.ok()) return Fail(plan.error());
+  const auto bodies = PlanBodies(&plan.value().scene);
+  if (!bodies.ok()) return Fail(bodies.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = ActAsIn(FLAGS_as_setting, &model.value())) return Fail(*error);
@@ -160,6 +163,10 @@ int SimulateFormation() {
   const FormationRun run = RunFormation(model.value(), plan.value().scene, plan.value().frames);
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
   if (MaybeError error = WriteOutputs(run, plan.value().title)) return Fail(*error);
+  if (bodies.value()) {
+    const MaybeError error = WriteFormationBodies(run, *bodies.value(), plan.value().title);
+    if (error) return Fail(*error);
+  }
   std::printf("%s; %s s\n", plan.value().title.c_str(),
               Significant(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);

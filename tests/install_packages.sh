@@ -6,13 +6,14 @@
 build_packages=(g++ cmake ninja-build ccache
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libtomlplusplus-dev
   libxxhash-dev)
-test_packages=(libgtest-dev libbenchmark-dev chromium)
+# LibTorch trains restorations; everything else builds and runs without it.
+test_packages=(libgtest-dev libbenchmark-dev libtorch-dev assimp-utils chromium)
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This is no Debian, so nothing is installed. Needed are a C++17 compiler, CMake 3.23, Ceres" >&2
-    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json and xxHash; for the tests GoogleTest and" >&2
-    echo "Google Benchmark (Debian's names: $*)." >&2
+    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json and xxHash; to train restorations LibTorch; for the" >&2
+    echo "tests GoogleTest, Google Benchmark and assimp (Debian's names: $*)." >&2
     return 0
   fi
   local missing=() package

@@ -71,13 +71,29 @@ TEST(RoomsTest, ModelsArePlainMaths) {
   const std::vector<std::string> forbidden = {"ceres/",  "glog/",  "gflags/",    "nlohmann/",
                                               "fstream", "cstdio", "filesystem", "iostream"};
   for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / "models")) {
-    // The networks of restoration/ load their weights.
-    if (file.string().find("/restoration/") != std::string::npos) continue;
     ForEachInclude(file, [&](int line, const std::string& included) {
       for (const std::string& start : forbidden) {
         EXPECT_NE(included.rfind(start, 0), 0u) << file << ":" << line << ": " << included;
       }
     });
+  }
+}
+
+// LibTorch is for training alone, and stays in files that say so: nothing else needs it to build.
+TEST(RoomsTest, LibTorchStaysInItsFiles) {
+  for (const auto& [room, allowed] : kMayInclude) {
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      const std::string name = file.stem().string();
+      const bool may = name.size() > 6 && name.compare(name.size() - 6, 6, "_torch") == 0;
+      ForEachInclude(file, [&](int line, const std::string& included) {
+        if (may) {
+          EXPECT_NE(included.rfind("glog/", 0), 0u) << file << ":" << line << ": both define LOG";
+          return;
+        }
+        EXPECT_NE(included.rfind("torch/", 0), 0u) << file << ":" << line;
+        EXPECT_EQ(included.find("_torch.h"), std::string::npos) << file << ":" << line;
+      });
+    }
   }
 }
 

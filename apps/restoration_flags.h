@@ -1,0 +1,22 @@
+// apps: the flags by which an executable takes a restoration.
+#pragma once
+
+#include <gflags/gflags.h>
+
+#include <memory>
+
+#include "datasets/result.h"
+#include "models/restoration/postprocess.h"
+#include "models/restoration/restoration.h"
+
+DECLARE_string(restoration);
+
+namespace pushid {
+
+// What --restoration names.
+Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration();
+
+// What --postprocess lists.
+Result<PostprocessOptions> PostprocessOfFlags();
+
+}  // namespace pushid

@@ -1,0 +1,156 @@
+// models: frames of the chain and back.
+#include "models/restoration/cvae_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/restoration/rotations.h"
+#include "models/restoration/skeleton_fit.h"
+
+namespace pushid {
+namespace {
+
+// Where positions are measured from.
+Eigen::Vector3d Origin(const RestorationInput& person, const Pose& pose,
+                       CvaeCoordinates coordinates) {
+  return coordinates == CvaeCoordinates::kTip ? pose.col(0) : person.first_pose.col(0);
+}
+
+double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
+
+// What both halves share of one frame, in the heading's frame.
+struct FrameParts {
+  Eigen::Vector2d way;
+  double facing_change = 0.0;
+  Pose positions, changes;
+  std::array<Rotation6d, kBodyJoints> rotations;
+};
+
+template <size_t kJoints>
+void Fill(const FrameParts& parts, const std::array<int, kJoints>& joints, int frame,
+          Eigen::MatrixXf* out) {
+  constexpr int n = static_cast<int>(kJoints);
+  auto column = out->col(frame);
+  column.template head<2>() = parts.way.cast<float>();
+  column[2] = static_cast<float>(parts.facing_change);
+  for (int i = 0; i < n; ++i) {
+    column.template segment<3>(3 + 3 * i) = parts.positions.col(joints[i]).template cast<float>();
+    column.template segment<3>(3 + 3 * (n + i)) =
+        parts.changes.col(joints[i]).template cast<float>();
+    column.template segment<6>(3 + 6 * (n + i)) = parts.rotations[joints[i]].template cast<float>();
+  }
+}
+
+template <size_t kJoints>
+void TakePositions(const Eigen::MatrixXf& frames, const std::array<int, kJoints>& joints, int frame,
+                   Pose* pose) {
+  for (size_t i = 0; i < kJoints; ++i) {
+    pose->col(joints[i]) =
+        frames.block<3, 1>(3 + 3 * static_cast<int>(i), frame).template cast<double>();
+  }
+}
+
+double FrameAt(double time, double dt, size_t count) {
+  return std::clamp(time / dt, 0.0, static_cast<double>(count - 1));
+}
+
+// values[at] by linear interpolation.
+template <typename Value>
+Value Between(const std::vector<Value>& values, double at) {
+  const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
+  const double share = at - static_cast<double>(low);
+  return (1.0 - share) * values[low] + share * values[high];
+}
+
+bool SameRate(double a, double b) { return std::abs(a / b - 1.0) < 1e-3; }
+
+}  // namespace
+
+Eigen::MatrixXf PendulumFrames(const RestorationInput& person) {
+  const double heading = Heading(person.first_pose);
+  const Eigen::Matrix3d turn = TurnAboutZ(-heading);
+  const int frames = static_cast<int>(person.q.size());
+  Eigen::MatrixXf out = Eigen::MatrixXf::Zero(kPendulumFrame, frames);
+  const Vector4<double> first = TurnedPendulum(person.q[0], -heading);
+  const int from[7] = {0, 1, 2, 3, 4, 5, 6};  // what the changes are of
+  for (int t = 0; t < frames; ++t) {
+    Vector4<double> q = TurnedPendulum(person.q[t], -heading);
+    q.head<2>() -= first.head<2>();
+    const Eigen::Vector3d end = turn * (TipAt(person, t) - person.first_pose.col(0));
+    auto column = out.col(t);
+    column.head<4>() = q.cast<float>();
+    column.segment<3>(4) = end.cast<float>();
+    column[7] = static_cast<float>(person.body.rod_length);
+    if (t == 0) continue;
+    for (int i = 0; i < 7; ++i) column[8 + i] = column[from[i]] - out(from[i], t - 1);
+  }
+  return out;
+}
+
+BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
+                    CvaeCoordinates coordinates) {
+  const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
+  const int frames = static_cast<int>(motion.size());
+  BodyFrames out{Eigen::MatrixXf(kLowerFrame, frames), Eigen::MatrixXf(kUpperFrame, frames)};
+  FrameParts parts;
+  Pose before = Pose::Zero();
+  for (int t = 0; t < frames; ++t) {
+    const Pose& pose = motion[t];
+    const Pose& last = motion[std::max(0, t - 1)];
+    parts.way = (turn * (pose.col(0) - last.col(0))).head<2>();
+    parts.facing_change = Wrapped(Heading(pose) - Heading(last));
+    parts.positions = turn * (pose.colwise() - Origin(person, pose, coordinates));
+    parts.changes = Pose::Zero();
+    if (t > 0) parts.changes = (parts.positions - before) * kCvaeRate;
+    before = parts.positions;
+    const PosedSkeleton posed = FitSkeleton(person.first_pose, pose);
+    for (int j = 0; j < kBodyJoints; ++j) {
+      parts.rotations[j] = ToRotation6d(turn * posed.rotations[j] * turn.transpose());
+    }
+    Fill(parts, kLowerJoints, t, &out.lower);
+    Fill(parts, kUpperJoints, t, &out.upper);
+  }
+  return out;
+}
+
+BodyMotion MotionFromFrames(const RestorationInput& person, const BodyFrames& frames,
+                            CvaeCoordinates coordinates) {
+  const Eigen::Matrix3d turn = TurnAboutZ(Heading(person.first_pose));
+  BodyMotion motion(frames.lower.cols());
+  for (int t = 0; t < static_cast<int>(motion.size()); ++t) {
+    Pose pose;
+    TakePositions(frames.upper, kUpperJoints, t, &pose);
+    TakePositions(frames.lower, kLowerJoints, t, &pose);  // the hip is the lower body's
+    pose = turn * pose;
+    if (coordinates == CvaeCoordinates::kLdp) {
+      motion[t] = pose.colwise() + person.first_pose.col(0);
+    } else {
+      const Eigen::Vector3d move = TipAt(person, t) - pose.col(0);
+      motion[t] = pose.colwise() + move;
+    }
+  }
+  return motion;
+}
+
+RestorationInput Resampled(const RestorationInput& person, double dt) {
+  if (SameRate(person.dt, dt)) return person;
+  RestorationInput other = person;
+  other.dt = dt;
+  other.q.clear();
+  const double end = static_cast<double>(person.q.size() - 1) * person.dt;
+  for (int t = 0; t * dt < end + dt; ++t) {
+    other.q.push_back(Between(person.q, FrameAt(t * dt, person.dt, person.q.size())));
+  }
+  return other;
+}
+
+BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int frames) {
+  if (SameRate(motion_dt, dt) && static_cast<int>(motion.size()) == frames) return motion;
+  BodyMotion other;
+  for (int t = 0; t < frames; ++t) {
+    other.push_back(Between(motion, FrameAt(t * dt, motion_dt, motion.size())));
+  }
+  return other;
+}
+
+}  // namespace pushid

@@ -1,0 +1,149 @@
+// models: the chain's training in rounds, with its state.
+#include <algorithm>
+
+#include "models/restoration/cvae_stages_torch.h"
+#include "models/restoration/cvae_trainer.h"
+
+namespace pushid {
+namespace {
+
+const char* const kStageNames[4] = {"lower autoencoder", "lower sampler", "upper autoencoder",
+                                    "upper sampler"};
+
+}  // namespace
+
+struct CvaeTrainer::Torch : CvaeStages {};
+
+CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
+                         const CvaeWeights& scalings, const CvaeOptions& options)
+    : torch_(std::make_unique<Torch>()) {
+  torch::set_num_threads(options.num_threads);
+  torch::manual_seed(options.seed);
+  Torch& t = *torch_;
+  t.options = options;
+  t.scalings = scalings;
+  t.training = Gather(training);
+  t.held = Gather(held);
+  t.lower_spread = ToTensor(scalings.lower.spread), t.lower_mean = ToTensor(scalings.lower.mean);
+  t.upper_spread = ToTensor(scalings.upper.spread);
+  t.lower = std::make_shared<HalfModule>(kLowerFrame, kLowerFrame);
+  t.upper = std::make_shared<HalfModule>(kUpperFrame, kUpperCondition);
+  t.best_lower = std::make_shared<HalfModule>(kLowerFrame, kLowerFrame);
+  t.best_upper = std::make_shared<HalfModule>(kUpperFrame, kUpperCondition);
+  t.StartStage();
+}
+
+CvaeTrainer::~CvaeTrainer() = default;
+
+bool CvaeTrainer::Done() const { return torch_->stage == 4; }
+
+double CvaeTrainer::ShareDone() const {
+  double all = 0.0, done = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    all += torch_->options.steps[i];
+    if (i < torch_->stage) done += torch_->options.steps[i];
+  }
+  return Done() ? 1.0 : (done + torch_->step) / all;
+}
+
+TrainingPoint CvaeTrainer::RunRound() {
+  Torch& t = *torch_;
+  double sum = 0.0;
+  int steps = 0;
+  while (steps < t.options.round && t.step < t.options.steps[t.stage]) sum += t.Step(), ++steps;
+  TrainingPoint point = {++t.rounds, sum / std::max(1, steps), t.HeldLoss(), kStageNames[t.stage]};
+  // Best of the part in which the network goes on from its own frames.
+  if (point.validation_loss < t.best_loss && t.step >= t.options.steps[t.stage] / 2) {
+    torch::NoGradGuard no_grad;
+    t.best_loss = point.validation_loss;
+    const std::vector<Tensor> from = t.Half().parameters();
+    const std::vector<Tensor> to = (t.Upper() ? t.best_upper : t.best_lower)->parameters();
+    for (size_t i = 0; i < to.size(); ++i) to[i].copy_(from[i]);
+  }
+  if (t.step >= t.options.steps[t.stage]) {
+    t.FinishStage();
+    if (t.stage < 4) t.StartStage();
+  }
+  return point;
+}
+
+CvaeWeights CvaeTrainer::Best() const {
+  CvaeWeights weights = torch_->scalings;
+  weights.lower_sampler = torch_->lower->sampler->SamplerWeights();
+  weights.upper_sampler = torch_->upper->sampler->SamplerWeights();
+  weights.lower_decoder = torch_->lower->decoder->Weights();
+  weights.upper_decoder = torch_->upper->decoder->Weights();
+  return weights;
+}
+
+std::array<int64_t, 4> CvaeTrainer::NumParameters() const {
+  const auto count = [](const std::vector<Tensor>& parameters) {
+    int64_t sum = 0;
+    for (const Tensor& p : parameters) sum += p.numel();
+    return sum;
+  };
+  return {
+      count(torch_->lower->AutoencoderParameters()), count(torch_->lower->sampler->parameters()),
+      count(torch_->upper->AutoencoderParameters()), count(torch_->upper->sampler->parameters())};
+}
+
+std::string CvaeTrainer::State() const {
+  const Torch& t = *torch_;
+  torch::serialize::OutputArchive archive, lower, upper, best_lower, best_upper, optimizer;
+  t.lower->save(lower), t.upper->save(upper);
+  t.best_lower->save(best_lower), t.best_upper->save(best_upper);
+  t.optimizer->save(optimizer);
+  archive.write("lower", lower), archive.write("upper", upper);
+  archive.write("best_lower", best_lower), archive.write("best_upper", best_upper);
+  archive.write("optimizer", optimizer);
+  archive.write("counts",
+                torch::tensor({static_cast<double>(t.stage), static_cast<double>(t.step),
+                               static_cast<double>(t.rounds), t.best_loss,
+                               static_cast<double>(t.at), static_cast<double>(t.rollout_left)},
+                              torch::kFloat64));
+  if (t.rollout_left > 0) {
+    archive.write("rows", t.rows), archive.write("first", t.first), archive.write("state", t.state);
+  }
+  archive.write("random", at::detail::getDefaultCPUGenerator().get_state());
+  return Archived(archive);
+}
+
+bool CvaeTrainer::Resume(const std::string& state) {
+  Torch& t = *torch_;
+  try {
+    std::istringstream stream(state);
+    torch::serialize::InputArchive archive, lower, upper, best_lower, best_upper, optimizer;
+    archive.load_from(stream);
+    archive.read("lower", lower), archive.read("upper", upper);
+    archive.read("best_lower", best_lower), archive.read("best_upper", best_upper);
+    archive.read("optimizer", optimizer);
+    t.lower->load(lower), t.upper->load(upper);
+    t.best_lower->load(best_lower), t.best_upper->load(best_upper);
+    Tensor counts, random;
+    archive.read("counts", counts);
+    archive.read("random", random);
+    t.stage = static_cast<int>(counts[0].item<double>());
+    if (t.stage > 2) {
+      t.PredictLower(&t.training);
+      t.PredictLower(&t.held);
+    }
+    if (t.stage < 4) t.StartStage();
+    t.optimizer->load(optimizer);
+    t.step = static_cast<int>(counts[1].item<double>());
+    t.rounds = static_cast<int>(counts[2].item<double>());
+    t.best_loss = counts[3].item<double>();
+    t.at = static_cast<int64_t>(counts[4].item<double>());
+    t.rollout_left = static_cast<int64_t>(counts[5].item<double>());
+    if (t.rollout_left > 0) {
+      archive.read("rows", t.rows), archive.read("first", t.first);
+      archive.read("state", t.state);
+    }
+    auto generator = at::detail::getDefaultCPUGenerator();
+    generator.set_state(random);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace pushid

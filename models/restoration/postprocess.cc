@@ -1,0 +1,99 @@
+// models: post-processing of restored motions.
+#include "models/restoration/postprocess.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/restoration/skeleton_fit.h"
+
+namespace pushid {
+namespace {
+
+// Where one ankle is held, frame by frame.
+class FootLock {
+ public:
+  FootLock(const Eigen::Vector3d& first, double dt, const PostprocessOptions& options)
+      : options_(options), floor_(first.z()), dt_(dt), place_(first), before_(first) {}
+
+  // The horizontal correction of an ankle that the restoration puts at `ankle`.
+  Eigen::Vector3d Correction(const Eigen::Vector3d& ankle) {
+    const double speed = (ankle - before_).head<2>().norm() / dt_;
+    before_ = ankle;
+    const bool standing =
+        ankle.z() < floor_ + options_.contact_height && speed < options_.contact_speed;
+    if (locked_ && (!standing || Drift(ankle) > options_.release_drift)) Release(ankle);
+    if (!locked_ && standing && fading_ == 0) Lock(ankle);
+    if (locked_) return Flat(place_ - ankle);
+    if (fading_ == 0) return Eigen::Vector3d::Zero();
+    --fading_;
+    return left_over_ * fading_ / options_.release_frames;
+  }
+
+  // The leg cannot reach: what it pulled so far fades.
+  void LetGo(const Eigen::Vector3d& correction) {
+    locked_ = false;
+    left_over_ = correction;
+    fading_ = options_.release_frames;
+  }
+  bool locked() const { return locked_; }
+
+ private:
+  static Eigen::Vector3d Flat(const Eigen::Vector3d& v) { return {v.x(), v.y(), 0.0}; }
+  double Drift(const Eigen::Vector3d& ankle) const { return Flat(place_ - ankle).norm(); }
+  void Release(const Eigen::Vector3d& ankle) { LetGo(Flat(place_ - ankle)); }
+  void Lock(const Eigen::Vector3d& ankle) {
+    locked_ = true;
+    place_ = ankle;
+  }
+
+  const PostprocessOptions& options_;
+  const double floor_, dt_;
+  Eigen::Vector3d place_, before_;
+  Eigen::Vector3d left_over_ = Eigen::Vector3d::Zero();
+  bool locked_ = true;  // people stand at frame 0
+  int fading_ = 0;
+};
+
+constexpr double kOutOfReach = 0.005;  // m
+
+}  // namespace
+
+void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion) {
+  if (motion->empty()) return;
+  const Pose residual = motion->front() - first_pose;
+  for (int t = 0; t < std::min<int>(frames, static_cast<int>(motion->size())); ++t) {
+    (*motion)[t] -= residual * (1.0 - static_cast<double>(t) / frames);
+  }
+}
+
+void KeepBones(const Pose& first_pose, BodyMotion* motion) {
+  for (Pose& pose : *motion) pose = FitSkeleton(first_pose, pose).positions;
+}
+
+void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,
+              BodyMotion* motion) {
+  for (const bool left : {false, true}) {
+    const int ankle = left ? kLeftAnkle : kRightAnkle;
+    FootLock lock(first_pose.col(ankle), dt, options);
+    for (size_t t = 1; t < motion->size(); ++t) {
+      Pose& pose = (*motion)[t];
+      const Eigen::Vector3d at = pose.col(ankle);
+      const Eigen::Vector3d correction = lock.Correction(at);
+      if (correction.isZero(0.0)) continue;
+      const double missed = ReachWithLeg(left, at + correction, &pose);
+      if (missed > kOutOfReach && lock.locked()) {
+        Eigen::Vector3d reached = pose.col(ankle) - at;
+        reached.z() = 0.0;
+        lock.LetGo(reached);
+      }
+    }
+  }
+}
+
+void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion) {
+  if (options.fade_residual) FadeResidual(person.first_pose, options.fade_frames, motion);
+  if (options.keep_bones) KeepBones(person.first_pose, motion);
+  if (options.lock_feet) LockFeet(person.first_pose, person.dt, options, motion);
+}
+
+}  // namespace pushid

@@ -1,0 +1,33 @@
+// models: what makes a restored motion fit the person and the floor, for every kind of restoration.
+//
+//   1. The residual at frame 0 (restored pose - first pose) is taken off, fading over 8 frames: the
+//      motion begins where the person stands.
+//   2. The person's own skeleton carries it out (skeleton_fit.h): bones keep their length.
+//   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
+//      inverse kinematics; when it leaves, the correction fades over 4 frames.
+#pragma once
+
+#include "models/restoration/restoration.h"
+
+namespace pushid {
+
+struct PostprocessOptions {
+  bool fade_residual = true;
+  int fade_frames = 8;
+  bool keep_bones = true;
+  bool lock_feet = true;
+  double contact_height = 0.025;  // m above the ankle's own height at frame 0
+  double contact_speed = 0.5;     // m/s, horizontal: slower is standing
+  double release_drift = 0.10;    // m: a lock that would pull further than this lets go
+  int release_frames = 4;
+};
+
+void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion);
+void KeepBones(const Pose& first_pose, BodyMotion* motion);
+void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,
+              BodyMotion* motion);
+
+// All that the options ask for, in this order.
+void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);
+
+}  // namespace pushid

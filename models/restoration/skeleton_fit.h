@@ -1,0 +1,31 @@
+// models: a wanted pose carried out by a person's own skeleton, so that every bone keeps its
+// length.
+//
+// The skeleton is the person's pose at frame 0: there all rotations are the identity and the
+// offsets are the differences of the joints. From the hip outwards each joint turns so that its
+// children come as near as they can to where they are wanted: one child by the smallest swing that
+// points at it, several (hip, chest) by the best rigid fit. Positions then are those of forward
+// kinematics, and a BVH file holds them exactly. Rejected: scaling each bone along its wanted
+// direction. It keeps lengths too, but tears pelvis and shoulders out of shape, and no hierarchy of
+// rotations can hold the result.
+#pragma once
+
+#include <array>
+
+#include "models/restoration/body.h"
+
+namespace pushid {
+
+struct PosedSkeleton {
+  Pose positions;
+  std::array<Eigen::Matrix3d, kBodyJoints> rotations;  // world, against the rest pose
+};
+
+PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
+
+// Both bones of a leg turned so that the ankle reaches `target`, or comes as near as the leg is
+// long; the knee stays in its plane, the toe keeps its place relative to the ankle. Returns how far
+// the ankle stays from the target, m.
+double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose);
+
+}  // namespace pushid

@@ -1,0 +1,60 @@
+// models: LibTorch kept in one place: what the trainers share. Included by *_torch.cc files alone.
+#pragma once
+
+// LibTorch and glog both define LOG and CHECK: whoever includes this includes no glog.
+#include <torch/torch.h>
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "models/restoration/dense_network.h"
+
+namespace pushid {
+
+// A row per sample, as LibTorch's layers want them; Eigen's columns are such rows in memory.
+inline torch::Tensor ToTensor(const Eigen::MatrixXf& columns) {
+  return torch::from_blob(const_cast<float*>(columns.data()), {columns.cols(), columns.rows()},
+                          torch::kFloat32)
+      .clone();
+}
+
+inline torch::Tensor ToTensor(const Eigen::VectorXf& values) {
+  return torch::from_blob(const_cast<float*>(values.data()), {values.size()}, torch::kFloat32)
+      .clone();
+}
+
+inline Eigen::MatrixXf ToMatrix(const torch::Tensor& tensor) {
+  const torch::Tensor rows = tensor.detach().to(torch::kFloat32).contiguous();
+  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const int64_t columns = rows.dim() == 1 ? 1 : rows.size(1);
+  return Eigen::Map<const RowMajor>(rows.data_ptr<float>(), rows.size(0), columns);
+}
+
+inline Eigen::VectorXf ToVector(const torch::Tensor& tensor) { return ToMatrix(tensor).col(0); }
+
+inline DenseLayer ToLayer(const torch::nn::Linear& linear) {
+  return {ToMatrix(linear->weight), ToVector(linear->bias)};
+}
+
+// Learning rate of a step as a share of the largest: up by a cosine over the first 30 %, then down.
+inline double OneCycle(double done) {
+  constexpr double kUp = 0.3;
+  const double floor = done < kUp ? 0.04 : 1e-4;
+  const double phase = done < kUp ? 1.0 - done / kUp : (done - kUp) / (1.0 - kUp);
+  return floor + (1.0 - floor) * 0.5 * (1.0 + std::cos(M_PI * phase));
+}
+
+inline void SetLearningRate(torch::optim::AdamW* optimizer, double rate) {
+  for (auto& group : optimizer->param_groups()) {
+    static_cast<torch::optim::AdamWOptions&>(group.options()).lr(rate);
+  }
+}
+
+inline std::string Archived(const torch::serialize::OutputArchive& archive) {
+  std::ostringstream stream;
+  const_cast<torch::serialize::OutputArchive&>(archive).save_to(stream);
+  return stream.str();
+}
+
+}  // namespace pushid

@@ -1,0 +1,26 @@
+// models: the window network: the shape of the body at a frame from the pendulum around that frame,
+// no memory of its own, so that nothing can drift.
+#pragma once
+
+#include "models/restoration/dense_network.h"
+#include "models/restoration/restoration.h"
+
+namespace pushid {
+
+struct WindowWeights {
+  Scaling inputs;
+  DenseNetwork network;  // outputs in m
+};
+
+class WindowRestoration : public Restoration {
+ public:
+  explicit WindowRestoration(WindowWeights weights) : weights_(std::move(weights)) {}
+  std::string_view kind() const override { return "window"; }
+  std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
+  const WindowWeights& weights() const { return weights_; }
+
+ private:
+  WindowWeights weights_;
+};
+
+}  // namespace pushid

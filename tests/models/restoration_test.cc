@@ -1,0 +1,109 @@
+// Restorations: rigid by hand, and what holds for every kind: the order of people, where they stand
+// and which way they face make no difference.
+#include "models/restoration/restoration.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/models/body_samples.h"
+
+namespace pushid {
+namespace {
+
+std::vector<std::unique_ptr<Restoration>> AllKinds() {
+  std::vector<std::unique_ptr<Restoration>> all;
+  all.push_back(std::make_unique<RigidRestoration>());
+  all.push_back(std::make_unique<WindowRestoration>(RandomWindow()));
+  all.push_back(std::make_unique<CvaeRestoration>(RandomCvae(), CvaeCoordinates::kTip));
+  all.push_back(std::make_unique<CvaeRestoration>(RandomCvae(), CvaeCoordinates::kLdp));
+  return all;
+}
+
+double Largest(const BodyMotion& a, const BodyMotion& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0.0;
+  for (size_t t = 0; t < a.size(); ++t) {
+    largest = std::max(largest, (a[t] - b[t]).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+TEST(RestorationTest, RigidCarriesTheFirstPose) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
+  const BodyMotion motion = RigidRestoration().Restore({person})[0];
+  ASSERT_EQ(motion.size(), 30u);
+  EXPECT_LT((motion[0] - person.first_pose).norm(), 1e-12);
+  for (int t : {7, 29}) {
+    EXPECT_LT((motion[t].col(0) - TipAt(person, t)).norm(), 1e-12);
+    EXPECT_LT(((motion[t].colwise() - motion[t].col(0)) -
+               (person.first_pose.colwise() - person.first_pose.col(0)))
+                  .norm(),
+              1e-12);
+  }
+}
+
+TEST(RestorationTest, APendulumTurnsWithItsTip) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
+  const Vector4<double> turned = TurnedPendulum(person.q[20], 0.7);
+  EXPECT_LT((HipPosition(person.body, turned) - TurnAboutZ(0.7) * TipAt(person, 20)).norm(), 1e-12);
+  EXPECT_LT((TurnedPendulum(turned, -0.7) - person.q[20]).norm(), 1e-12);
+}
+
+TEST(RestorationTest, TheOrderOfPeopleMakesNoDifference) {
+  const RestorationInput a = MovingPerson(StandingPose(), 80, 30);
+  const RestorationInput b = MovingPerson(Placed(StandingPose(), 0.4, {1, 2, 0}), 62, 30);
+  const RestorationInput c = MovingPerson(Mirrored(StandingPose()), 95, 24);
+  for (const auto& restoration : AllKinds()) {
+    const std::vector<BodyMotion> first = restoration->Restore({a, b, c});
+    const std::vector<BodyMotion> second = restoration->Restore({c, a, b});
+    // Sums in another order differ in the last bits of single precision.
+    EXPECT_LT(Largest(first[0], second[1]), 1e-4) << restoration->kind();
+    EXPECT_LT(Largest(first[1], second[2]), 1e-4) << restoration->kind();
+    EXPECT_LT(Largest(first[2], second[0]), 1e-4) << restoration->kind();
+    EXPECT_LT(Largest(first[1], restoration->Restore({b})[0]), 1e-4) << restoration->kind();
+  }
+}
+
+TEST(RestorationTest, AnotherPlaceAndHeadingMoveTheMotionAlong) {
+  const Eigen::Vector3d move(3.0, -2.0, 0.0);
+  const double turn = 2.1;
+  const RestorationInput here = MovingPerson(StandingPose(), 80, 30);
+  const RestorationInput there = MovingPerson(Placed(StandingPose(), turn, move), 80, 30);
+  for (const auto& restoration : AllKinds()) {
+    const BodyMotion motion = restoration->Restore({here})[0];
+    BodyMotion expected;
+    for (const Pose& pose : motion) expected.push_back(Placed(pose, turn, move));
+    EXPECT_LT(Largest(restoration->Restore({there})[0], expected), 1e-3) << restoration->kind();
+  }
+}
+
+TEST(RestorationTest, TheHipGoesWithTheTip) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
+  auto kinds = AllKinds();
+  kinds.pop_back();  // LDP's coordinates carry the hip themselves
+  for (const auto& restoration : kinds) {
+    const BodyMotion motion = restoration->Restore({person})[0];
+    for (int t = 0; t < 30; ++t) {
+      EXPECT_LT((motion[t].col(0) - TipAt(person, t)).norm(), 1e-9) << restoration->kind();
+    }
+  }
+}
+
+TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {
+  const RestorationInput at_60 = MovingPerson(StandingPose(), 80, 61);
+  RestorationInput at_120 = at_60;
+  at_120.dt = 1.0 / 120.0;
+  at_120.q.clear();
+  for (int t = 0; t < 121; ++t) {
+    const Vector4<double>& low = at_60.q[t / 2];
+    at_120.q.push_back(t % 2 == 0 ? low : Vector4<double>(0.5 * (low + at_60.q[t / 2 + 1])));
+  }
+  const CvaeRestoration cvae(RandomCvae(), CvaeCoordinates::kTip);
+  const BodyMotion slow = cvae.Restore({at_60})[0], fast = cvae.Restore({at_120})[0];
+  ASSERT_EQ(fast.size(), 121u);
+  for (int t = 0; t < 61; ++t) EXPECT_LT((slow[t] - fast[2 * t]).cwiseAbs().maxCoeff(), 1e-4) << t;
+}
+
+}  // namespace
+}  // namespace pushid

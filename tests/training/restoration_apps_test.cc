@@ -1,0 +1,140 @@
+// pushid-train-restoration and what uses its output, as a user runs them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "datasets/bvh.h"
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class RestorationAppTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    model_ = "--model=" + FitModel();
+  }
+  AppRun Train(const std::string& out, std::vector<std::string> more = {}, double seconds = 120) {
+    more.insert(more.end(), {Recordings(), model_, "--out=" + Path(out), "--quiet"});
+    return RunApp("pushid-train-restoration", more, seconds);
+  }
+  std::string Trained() {
+    const AppRun run = Train("r", {"--effort=0.3"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return "--restoration=" + Path("r");
+  }
+
+  std::string model_;
+};
+
+TEST_F(RestorationAppTest, TrainsEvaluatesAndPredicts) {
+  const std::string restoration = Trained();
+  EXPECT_FALSE(std::filesystem::exists(Path("r/checkpoint.bin")));
+  EXPECT_TRUE(Contains(ReadText(Path("r/curve.svg")), "<svg"));
+  const AppRun evaluate = RunApp(
+      "pushid-evaluate", {model_, Recordings(), restoration, "--json_out=" + Path("scores.json")});
+  ASSERT_EQ(evaluate.exit_code, 0) << evaluate.err;
+  EXPECT_TRUE(Contains(evaluate.out, "MPJPE"));
+  const auto json = Json(Path("scores.json"));
+  for (const char* key : {"MPJPE_m", "hipADE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m"}) {
+    EXPECT_TRUE(json["mean"].contains(key)) << key;
+    EXPECT_TRUE(json["baselines"]["static"]["mean"].contains(key)) << key;
+  }
+  // The recorded bones themselves vary: the joints are noisy by 2 mm.
+  EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 2e-3);
+  EXPECT_GT(json["recordings"][0]["MPJPE_m"].get<double>(), 0.0);
+  const AppRun predict = RunApp(
+      "pushid-predict", {model_, Recordings(), restoration, "--id=" + id_, "--out=" + Path("m.bvh"),
+                         "--joints_out=" + Path("j.csv"), "--json_out=" + Path("j.json")});
+  ASSERT_EQ(predict.exit_code, 0) << predict.err;
+  EXPECT_TRUE(Contains(predict.out, "MPJPE"));
+  const auto bvh = ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}});
+  ASSERT_TRUE(bvh.ok()) << bvh.error().ToString();
+  EXPECT_EQ(bvh.value().num_frames(), 45);
+  const auto joints = Json(Path("j.json"))["people"][0]["joints_m"];
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(joints[44][9][i].get<double>(), bvh.value().positions[9][44][i], 2e-5);
+  }
+}
+
+TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
+  const std::string restoration = Trained();
+  const AppRun animate =
+      RunApp("pushid-animate", {model_, Recordings(), restoration, "--id=" + id_,
+                                "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")});
+  ASSERT_EQ(animate.exit_code, 0) << animate.err;
+  const std::string html = ReadText(Path("a.html"));
+  EXPECT_TRUE(Contains(html, "</html>"));
+  EXPECT_EQ(html.find("http"), std::string::npos) << "the page must stand alone";
+  const AppRun simulate = RunApp(
+      "pushid-simulate", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
+                          "--poses_from=" + manifest_, "--html_out=" + Path("f.html"),
+                          "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
+  ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
+  EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
+}
+
+TEST_F(RestorationAppTest, RepeatsItselfAndGoesOnAfterAKill) {
+  ASSERT_EQ(Train("a", {"--seed=5"}).exit_code, 0);
+  ASSERT_EQ(Train("b", {"--seed=5"}).exit_code, 0);
+  EXPECT_EQ(ReadText(Path("a/weights.npy")), ReadText(Path("b/weights.npy")));
+  EXPECT_EQ(ReadText(Path("a/restoration.json")), ReadText(Path("b/restoration.json")));
+  // Killed again and again until a checkpoint is there, then finished.
+  for (double seconds = 0.3; !std::filesystem::exists(Path("c/checkpoint.bin")); seconds += 0.15) {
+    ASSERT_LT(seconds, 60.0);
+    if (!Train("c", {"--seed=5", "--checkpoint_seconds=0"}, seconds).timed_out) break;
+  }
+  const AppRun resumed = Train("c", {"--seed=5"});
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(ReadText(Path("a/weights.npy")), ReadText(Path("c/weights.npy")));
+  ASSERT_EQ(Train("d", {"--seed=6"}).exit_code, 0);
+  EXPECT_NE(ReadText(Path("a/weights.npy")), ReadText(Path("d/weights.npy")));
+}
+
+TEST_F(RestorationAppTest, CrossValidatesTheWholeChain) {
+  const AppRun run =
+      RunApp("pushid-train-restoration", {Recordings(), model_, "--crossvalidate=2", "--effort=0.1",
+                                          "--quiet", "--json_out=" + Path("cv.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = Json(Path("cv.json"));
+  EXPECT_EQ(json["recordings"].size(), 12u);
+  EXPECT_EQ(json["mean"]["recordings"], 12);
+  EXPECT_GT(json["true_pendulum"]["mean"]["MPJPE_m"].get<double>(), 0.0);
+}
+
+TEST_F(RestorationAppTest, TheCvaeTrainsAndIsUsed) {
+  const AppRun run = Train("v", {"--kind=cvae", "--effort=0.001"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun evaluate =
+      RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")});
+  EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
+}
+
+TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
+  const auto refused = [&](const std::string& app, std::vector<std::string> flags,
+                           const std::vector<std::string>& says) {
+    flags.insert(flags.end(), {model_, Recordings()});
+    EXPECT_TRUE(Refused(RunApp(app, flags), says)) << app;
+  };
+  const std::string train = "pushid-train-restoration";
+  refused(train, {}, {"--out"});
+  refused(train, {"--out=" + Path("x"), "--kind=best"}, {"--kind", "best", "window", "cvae"});
+  refused(train, {"--out=" + Path("x"), "--effort=0"}, {"--effort"});
+  refused(train, {"--out=" + Path("x"), "--held_out=0.9"}, {"--held_out"});
+  refused(train, {"--crossvalidate=1"}, {"--crossvalidate"});
+  refused(train, {"--out=" + Path("x"), "--coordinates=hip"}, {"--coordinates"});
+  refused("pushid-evaluate", {"--restoration=" + Path("none")}, {"restoration.json"});
+  refused("pushid-predict", {"--id=" + id_, "--out=" + Path("m.bvh")}, {"--restoration"});
+  refused("pushid-predict",
+          {"--id=" + id_, "--out=" + Path("m.bvh"), "--restoration=rigid", "--postprocess=magic"},
+          {"--postprocess", "magic", "fade"});
+  refused("pushid-animate", {"--id=" + id_}, {"--out"});
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--html_out=x.html"}),
+                      {"--html_out", "--restoration"}));
+}
+
+}  // namespace
+}  // namespace pushid

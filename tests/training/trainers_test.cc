@@ -1,0 +1,158 @@
+// Trainers: they learn, repeat themselves, go on where they were broken off, and what they return
+// is the network that LibTorch trained, to single precision.
+#include <gtest/gtest.h>
+
+#include "models/restoration/cvae_restoration.h"
+#include "models/restoration/cvae_trainer.h"
+#include "models/restoration/regression_trainer.h"
+#include "tests/models/body_samples.h"
+
+namespace pushid {
+namespace {
+
+// y = a bent function of x.
+RegressionSamples Samples(int count, uint64_t seed) {
+  Random random(seed);
+  RegressionSamples samples;
+  samples.inputs = RandomMatrix(3, count, 1.0, &random);
+  samples.targets.resize(2, count);
+  samples.targets.row(0) = samples.inputs.row(0).array().square();
+  samples.targets.row(1) = samples.inputs.row(1) - samples.inputs.row(2);
+  samples.weights = Eigen::VectorXf::Ones(count);
+  return samples;
+}
+
+RegressionOptions Quick() {
+  RegressionOptions options;
+  options.hidden = 32;
+  options.dropout = 0.1;
+  options.input_noise = 0.01;
+  options.epochs = 12;
+  options.batch = 64;
+  return options;
+}
+
+DenseNetwork TrainedInOneGo() {
+  RegressionTrainer trainer(Samples(1000, 1), Samples(200, 2), Quick());
+  while (!trainer.Done()) trainer.RunEpoch();
+  return trainer.Best();
+}
+
+TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
+  const RegressionSamples held = Samples(200, 2);
+  RegressionTrainer trainer(Samples(1000, 1), held, Quick());
+  const TrainingPoint first = trainer.RunEpoch();
+  double best = first.validation_loss;
+  while (!trainer.Done()) best = std::min(best, trainer.RunEpoch().validation_loss);
+  EXPECT_LT(best, 0.5 * first.validation_loss);
+  const double error = (trainer.Best().Evaluate(held.inputs) - held.targets).cwiseAbs().mean();
+  EXPECT_NEAR(error, best, 1e-5);
+}
+
+TEST(RegressionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
+  const DenseNetwork one = TrainedInOneGo(), again = TrainedInOneGo();
+  RegressionTrainer broken(Samples(1000, 1), Samples(200, 2), Quick());
+  for (int i = 0; i < 5; ++i) broken.RunEpoch();
+  const std::string state = broken.State();
+  RegressionTrainer resumed(Samples(1000, 1), Samples(200, 2), Quick());
+  ASSERT_TRUE(resumed.Resume(state));
+  while (!resumed.Done()) resumed.RunEpoch();
+  for (size_t i = 0; i < one.layers.size(); ++i) {
+    EXPECT_EQ(one.layers[i].weights, again.layers[i].weights);
+    EXPECT_EQ(one.layers[i].weights, resumed.Best().layers[i].weights);
+  }
+  EXPECT_FALSE(resumed.Resume("no state"));
+}
+
+TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
+  RegressionSamples noise = Samples(64, 1), held = Samples(64, 2);
+  Random random(8);
+  noise.targets = RandomMatrix(2, 64, 1.0, &random);
+  held.targets = RandomMatrix(2, 64, 1.0, &random);
+  RegressionOptions options = Quick();
+  options.epochs = 400;
+  options.patience = 5;
+  RegressionTrainer trainer(noise, held, options);
+  int epochs = 0;
+  while (!trainer.Done()) trainer.RunEpoch(), ++epochs;
+  EXPECT_LT(epochs, 200);
+}
+
+std::vector<CvaeSequence> Sequences(int count, CvaeWeights* scalings) {
+  std::vector<CvaeSequence> sequences;
+  for (int i = 0; i < count; ++i) {
+    const RestorationInput person = MovingPerson(StandingPose(), 60.0 + 5 * i, 30);
+    const BodyMotion motion = RigidRestoration().Restore({person})[0];
+    BodyFrames frames = FramesOf(person, motion, CvaeCoordinates::kTip);
+    sequences.push_back({frames.lower, frames.upper, PendulumFrames(person)});
+  }
+  scalings->lower = UnitScaling(kLowerFrame);
+  scalings->upper = UnitScaling(kUpperFrame);
+  scalings->pendulum = UnitScaling(kPendulumFrame);
+  return sequences;
+}
+
+CvaeOptions QuickCvae() {
+  CvaeOptions options;
+  options.steps = {24, 16, 24, 16};
+  options.round = 8;
+  options.batch = 8;
+  return options;
+}
+
+TEST(CvaeTrainerTest, ParametersAreLdps) {
+  CvaeWeights scalings;
+  const auto sequences = Sequences(2, &scalings);
+  const CvaeTrainer trainer(sequences, sequences, scalings, QuickCvae());
+  EXPECT_EQ(trainer.NumParameters(), (std::array<int64_t, 4>{865536, 136960, 1097904, 159232}));
+}
+
+TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
+  CvaeWeights scalings;
+  const auto sequences = Sequences(3, &scalings);
+  CvaeOptions options = QuickCvae();
+  options.steps[3] = 8;  // one round: its loss is that of the weights that are kept
+  CvaeTrainer trainer(sequences, sequences, scalings, options);
+  TrainingPoint last;
+  while (!trainer.Done()) last = trainer.RunRound();
+  EXPECT_EQ(last.stage, "upper sampler");
+  const CvaeWeights weights = trainer.Best();
+  double error = 0.0;
+  for (const CvaeSequence& s : sequences) {
+    Eigen::MatrixXf lower = s.lower.col(0), upper = s.upper.col(0);
+    Eigen::MatrixXf clamped;
+    double of_sequence = 0.0;
+    for (Eigen::Index t = 1; t < s.lower.cols(); ++t) {
+      StepLower(weights, s.pendulum.col(t), &lower);
+      lower = lower.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
+      StepUpper(weights, s.pendulum.col(t), lower, &upper);
+      upper = upper.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
+      for (int j = 0; j < 14; ++j) {
+        of_sequence += (upper - s.upper.col(t)).block<3, 1>(3 + 3 * j, 0).norm() / 14;
+      }
+    }
+    error += of_sequence / static_cast<double>(s.lower.cols() - 1) / 3.0;
+  }
+  EXPECT_NEAR(error, last.validation_loss, 1e-4 * std::max(1.0, error));
+}
+
+TEST(CvaeTrainerTest, ResumesToTheLastBitInTheMiddleOfAnyStage) {
+  CvaeWeights scalings;
+  const auto sequences = Sequences(2, &scalings);
+  CvaeTrainer whole(sequences, sequences, scalings, QuickCvae());
+  while (!whole.Done()) whole.RunRound();
+  for (int rounds : {2, 4, 6, 9}) {  // 3, 2, 3 and 2 rounds a stage
+    CvaeTrainer broken(sequences, sequences, scalings, QuickCvae());
+    for (int i = 0; i < rounds; ++i) broken.RunRound();
+    const std::string state = broken.State();
+    CvaeTrainer resumed(sequences, sequences, scalings, QuickCvae());
+    ASSERT_TRUE(resumed.Resume(state)) << rounds;
+    while (!resumed.Done()) resumed.RunRound();
+    const TensorList a = ToTensors(whole.Best()), b = ToTensors(resumed.Best());
+    for (size_t i = 0; i < a.size(); ++i)
+      EXPECT_EQ(a[i].values, b[i].values) << rounds << a[i].name;
+  }
+}
+
+}  // namespace
+}  // namespace pushid
