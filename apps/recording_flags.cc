@@ -10,7 +10,15 @@ DEFINE_string(setting, "all",
               "which recordings: settings of the manifest, comma-separated; groups (more than one "
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
-DEFINE_string(length_unit, "", "unit of the BVH files, mm, cm or m, whatever the manifest says");
+DEFINE_string(length_unit, "",
+              "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
+DEFINE_double(max_gap_s, 0.1,
+              "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
+DEFINE_double(lowpass_hz, 0.0,
+              "zero-phase Butterworth low-pass of all positions (second order, forwards and "
+              "backwards), cut-off in Hz; 0: none");
+DEFINE_double(resample_fps, 0.0,
+              "resample motion and pushes to this many frames per second; 0: as recorded");
 
 namespace pushid {
 
@@ -21,6 +29,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   }
   LoadOptions options;
   options.setting = FLAGS_setting;
+  options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = ids;
   if (ids.empty()) {
     std::stringstream list(FLAGS_ids);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "ident/option_names.h"
+#include "ident/preparation_text.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
 
@@ -179,6 +180,7 @@ std::string ReportText(const FitResult& result) {
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  text += PreparationText(result.configuration);
   text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   return text;
