@@ -84,6 +84,12 @@ Result<MadePush> ByInverseDynamics(const PendulumRecording& recording) {
   }
   const Result<EstimatedPush> push = EstimatePush(recording, window, options);
   if (!push.ok()) return push.error();
+  for (int t = window.start; t < window.end; ++t) {
+    if (recording.Weight(FLAGS_person, t) > 0.0) continue;
+    Warn("hip or ankles are not seen at frame " + std::to_string(t) +
+         " of the push: it leans on positions drawn as a straight line");
+    break;
+  }
   return MadePush{
       push.value().push, push.value().kind,
       "by inverse dynamics, " +

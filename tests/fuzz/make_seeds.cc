@@ -13,7 +13,7 @@
 #include "datasets/push_csv.h"
 #include "datasets/synthetic_recordings.h"
 #include "datasets/trc.h"
-#include "ident/fit.h"
+#include "ident/fit_result.h"
 #include "ident/network_json.h"
 #include "ident/result_json.h"
 #include "tests/datasets/c3d_samples.h"
