@@ -48,6 +48,10 @@ MaybeError CheckFlags() {
   if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
     return Error{"--first_frame and --end_frame are frames, counted from 0"};
   }
+  if (Given("resample_fps")) {
+    return Error{
+        "a push has a row for each of the recording's own frames; leave --resample_fps out"};
+  }
   return CheckSensorFlags();
 }
 

@@ -62,21 +62,36 @@ void LookAtPoints(const PointMotion& motion, Inspection* found) {
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
 
+// A joint of a BVH file is never hidden, so that only hip and ankles are kept: files of a gigabyte
+// fit.
 MaybeError LookAtBvh(Inspection* found) {
+  std::optional<PendulumJoints> places;  // indices into the joints kept
+  std::vector<std::string> names;
   BvhPositionOptions options;
   options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
+  options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+    for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
+    const Result<PendulumJoints> joints = ChoosePendulumJoints(found->path, skeleton, {});
+    if (!joints.ok()) {
+      found->Warn(joints.error().message);
+      return std::vector<int>{0};
+    }
+    places = PendulumJoints{{0}, {1}, {2}};
+    return std::vector<int>{joints.value().hip[0], joints.value().left_ankle[0],
+                            joints.value().right_ankle[0]};
+  };
   Result<BvhPositions> bvh = ReadBvhPositions(found->path, options);
   if (!bvh.ok()) return bvh.error();
   PointMotion motion;
   motion.path = found->path;
   motion.rate_hz = 1.0 / bvh.value().frame_time_s;
-  motion.chosen = bvh.value().joints;
-  for (const BvhJoint& joint : bvh.value().skeleton.joints) motion.names.push_back(joint.name);
+  for (int joint : bvh.value().joints) {
+    motion.chosen.push_back(static_cast<int>(motion.names.size()));
+    motion.names.push_back(names[joint]);
+  }
   motion.positions = std::move(bvh.value().positions);
-  found->Fact("joints", List(motion.names));
-  const Result<PendulumJoints> joints = ChoosePendulumJoints(found->path, bvh.value().skeleton, {});
-  if (!joints.ok()) found->Warn(joints.error().message);
-  InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
+  found->Fact("joints", List(names));
+  InspectMotion(motion, places, found);
   return std::nullopt;
 }
 

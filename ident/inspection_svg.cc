@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWidth = 760, kLeft = 70, kRight = 140, kTop = 44;
 constexpr double kPanel = 170, kGap = 58;
-constexpr double kBar = 9;  // height of a point's bar
+constexpr double kBar = 12;  // height of a point's bar
 constexpr std::size_t kMostBars = 60;
 constexpr std::size_t kMostPoints = 1500;  // of a line: more than there are pixels
 

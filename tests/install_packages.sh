@@ -6,6 +6,7 @@
 build_packages=(g++ cmake ninja-build ccache
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libxxhash-dev)
 test_packages=(libgtest-dev libbenchmark-dev)
+fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

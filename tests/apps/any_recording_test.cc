@@ -236,6 +236,7 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
   EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensors=x.json"}), {"not both"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
 
 }  // namespace

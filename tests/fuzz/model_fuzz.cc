@@ -7,6 +7,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pushid;
   static MemoryFile file;
+  const CpuSecond limit;
   const std::string& path = file.Fill(data, size);
   const Result<FitResult> model = ReadFitResult(path);
   if (model.ok()) Demand(!ReportText(model.value()).empty());
