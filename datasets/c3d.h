@@ -66,6 +66,7 @@ struct C3dFile {
   std::string screen_x, screen_y;  // POINT:X_SCREEN, Y_SCREEN, "+X" and "+Z" as a rule
   std::vector<std::string> point_names;
   std::vector<std::vector<Eigen::Vector3d>> points;  // [point][frame]; NaN where it was not seen
+  int frames_without_points = 0;                     // how many there are, where `points` is empty
   std::vector<C3dAnalogChannel> analog;
   std::vector<C3dEvent> events;
   std::vector<C3dPlatform> platforms;
@@ -73,13 +74,13 @@ struct C3dFile {
   std::vector<C3dParameter> parameters;                 // everything, as it stands
   std::string content_hash;
 
-  int num_frames() const { return points.empty() ? frames_ : static_cast<int>(points[0].size()); }
+  int num_frames() const {
+    return points.empty() ? frames_without_points : static_cast<int>(points[0].size());
+  }
   int samples_per_frame() const;
   int FindPoint(std::string_view name) const;   // index, or -1
   int FindAnalog(std::string_view name) const;  // index, or -1
   const C3dParameter* Find(std::string_view group, std::string_view name) const;
-
-  int frames_ = 0;  // of a file without points
 };
 
 struct C3dReadOptions {

@@ -168,7 +168,7 @@ class Reader {
       }
       frames = available;
     }
-    file_.frames_ = static_cast<int>(frames);
+    file_.frames_without_points = static_cast<int>(frames);
     file_.points.resize(num_points_);
     for (auto& track : file_.points) track.reserve(frames);
     for (C3dAnalogChannel& channel : file_.analog) {
