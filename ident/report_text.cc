@@ -211,7 +211,9 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     table.Add({name, std::to_string(model.recordings), MeanText(model), MeanText(still),
                MeanText(velocity)});
   };
-  const auto& [m, s, v] = evaluation;
+  // Not a structured binding: a lambda below uses them, which C++17 has no words for.
+  const ScoreSummary &m = evaluation.model, &s = evaluation.static_baseline,
+                     &v = evaluation.constant_velocity;
   add("mean over recordings", m.mean, s.mean, v.mean);
   add("frame-weighted", m.frame_weighted, s.frame_weighted, v.frame_weighted);
   auto groups = [&](const char* what, const std::map<std::string, MeanScore> ScoreSummary::*by) {
