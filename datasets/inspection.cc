@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "datasets/bvh.h"
 #include "datasets/c3d.h"
 #include "datasets/force_platform.h"
 #include "datasets/input_file.h"
+#include "datasets/inspect_manifest.h"
 #include "datasets/inspect_motion.h"
-#include "datasets/load_recordings.h"
 #include "datasets/number_text.h"
 #include "datasets/numeric_table.h"
 #include "datasets/point_motion.h"
@@ -22,17 +21,8 @@
 namespace pushid {
 namespace {
 
-constexpr std::size_t kListed = 12;      // names in a fact
 constexpr std::size_t kMostSignals = 6;  // in the picture
 constexpr double kForceOnset = 20.0;     // N
-
-std::string List(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kListed, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  return text + (names.size() > kListed ? ", ... (" + std::to_string(names.size()) + ")" : "");
-}
 
 // Peak, impulse and onset of a force; keeps it for the picture.
 void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
@@ -56,7 +46,7 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
 
 // The joints of a recording that says nothing about them; a warning where they cannot be found.
 void LookAtPoints(const PointMotion& motion, Inspection* found) {
-  found->Fact("points", List(motion.names));
+  found->Fact("points", ListOfNames(motion.names));
   const Result<PendulumJoints> joints = ChoosePendulumPoints(motion.path, motion.names, {});
   if (!joints.ok()) found->Warn(joints.error().message);
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
@@ -90,7 +80,7 @@ MaybeError LookAtBvh(Inspection* found) {
     motion.names.push_back(names[joint]);
   }
   motion.positions = std::move(bvh.value().positions);
-  found->Fact("joints", List(names));
+  found->Fact("joints", ListOfNames(names));
   InspectMotion(motion, places, found);
   return std::nullopt;
 }
@@ -106,8 +96,8 @@ void LookAtAnalog(const C3dFile& file, Inspection* found) {
                     [&channel](double sample) { return sample == channel.samples[0]; });
     if (steady && file.num_frames() > 1) names.back() += " (constant)";
   }
-  found->Fact("analog", List(names) + " at " + Rounded(file.analog_rate_hz) + " per second, in " +
-                            List({units.begin(), units.end()}));
+  found->Fact("analog", ListOfNames(names) + " at " + Rounded(file.analog_rate_hz) +
+                            " per second, in " + ListOfNames({units.begin(), units.end()}));
   for (const C3dAnalogChannel& channel : file.analog) {
     if (channel.unit == "N" && file.platforms.empty()) {
       AddForce(channel.name, file.analog_rate_hz, channel.samples, found);
@@ -201,7 +191,7 @@ MaybeError LookAtTable(MotionFormat format, Inspection* found) {
   const Result<NumericTable> read = ReadNumericTable(found->path, table_format, {});
   if (!read.ok()) return read.error();
   const NumericTable& table = read.value();
-  found->Fact("columns", List(table.names));
+  found->Fact("columns", ListOfNames(table.names));
   const int time = FindTimeColumn(table.names, "");
   double rate = 0.0;
   if (time >= 0) {
@@ -225,36 +215,6 @@ MaybeError LookAtTable(MotionFormat format, Inspection* found) {
   return std::nullopt;
 }
 
-MaybeError LookAtManifest(Inspection* found) {
-  const Result<Manifest> manifest = ReadManifest(found->path);
-  if (!manifest.ok()) return manifest.error();
-  std::map<std::string, int> settings, formats;
-  std::set<std::string> subjects;
-  int pushed = 0, read = 0;
-  for (const ManifestRecording& entry : manifest.value().recordings) {
-    ++settings[entry.setting];
-    ++formats[Title(entry.motion_format)];
-    for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
-    pushed += entry.push_csv.empty() && entry.pushes.empty() ? 0 : 1;
-    const Result<Recording> recording =
-        LoadRecording(manifest.value(), entry, {}, &found->warnings);
-    if (recording.ok()) ++read;
-    if (!recording.ok()) found->Warn(recording.error().ToString());
-  }
-  const auto counts = [](const std::map<std::string, int>& of) {
-    std::vector<std::string> texts;
-    for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));
-    return List(texts);
-  };
-  const std::size_t all = manifest.value().recordings.size();
-  found->Fact("recordings", std::to_string(all) + ", " + std::to_string(read) + " can be read, " +
-                                std::to_string(pushed) + " have a push");
-  found->Fact("settings", counts(settings));
-  found->Fact("formats", counts(formats));
-  found->Fact("subjects", List({subjects.begin(), subjects.end()}));
-  return std::nullopt;
-}
-
 // The first line that says something; empty when there is none.
 std::string FirstLine(const std::string& path) {
   LineReader reader;
@@ -275,7 +235,7 @@ MaybeError Look(Inspection* found) {
           path};
     }
     found->format = "manifest";
-    return LookAtManifest(found);
+    return InspectManifest(found);
   }
   found->format = Title(*format);
   switch (*format) {
