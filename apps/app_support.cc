@@ -58,7 +58,8 @@ double Now() {
 
 }  // namespace
 
-int RunApp(int argc, char** argv, const std::string& usage, int (*run)()) {
+int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
+           std::vector<std::string>* words) {
   const std::string path = argv[0];
   g_program = path.substr(path.find_last_of('/') + 1);
   gflags::SetUsageMessage(usage);
@@ -77,7 +78,9 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)()) {
     std::printf("%s %s\n", g_program.c_str(), PUSHID_VERSION);
     return kDone;
   }
-  if (argc > 1) {
+  if (words != nullptr) {
+    words->assign(argv + 1, argv + argc);
+  } else if (argc > 1) {
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + g_program + " --help");
   }
   try {

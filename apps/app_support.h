@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "datasets/result.h"
 
@@ -14,8 +15,9 @@ namespace pushid {
 inline constexpr int kDone = 0, kBadInput = 1, kFitFailed = 2;
 
 // Parses flags (--help and --version answer themselves), then calls run. usage: one paragraph and
-// an example. Words that are no flags are an error.
-int RunApp(int argc, char** argv, const std::string& usage, int (*run)());
+// an example. Words that are no flags go to `words`; without it they are an error.
+int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
+           std::vector<std::string>* words = nullptr);
 
 // "pushid-fit: error: ..." on stderr; returns kBadInput.
 int Fail(const Error& error);

@@ -1,20 +1,18 @@
 // apps: pushid-push: the push of a recording that has none, by inverse dynamics or from a sensor.
 #include <gflags/gflags.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "apps/app_support.h"
 #include "apps/recording_flags.h"
+#include "apps/sensor_flags.h"
 #include "datasets/atomic_file.h"
 #include "datasets/push_csv.h"
 #include "datasets/recording_names.h"
-#include "datasets/sensor_csv.h"
 #include "ident/push_estimation.h"
-#include "ident/push_from_sensor.h"
 #include "ident/report_text.h"
 
 DEFINE_string(id, "", "the recording");
@@ -26,14 +24,6 @@ DEFINE_int32(end_frame, -1, "inverse dynamics: frame after the window; -1: found
 DEFINE_int32(smoothing, 9,
              "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
              "noise then make 600 N)");
-
-DEFINE_string(sensor, "", "force sensor: CSV file time,force or time,fx,fy,fz (s, N)");
-DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the person, x,y,z");
-DEFINE_double(height, 1.0, "force sensor: contact height as a fraction of the rod (1: the hip)");
-DEFINE_double(height_m, 0.0,
-              "force sensor: contact height in m above the recording's zero instead");
-DEFINE_double(sensor_start, 0.0, "force sensor: its clock at frame 0, s");
-DEFINE_double(idle_force, 0.0, "force sensor: forces up to this many N are idling");
 
 namespace {
 
@@ -50,31 +40,19 @@ bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag)
 
 // A flag of the other way would be taken and do nothing.
 MaybeError CheckFlags() {
-  const bool sensor = !FLAGS_sensor.empty();
   for (const char* flag : {"first_frame", "end_frame", "smoothing"}) {
-    if (sensor && Given(flag)) {
+    if (SensorGiven() && Given(flag)) {
       return Error{std::string("--") + flag + " belongs to inverse dynamics, not to --sensor"};
     }
-  }
-  for (const char* flag : {"direction", "height", "height_m", "sensor_start", "idle_force"}) {
-    if (!sensor && Given(flag)) {
-      return Error{std::string("--") + flag + " needs --sensor: name the file of its forces"};
-    }
-  }
-  if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
-    return Error{"--height must be a fraction of the rod between 0 and 2; --height_m takes metres"};
-  }
-  if (!(FLAGS_height_m >= 0.0 && FLAGS_height_m <= 3.0)) {
-    return Error{"--height_m must be a height between 0 and 3 m"};
-  }
-  if (Given("height") && Given("height_m")) return Error{"give --height or --height_m, not both"};
-  if (!(FLAGS_idle_force >= 0.0) || !std::isfinite(FLAGS_idle_force)) {
-    return Error{"--idle_force must be a force of at least 0 N"};
   }
   if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
     return Error{"--first_frame and --end_frame are frames, counted from 0"};
   }
-  return std::nullopt;
+  if (Given("resample_fps")) {
+    return Error{
+        "a push has a row for each of the recording's own frames; leave --resample_fps out"};
+  }
+  return CheckSensorFlags();
 }
 
 // As the manifest needs it: relative to its folder.
@@ -87,24 +65,10 @@ std::string PathFromManifest(const std::string& file) {
 }
 
 Result<MadePush> FromSensor(const PendulumRecording& recording) {
-  const Result<SensorRecord> record = ReadSensorCsv(FLAGS_sensor);
-  if (!record.ok()) return record.error();
-  SensorPushOptions options;
-  options.person = FLAGS_person;
-  options.height_fraction = FLAGS_height;
-  if (Given("height_m")) options.height_m = FLAGS_height_m;
-  options.frame_zero_time_s = FLAGS_sensor_start;
-  options.idle_force = FLAGS_idle_force;
-  std::istringstream text(FLAGS_direction);
-  char comma1 = 0, comma2 = 0, rest = 0;
-  Vector3<double>& d = options.direction;
-  if (!(text >> d[0] >> comma1 >> d[1] >> comma2 >> d[2]) || comma1 != ',' || comma2 != ',' ||
-      text >> rest) {
-    return Error{"--direction is '" + FLAGS_direction + "'; it must be x,y,z, as in 1,0,0"};
-  }
-  const Result<Push> push = PushFromSensor(record.value(), recording, options);
-  if (!push.ok()) return push.error();
-  return MadePush{push.value(), PushKind::kExternal, "from the sensor, averaged over the frames"};
+  const Result<SensorPush> made = PushFromSensors(recording, FLAGS_person);
+  if (!made.ok()) return made.error();
+  for (const std::string& warning : made.value().warnings) Warn(warning);
+  return MadePush{made.value().push, PushKind::kExternal, made.value().how};
 }
 
 Result<MadePush> ByInverseDynamics(const PendulumRecording& recording) {
@@ -124,6 +88,12 @@ Result<MadePush> ByInverseDynamics(const PendulumRecording& recording) {
   }
   const Result<EstimatedPush> push = EstimatePush(recording, window, options);
   if (!push.ok()) return push.error();
+  for (int t = window.start; t < window.end; ++t) {
+    if (recording.Weight(FLAGS_person, t) > 0.0) continue;
+    Warn("hip or ankles are not seen at frame " + std::to_string(t) +
+         " of the push: it leans on positions drawn as a straight line");
+    break;
+  }
   return MadePush{
       push.value().push, push.value().kind,
       "by inverse dynamics, " +
@@ -167,7 +137,7 @@ int Run() {
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), SkeletonMapping::kExact);
   const Result<MadePush> made =
-      FLAGS_sensor.empty() ? ByInverseDynamics(recording) : FromSensor(recording);
+      SensorGiven() ? FromSensor(recording) : ByInverseDynamics(recording);
   if (!made.ok()) return Fail(made.error());
   if (MaybeError error = WritePushCsv(FLAGS_out, made.value().push.force)) return Fail(*error);
   PrintPush(made.value(), recording.scene.dt);
@@ -183,6 +153,7 @@ int main(int argc, char** argv) {
       "of its motion, or from a measured force.\n\n  pushid-push "
       "--recordings=M/manifest.json --id=NAME --out=push.csv\n  pushid-push "
       "--recordings=M/manifest.json --id=NAME --sensor=force.csv --height=0.9 "
-      "--out=push.csv",
+      "--out=push.csv\n  pushid-push --recordings=M/manifest.json --id=NAME --sensor=trial.c3d "
+      "--sensor_column=platform:1 --estimate_offset --out=push.csv",
       Run);
 }

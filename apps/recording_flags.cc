@@ -12,7 +12,15 @@ DEFINE_string(setting, "all",
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
 DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
-DEFINE_string(length_unit, "", "unit of the BVH files, mm, cm or m, whatever the manifest says");
+DEFINE_string(length_unit, "",
+              "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
+DEFINE_double(max_gap_s, 0.1,
+              "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
+DEFINE_double(lowpass_hz, 0.0,
+              "zero-phase Butterworth low-pass of all positions (second order, forwards and "
+              "backwards), cut-off in Hz; 0: none");
+DEFINE_double(resample_fps, 0.0,
+              "resample motion and pushes to this many frames per second; 0: as recorded");
 
 namespace pushid {
 namespace {
@@ -50,6 +58,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   LoadOptions options;
   options.setting = FLAGS_setting;
   options.keep_all_joints = keep_all_joints;
+  options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = ids.empty() ? SplitList(FLAGS_ids) : ids;
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);

@@ -48,7 +48,12 @@ Result<std::size_t> InputFile::Read(char* buffer, std::size_t capacity) {
 
 MaybeError LineReader::Open(const std::string& path) {
   error_ = file_.Open(path);
-  if (!error_) buffer_.resize(kBufferSize);
+  if (error_) return error_;
+  // A small file needs no large buffer; one byte more finds its end.
+  const std::int64_t size = file_.size();
+  buffer_.resize(size > 0 && size < static_cast<std::int64_t>(kBufferSize)
+                     ? static_cast<std::size_t>(size) + 1
+                     : kBufferSize);
   return error_;
 }
 

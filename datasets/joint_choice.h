@@ -1,7 +1,8 @@
-// datasets: which joints of a skeleton the pendulum is read from.
+// datasets: which joints or markers of a file the pendulum is read from.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/bvh.h"
 #include "datasets/manifest.h"
@@ -9,8 +10,9 @@
 
 namespace pushid {
 
+// Indices into the file's joints or points; each place is the mean of its list.
 struct PendulumJoints {
-  int hip = 0, left_ankle = 0, right_ankle = 0;  // indices into the skeleton
+  std::vector<int> hip, left_ankle, right_ankle;
 };
 
 // What `mapping` names, and for the rest the defaults:
@@ -22,5 +24,18 @@ struct PendulumJoints {
 // `path` is the BVH file, for messages.
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping);
+
+// The same for named points. A name may leave out what stands before a colon ("LASI" for
+// "Anna:LASI") where that is clear. Defaults:
+//   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
+//           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
+//   ankles  the names above, LANK, L.Ankle.Lat, LMAL, ...
+// Errors besides the above: a default or a short name that several people's points answer to.
+Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
+                                            const std::vector<std::string>& names,
+                                            const JointMapping& mapping);
+
+// `first` where it names a joint, otherwise `second`.
+JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
 
 }  // namespace pushid

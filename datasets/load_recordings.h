@@ -14,14 +14,15 @@
 #include "datasets/content_hash.h"  // HashFile
 #include "datasets/length_unit.h"
 #include "datasets/manifest.h"
+#include "datasets/motion_preparation.h"
 #include "datasets/recording.h"
 #include "datasets/result.h"
 
 namespace pushid {
 
 struct LoadOptions {
-  // The unit of the BVH files' lengths, whatever the manifest says (--length_unit). Without it: the
-  // recording's length_unit, else the manifest's, else mm.
+  // The unit of the files' lengths, whatever they and the manifest say (--length_unit). Without it:
+  // the recording's length_unit, else the manifest's, the mapping's, the file's own, else mm.
   std::optional<LengthUnit> length_unit;
   // Which recordings: see SelectRecordings. Only those are read.
   std::string setting = "all";
@@ -30,6 +31,8 @@ struct LoadOptions {
   // Also keep the positions of all joints (RecordedPerson::joints), for full-body work; without it
   // only hip and ankles stay in memory.
   bool keep_all_joints = false;
+  // Gaps, filter, frame rate.
+  PreparationOptions preparation{};
 };
 
 // Reads and checks the selected recordings, in the manifest's order. Things that look odd but can

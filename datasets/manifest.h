@@ -12,6 +12,13 @@
 // BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
 // start_frame}] in addition to push_csv, initial_velocity (zero, estimated, free; default zero),
 // condition_code, frames. At the top: length_unit or units.bvh_length for all recordings.
+//
+// Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
+// with one file per subject; the same file may be named for several. A joint may then be a list of
+// markers whose mean it is: "hip": ["LASI", "RASI", "LPSI", "RPSI"]. A subject may have joints of
+// its own; mapping names a file (column_mapping.h) with joints, columns, unit, axes and rate for
+// recordings that share them. first_frame and end_frame (the one behind the last) cut the motion;
+// frames of pushes count from first_frame.
 // Paths are relative to the manifest. Keys not listed here are kept when a manifest is written
 // again.
 #pragma once
@@ -27,21 +34,27 @@
 
 namespace pushid {
 
-struct ManifestSubject {
-  std::string id;
-  double mass_kg = 0.0;
-};
+// What the files of the motion are.
+enum class MotionFormat { kBvh, kC3d, kTrc, kCsv, kStorage };
 
-// A joint by name or, where the manifest gives a number, by index in file order.
+// A joint or marker by name or, where the manifest gives a number, by index in file order; or the
+// mean of several.
 struct JointReference {
   std::string name;
-  int index = -1;  // used when the name is empty
+  int index = -1;                         // used when the name is empty
+  std::vector<JointReference> mean_of{};  // not empty: their mean, and nothing else is used
 };
 
 // Which joints the pendulum is read from; whatever is absent is found by default
 // (load_recordings.h).
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
+};
+
+struct ManifestSubject {
+  std::string id;
+  double mass_kg = 0.0;
+  JointMapping joints{};  // before those of the recording
 };
 
 struct ManifestPush {
@@ -57,7 +70,11 @@ struct ManifestRecording {
   std::vector<ManifestSubject> subjects;
   int pushed_person = 0;
   std::vector<std::string> bvh;  // one per subject, relative to the manifest
-  std::string push_csv;          // relative to the manifest; empty: no push at frame 0
+  // Of another format: the files stand here, and `bvh` is empty.
+  MotionFormat motion_format = MotionFormat::kBvh;
+  std::vector<std::string> motion;
+  std::string mapping;   // relative to the manifest; empty: none
+  std::string push_csv;  // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;
   std::string magnitude;
   std::string condition_code;
@@ -67,12 +84,18 @@ struct ManifestRecording {
   std::optional<LengthUnit> length_unit;
   std::vector<ManifestPush> pushes;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
-  std::optional<int> frames;  // checked against the BVH when given
-  int line = 0;               // where the entry starts in the manifest, for messages
+  std::optional<int> frames;     // checked against the file when given
+  int first_frame = 0;           // of the file, from 0, that becomes frame 0
+  std::optional<int> end_frame;  // of the file, behind the last one used
+  int line = 0;                  // where the entry starts in the manifest, for messages
 
   // The entry as read, with the keys this program does not know. Writing starts from it and sets
   // the fields above on top.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
+
+  const std::vector<std::string>& motion_files() const {
+    return motion_format == MotionFormat::kBvh ? bvh : motion;
+  }
 };
 
 struct Manifest {

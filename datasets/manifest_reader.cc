@@ -8,6 +8,7 @@
 #include "datasets/json_fields.h"
 #include "datasets/json_file.h"
 #include "datasets/manifest.h"
+#include "datasets/mapping_json.h"
 #include "datasets/number_text.h"
 #include "datasets/recording_names.h"
 
@@ -18,28 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kHeaviestPerson = 400.0;  // kg
 
-constexpr char kUnits[] = "mm, cm or m";
 constexpr int kAnyFrame = 1 << 30;
-
-std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {
-  if (!fields->Has(key)) return std::nullopt;
-  return fields->Choice(key, &LengthUnitFromName, LengthUnit::kMillimetre, kUnits);
-}
-
-std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
-  if (!fields->Has(key)) return std::nullopt;
-  const Json& value = fields->At(key);
-  JointReference joint;
-  if (value.is_string() && !value.get<std::string>().empty()) {
-    joint.name = value.get<std::string>();
-  } else if (value.is_number_integer() && value.get<double>() >= 0 &&
-             value.get<double>() < kAnyFrame) {
-    joint.index = value.get<int>();
-  } else {
-    fields->Fail(key, "must be a joint's name or its index from 0, not " + Shown(value));
-  }
-  return joint;
-}
 
 void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
   if (!fields->Require("subjects", "a list of {\"id\", \"mass_kg\"}")) return;
@@ -55,6 +35,7 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
                                   "; a mass in kg is above 0 and at most " +
                                   Rounded(kHeaviestPerson));
     }
+    read.joints = ReadJointMapping(document, &subject);
     fields->Fail(subject.error());
     recording->subjects.push_back(read);
     ++index;
@@ -62,20 +43,36 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
   if (index == 0) fields->Fail("subjects", "is empty; name at least one person");
 }
 
-void ReadBvhNames(JsonFields* fields, ManifestRecording* recording) {
-  if (!fields->Require("bvh", "a list of BVH files, one per subject")) return;
-  for (const Json& item : fields->List("bvh")) {
+void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
+  std::string key;
+  for (MotionFormat format : {MotionFormat::kBvh, MotionFormat::kC3d, MotionFormat::kTrc,
+                              MotionFormat::kCsv, MotionFormat::kStorage}) {
+    const std::string name = Name(format);
+    if (!fields->Has(name.c_str())) continue;
+    if (!key.empty()) {
+      fields->Fail(name, "is given beside " + key + "; the motion stands in one of them");
+    }
+    key = name;
+    recording->motion_format = format;
+  }
+  if (key.empty()) {
+    fields->Require("bvh", "a list of BVH files, one per subject (or c3d, trc, csv, sto instead)");
+    return;
+  }
+  const bool bvh = recording->motion_format == MotionFormat::kBvh;
+  std::vector<std::string>& files = bvh ? recording->bvh : recording->motion;
+  for (const Json& item : fields->List(key.c_str())) {
     if (!item.is_string() || item.get<std::string>().empty()) {
-      fields->Fail("bvh/" + std::to_string(recording->bvh.size()),
+      fields->Fail(key + "/" + std::to_string(files.size()),
                    "must be a file name, not " + Shown(item));
       return;
     }
-    recording->bvh.push_back(item.get<std::string>());
+    files.push_back(item.get<std::string>());
   }
-  if (!fields->error() && recording->bvh.size() != recording->subjects.size()) {
-    fields->Fail("bvh", "lists " + std::to_string(recording->bvh.size()) + " files for " +
-                            std::to_string(recording->subjects.size()) +
-                            " subjects; there must be one per subject, in the same order");
+  if (!fields->error() && files.size() != recording->subjects.size()) {
+    fields->Fail(key, "lists " + std::to_string(files.size()) + " files for " +
+                          std::to_string(recording->subjects.size()) +
+                          " subjects; there must be one per subject, in the same order");
   }
 }
 
@@ -127,21 +124,15 @@ Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json
         (people == 1 ? std::string("0") : "0 to " + std::to_string(people - 1));
     recording.pushed_person = fields.Whole("pushed_person", what.c_str(), 0, people - 1);
   }
-  ReadBvhNames(&fields, &recording);
+  ReadMotionNames(&fields, &recording);
+  recording.mapping = fields.OptionalText("mapping", "");
   recording.push_csv = fields.OptionalText("push_csv", "");
   recording.push_kind = fields.Choice("push_kind", &PushKindFromName, PushKind::kExternal,
                                       "net, net_without_friction or external");
   recording.magnitude =
       fields.Text("magnitude", "the push's strength as a label, for instance weak, medium, strong");
   recording.condition_code = fields.OptionalText("condition_code", "");
-  if (fields.Has("joints")) {
-    JsonFields joints(document, fields.At("joints"), fields.Pointer("joints"),
-                      fields.label() + ", joints");
-    recording.joints.hip = ReadJoint(&joints, "hip");
-    recording.joints.left_ankle = ReadJoint(&joints, "left_ankle");
-    recording.joints.right_ankle = ReadJoint(&joints, "right_ankle");
-    fields.Fail(joints.error());
-  }
+  recording.joints = ReadJointMapping(document, &fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);
   const Result<Eigen::Matrix3d> axes = AxesRotation(recording.up, recording.forward);
@@ -154,6 +145,15 @@ Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json
                                              InitialVelocity::kZero, "zero, estimated or free");
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
+  }
+  if (fields.Has("first_frame")) {
+    recording.first_frame =
+        fields.Whole("first_frame", "the file's frame that becomes frame 0", 0, kAnyFrame);
+  }
+  if (fields.Has("end_frame")) {
+    recording.end_frame =
+        fields.Whole("end_frame", "the frame behind the last one used, after first_frame",
+                     recording.first_frame + 1, kAnyFrame);
   }
   if (fields.error()) return *fields.error();
   recording.json = object;

@@ -29,6 +29,11 @@ void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
 }
 
 Json JointJson(const JointReference& joint) {
+  if (!joint.mean_of.empty()) {
+    Json list = Json::array();
+    for (const JointReference& one : joint.mean_of) list.push_back(JointJson(one));
+    return list;
+  }
   return joint.name.empty() ? Json(joint.index) : Json(joint.name);
 }
 
@@ -64,10 +69,13 @@ Json RecordingJson(const ManifestRecording& recording) {
   for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
     subjects[i]["id"] = recording.subjects[i].id;
     subjects[i]["mass_kg"] = recording.subjects[i].mass_kg;
+    const Json joints = JointsJson(recording.subjects[i].joints, subjects[i]);
+    SetUnless(joints.empty(), "joints", joints, &subjects[i]);
   }
   json["subjects"] = subjects;
   json["pushed_person"] = recording.pushed_person;
-  json["bvh"] = recording.bvh;
+  json[Name(recording.motion_format)] = recording.motion_files();
+  SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = Name(recording.push_kind);
   json["magnitude"] = recording.magnitude;
@@ -88,6 +96,8 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetOrKeep(recording.initial_velocity == InitialVelocity::kZero, "initial_velocity",
             Name(recording.initial_velocity), &json);
   SetUnless(!recording.frames, "frames", recording.frames.value_or(0), &json);
+  SetOrKeep(recording.first_frame == 0, "first_frame", recording.first_frame, &json);
+  SetUnless(!recording.end_frame, "end_frame", recording.end_frame.value_or(0), &json);
   return json;
 }
 

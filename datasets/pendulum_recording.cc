@@ -1,6 +1,8 @@
 // datasets: mapping a recording's skeletons to pendulums.
 #include "datasets/pendulum_recording.h"
 
+#include <algorithm>
+
 #include "datasets/content_hash.h"
 
 namespace pushid {
@@ -65,6 +67,11 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.states.push_back(std::move(states));
     result.rod_length.push_back(std::move(lengths));
     result.hip.push_back(person.hip);
+    std::vector<double> weight = person.weight;
+    for (size_t t = 1; t < weight.size(); ++t) {
+      weight[t] = std::min(person.weight[t - 1], person.weight[t]);
+    }
+    result.weight.push_back(std::move(weight));
   }
   for (const Push& push : recording.pushes) {
     result.scene.pushes.push_back(

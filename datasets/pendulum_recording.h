@@ -24,9 +24,16 @@ struct PendulumRecording {
   std::vector<std::vector<PendulumState<double>>> states;
   std::vector<std::vector<double>> rod_length;    // m
   std::vector<std::vector<Vector3<double>>> hip;  // m
+  // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
+  // a frame is the least of its own and the one before, which its velocity leans on.
+  std::vector<std::vector<double>> weight;
   std::string content_hash;  // of the files and of what the manifest makes of them
 
   int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }
+  double Weight(int person, int frame) const {
+    const bool given = person < static_cast<int>(weight.size()) && !weight[person].empty();
+    return given ? weight[person][frame] : 1.0;
+  }
   int num_people() const { return static_cast<int>(hip.size()); }
 };
 

@@ -31,9 +31,12 @@ struct Push {
 struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
-  std::string file;  // the BVH, for messages
+  std::string file;  // of the motion, for messages
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
+  // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles
+  // were not seen and the positions are only placeholders.
+  std::vector<double> weight;
   // All joints, frame-major ([frame][joint]); empty unless asked for.
   std::vector<std::vector<Eigen::Vector3d>> joints;
   // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.

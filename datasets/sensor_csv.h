@@ -9,6 +9,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct SensorRecord {
   std::vector<Eigen::Vector3d> force;  // N; a force along an axis stands in x
   bool is_vector = false;              // whether the file had fx, fy, fz
   std::string file;                    // for messages
+  // Where it pushed, m above the file's zero, where the sensor knows (a force platform on a wall).
+  std::optional<double> height_m;
 
   int num_samples() const { return static_cast<int>(time_s.size()); }
 };

@@ -41,12 +41,16 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
   score.frames = recording.num_frames();
   const int people = recording.num_people();
   for (int n = 0; n < people; ++n) {
-    double sum = 0.0;
+    double sum = 0.0, total = 0.0, final = 0.0;  // frames that were not seen do not count
     for (int t = 1; t < score.frames; ++t) {
-      sum += (predicted[n][t] - recording.hip[n][t]).norm();
+      const double weight = recording.Weight(n, t);
+      const double error = (predicted[n][t] - recording.hip[n][t]).norm();
+      sum += weight * error;
+      total += weight;
+      if (weight > 0.0) final = error;
     }
-    score.hip_ade += sum / (score.frames - 1) / people;
-    score.hip_fde += (predicted[n].back() - recording.hip[n].back()).norm() / people;
+    score.hip_ade += total > 0.0 ? sum / total / people : 0.0;
+    score.hip_fde += final / people;
   }
   score.propagation = ScorePropagation(recording, predicted);
   return score;

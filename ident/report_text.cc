@@ -6,6 +6,7 @@
 
 #include "ident/confidence_text.h"
 #include "ident/option_names.h"
+#include "ident/preparation_text.h"
 #include "ident/report_tables.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
@@ -60,6 +61,7 @@ std::string ReportText(const FitResult& result) {
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  text += PreparationText(result.configuration);
   text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   const std::string diagnostics = DiagnosticsText(result);
@@ -92,7 +94,9 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     table.Add({name, std::to_string(model.recordings), MeanText(model), MeanText(still),
                MeanText(velocity)});
   };
-  const auto& [m, s, v] = evaluation;
+  // Not a structured binding: a lambda below uses them, which C++17 has no words for.
+  const ScoreSummary &m = evaluation.model, &s = evaluation.static_baseline,
+                     &v = evaluation.constant_velocity;
   add("mean over recordings", m.mean, s.mean, v.mean);
   add("frame-weighted", m.frame_weighted, s.frame_weighted, v.frame_weighted);
   auto groups = [&](const char* what, const std::map<std::string, MeanScore> ScoreSummary::*by) {

@@ -22,7 +22,10 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
   j(3, 4) = j(4, 5) = 1.0 / sigmas.velocity;
   j(5, 2) = j(6, 3) = 1.0 / sigmas.angle;
   j(7, 6) = j(8, 7) = 1.0 / sigmas.rate;
-  if (sigmas.robust <= 0.0) return r;
+  if (sigmas.robust <= 0.0) {
+    j *= measured.weight;
+    return measured.weight * r;
+  }
 
   // d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c).
   const double squared_scale = sigmas.robust * sigmas.robust;
@@ -30,8 +33,8 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
   const double w = std::sqrt(2.0 / (1.0 + c));
   const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
   const Eigen::Matrix<double, 1, 8> along = r.transpose() * j;
-  j = w * j + (2.0 * slope) * r * along;
-  return w * r;
+  j = measured.weight * (w * j + (2.0 * slope) * r * along);
+  return measured.weight * w * r;
 }
 
 }  // namespace pushid

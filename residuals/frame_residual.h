@@ -7,8 +7,9 @@
 // Likelihood: independent errors with these standard deviations, heavier than normal in the tails.
 // w^2 = rho(|r|^2) / |r|^2 with the pseudo-Huber rho(s) = 2 d^2 (sqrt(1 + s / d^2) - 1), so that
 // sum r^2 / 2 is the robust cost of the frame. A Ceres LossFunction would act on the whole
-// recording, which is one residual block. Rejected: hip positions alone, which let velocities run
-// wild between frames; one scalar per frame, which stalls Gauss-Newton.
+// recording, which is one residual block. The frame's weight multiplies w r. Rejected: hip
+// positions alone, which let velocities run wild between frames; one scalar per frame, which stalls
+// Gauss-Newton.
 #pragma once
 
 #include <cmath>
@@ -30,6 +31,7 @@ struct ResidualSigmas {
 struct MeasuredFrame {
   Vector3<double> hip;          // m
   PendulumState<double> state;  // m, rad, m/s, rad/s
+  double weight = 1.0;          // on r; 0 where nothing was measured
 };
 
 template <typename T>
@@ -61,7 +63,7 @@ template <typename T>
 FrameVector<T> FrameResidual(const Body& body, const PendulumState<T>& state,
                              const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
   const FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
-  return RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
+  return T(measured.weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
 
 // The analytic twin of FrameResidual: its value, and its derivative by [q, qd].

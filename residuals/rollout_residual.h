@@ -34,7 +34,8 @@ struct RolloutProblem {
 
   int num_residuals() const { return (horizon - 1) * recording->num_people() * kFrameResiduals; }
   MeasuredFrame Measured(int frame, int person) const {
-    return {recording->hip[person][frame], recording->states[person][frame]};
+    return {recording->hip[person][frame], recording->states[person][frame],
+            recording->Weight(person, frame)};
   }
 };
 

@@ -8,6 +8,7 @@ build_packages=(g++ cmake ninja-build ccache
   libxxhash-dev)
 # LibTorch trains restorations; everything else builds and runs without it.
 test_packages=(libgtest-dev libbenchmark-dev libtorch-dev assimp-utils chromium)
+fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

@@ -61,6 +61,7 @@ TEST_P(FrameTwins, AgreeInThreeRegimes) {
     SCOPED_TRACE(magnitude);
     for (int i = 0; i < 50; ++i) {
       MeasuredFrame measured = Measure(RandomState(magnitude, &random));
+      measured.weight = i % 3 == 0 ? 1.0 : random.Uniform(0.0, 1.0);
       measured.hip += Vector3<double>(0.02, -0.01, 0.03) * magnitude;
       ExpectTwins(RandomState(magnitude, &random), measured, sigmas);
     }
@@ -111,6 +112,25 @@ TEST(FrameResidual, WithoutRobustScaleItIsPlain) {
   sigmas.robust = 1e9;  // so wide a scale is plain least squares too
   const FrameVector<double> wide = FrameResidual(kBody, state, measured, sigmas);
   EXPECT_LT((wide - RawFrameResidual(kBody, state, measured, sigmas)).norm(), 1e-12);
+}
+
+// A frame's weight scales what it contributes, after the robust weight; at 0 nothing is left.
+TEST(FrameResidual, WeightOfTheFrame) {
+  Random random(24);
+  for (double robust : {0.0, 0.5}) {
+    ResidualSigmas sigmas;
+    sigmas.robust = robust;
+    const PendulumState<double> state = RandomState(1.0, &random);
+    MeasuredFrame measured = Measure(RandomState(1.0, &random));
+    const FrameVector<double> full = FrameResidual(kBody, state, measured, sigmas);
+    measured.weight = 0.25;
+    EXPECT_LT((FrameResidual(kBody, state, measured, sigmas) - 0.25 * full).norm(), 1e-15);
+    measured.weight = 0.0;
+    Eigen::Matrix<double, kFrameResiduals, 8> jacobian;
+    jacobian.setConstant(std::nan(""));
+    EXPECT_TRUE(FrameResidualWithJacobian(kBody, state, measured, sigmas, &jacobian).isZero(0.0));
+    EXPECT_TRUE(jacobian.isZero(0.0));
+  }
 }
 
 }  // namespace

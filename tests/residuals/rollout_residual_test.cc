@@ -194,5 +194,38 @@ INSTANTIATE_TEST_SUITE_P(EveryQuantity, FailingRollout,
                                          Failure{"theta", kMu, 1e308},
                                          Failure{"state", kMu, std::nan(""), 0, 0}));
 
+// Whatever stands in frames of weight 0 does not matter, and the others are as before.
+TEST(RolloutResidual, FramesThatWereNotSeenDoNotCount) {
+  Random random(47);
+  const ParameterMap map = EveryParameterMap({});
+  const ModelOptions options = EveryModelOptions().front();
+  PendulumRecording recording = PushedPair(options, 0.05, 60.0, 0.01, &random);
+  const auto evaluate = [&](const PendulumRecording& one) {
+    const auto problem = MakeRolloutProblem(one, options, map, ResidualSigmas{}, 1.0, 0);
+    Random again(48);
+    const ParameterBlocks blocks =
+        RandomBlocks(map, problem->layout, RecoveringParameters(), 0.0, 0.0, &again);
+    std::vector<const double*> pointers;
+    for (const auto& block : blocks) pointers.push_back(block.data());
+    std::vector<double> residuals(problem->num_residuals(), std::nan(""));
+    EXPECT_TRUE(RolloutResidual(problem).Evaluate(pointers.data(), residuals.data(), nullptr));
+    return residuals;
+  };
+  const std::vector<double> full = evaluate(recording);
+  recording.weight = {std::vector<double>(kFrames, 1.0), {}};
+  for (int t = 10; t < 15; ++t) {
+    recording.weight[0][t] = 0.0;
+    recording.hip[0][t].setConstant(7.0);
+    recording.states[0][t].q.setConstant(-1.0);
+  }
+  const std::vector<double> gap = evaluate(recording);
+  ASSERT_EQ(gap.size(), full.size());
+  for (std::size_t i = 0; i < gap.size(); ++i) {
+    const int row = static_cast<int>(i) / kFrameResiduals, frame = 1 + row / 2;
+    const bool hidden = row % 2 == 0 && frame >= 10 && frame < 15;
+    EXPECT_EQ(gap[i], hidden ? 0.0 : full[i]) << frame;
+  }
+}
+
 }  // namespace
 }  // namespace pushid

@@ -1,0 +1,281 @@
+// datasets: a manifest from a folder.
+#include "datasets/manifest_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "datasets/axes.h"
+#include "datasets/bvh_header.h"
+#include "datasets/column_mapping.h"
+#include "datasets/input_file.h"
+#include "datasets/name_pattern.h"
+#include "datasets/number_text.h"
+#include "datasets/point_motion.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+using Values = std::map<std::string, std::string>;
+
+constexpr double kNearlyWhole = 1e-3;  // of a frame rate
+
+struct FoundFile {
+  std::string path;  // relative to the folder
+  Values values;
+};
+
+// Every regular file below the folder, as sorted paths relative to it.
+Result<std::vector<std::string>> FilesBelow(const std::string& folder) {
+  std::error_code failed;
+  if (!fs::is_directory(folder, failed)) return Error{"there is no such folder", folder};
+  std::vector<std::string> files;
+  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied,
+                                      failed);
+  for (; !failed && it != fs::recursive_directory_iterator(); it.increment(failed)) {
+    std::error_code ignored;
+    if (it->is_regular_file(ignored)) {
+      files.push_back(it->path().lexically_relative(folder).generic_string());
+    }
+  }
+  if (failed) return Error{"cannot look through it: " + failed.message(), folder};
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// "7" before "10", and both before "a".
+bool PersonBefore(const FoundFile& a, const FoundFile& b) {
+  std::int64_t x = 0, y = 0;
+  const std::string &p = a.values.at("person"), &q = b.values.at("person");
+  const bool numbers = ParseInteger(p, &x) && ParseInteger(q, &y);
+  return numbers && x != y ? x < y : p < q;
+}
+
+class Maker {
+ public:
+  explicit Maker(const ManifestOptions& options) : options_(options) {}
+
+  Result<MadeManifest> Make() {
+    const Result<NamePattern> pattern = NamePattern::Parse(options_.pattern);
+    if (!pattern.ok()) return pattern.error();
+    pattern_ = pattern.value();
+    const std::optional<MotionFormat> format = MotionFormatOfFile(options_.pattern);
+    if (!format) {
+      return Error{"the pattern " + Quoted(options_.pattern) +
+                   " must end like its files: .bvh, .c3d, .trc, .csv, .sto or .mot"};
+    }
+    format_ = *format;
+    if (!options_.up.empty() || !options_.forward.empty()) {
+      const Result<Eigen::Matrix3d> axes =
+          AxesRotation(options_.up.empty() ? "z" : options_.up,
+                       options_.forward.empty() ? "x" : options_.forward);
+      if (!axes.ok()) return axes.error();
+    }
+    if (!options_.push_pattern.empty()) {
+      const Result<NamePattern> push = NamePattern::Parse(options_.push_pattern);
+      if (!push.ok()) return push.error();
+      push_pattern_ = push.value();
+    }
+    if (MaybeError failed = Find()) return *std::move(failed);
+    for (auto& [id, files] : recordings_) {
+      if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
+    }
+    if (!massless_.empty()) {
+      std::string names;
+      for (const std::string& name : massless_) names += (names.empty() ? "" : ", ") + name;
+      return Error{"no mass is known of " + names +
+                   "; list them in a file with the columns id,mass_kg"};
+    }
+    return std::move(made_);
+  }
+
+ private:
+  MaybeError Find() {
+    const Result<std::vector<std::string>> files = FilesBelow(options_.folder);
+    if (!files.ok()) return files.error();
+    for (const std::string& path : files.value()) {
+      const std::optional<Values> values = pattern_.Match(path);
+      if (!values) {
+        ++made_.others;
+        continue;
+      }
+      ++made_.files;
+      recordings_[Id(*values)].push_back({path, *values});
+    }
+    if (made_.files == 0) {
+      return Error{"none of its " + std::to_string(files.value().size()) +
+                       " files fits the pattern " + Quoted(options_.pattern) +
+                       (files.value().empty() ? "" : "; the first is " + files.value()[0]),
+                   options_.folder};
+    }
+    return std::nullopt;
+  }
+
+  std::string Id(const Values& values) const {
+    const bool several = pattern_.Has("person");
+    std::string id;
+    for (const std::string& name : pattern_.names()) {
+      if (name == "person" || (several && name == "subject")) continue;
+      id += (id.empty() ? "" : "_") + values.at(name);
+    }
+    return id.empty() ? "recording" : id;
+  }
+
+  std::string Value(const Values& values, const char* name, const std::string& fallback) const {
+    const auto found = values.find(name);
+    return found == values.end() ? fallback : found->second;
+  }
+
+  // As the manifest names it.
+  std::string FromManifest(const std::string& relative) const {
+    const fs::path file = fs::path(options_.folder) / relative;
+    std::error_code failed;
+    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
+    const fs::path path = fs::proximate(fs::absolute(file), base, failed);
+    return failed ? file.generic_string() : path.generic_string();
+  }
+
+  MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
+    if (pattern_.Has("person")) {
+      std::sort(files->begin(), files->end(), &PersonBefore);
+    } else if (files->size() > 1) {
+      return Error{(*files)[0].path + " and " + (*files)[1].path + " are both recording " +
+                       Quoted(id) +
+                       "; give what differs a name in the "
+                       "pattern instead of *",
+                   options_.folder};
+    }
+    const Values& values = files->front().values;
+    ManifestRecording recording;
+    recording.id = id;
+    recording.setting = Value(values, "setting", options_.setting);
+    recording.magnitude = Value(values, "magnitude", options_.magnitude);
+    recording.condition_code = Value(values, "condition_code", "");
+    recording.push_kind = options_.push_kind;
+    recording.motion_format = format_;
+    for (const FoundFile& file : *files) {
+      const std::string subject =
+          Value(file.values, "subject", Value(file.values, "person", "person"));
+      recording.subjects.push_back({subject, MassOf(subject)});
+      auto& list = format_ == MotionFormat::kBvh ? recording.bvh : recording.motion;
+      list.push_back(FromManifest(file.path));
+    }
+    recording.pushed_person = options_.pushed_person;
+    if (recording.pushed_person >= static_cast<int>(files->size())) {
+      return Error{"recording " + Quoted(id) + " has " + std::to_string(files->size()) +
+                   " people, so that nobody is person " + std::to_string(recording.pushed_person)};
+    }
+    const Result<double> fps = Rate(files->front().path);
+    if (!fps.ok()) return fps.error();
+    recording.fps = fps.value();
+    SetPush(values, &recording);
+    recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
+    if (!options_.up.empty()) recording.up = options_.up;
+    if (!options_.forward.empty()) recording.forward = options_.forward;
+    recording.length_unit = options_.length_unit;
+    made_.manifest.recordings.push_back(recording);
+    return std::nullopt;
+  }
+
+  // The mapping is named from where the program runs.
+  std::string MappingFromManifest() const {
+    std::error_code failed;
+    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
+    return fs::proximate(fs::absolute(options_.mapping), base, failed).generic_string();
+  }
+
+  double MassOf(const std::string& subject) {
+    const auto found = options_.masses.find(subject);
+    if (found != options_.masses.end()) return found->second;
+    if (options_.mass_kg <= 0.0) massless_.insert(subject);
+    return options_.mass_kg;
+  }
+
+  Result<double> Rate(const std::string& relative) const {
+    if (options_.fps > 0.0) return options_.fps;
+    const std::string path = (fs::path(options_.folder) / relative).string();
+    double rate = 0.0;
+    if (format_ == MotionFormat::kBvh) {
+      LineReader reader;
+      if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+      const Result<BvhHeader> header = ReadBvhHeader(&reader);
+      if (!header.ok()) return header.error();
+      rate = 1.0 / header.value().frame_time_s;
+    } else {
+      PointReadOptions point_options;
+      if (!options_.mapping.empty()) {
+        const Result<ColumnMapping> mapping = ReadColumnMapping(options_.mapping);
+        if (!mapping.ok()) return mapping.error();
+        if (mapping.value().frame_rate > 0.0) return mapping.value().frame_rate;
+        point_options.time_column = mapping.value().time_column;
+        point_options.columns = mapping.value().columns;
+      }
+      point_options.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
+      const Result<PointMotion> motion = ReadPointMotion(path, format_, point_options);
+      if (!motion.ok()) return motion.error();
+      rate = motion.value().rate_hz;
+    }
+    if (!(rate > 0.0)) return Error{"it does not say its frame rate; give --fps", path};
+    const double whole = std::round(rate);
+    return whole > 0.0 && std::fabs(rate / whole - 1.0) < kNearlyWhole ? whole : rate;
+  }
+
+  void SetPush(const Values& values, ManifestRecording* recording) {
+    if (!push_pattern_) return;
+    const std::optional<std::string> path = push_pattern_->Fill(values);
+    std::error_code ignored;
+    if (path && fs::is_regular_file(fs::path(options_.folder) / *path, ignored)) {
+      recording->push_csv = FromManifest(*path);
+    } else {
+      made_.without_push.push_back(recording->id);
+    }
+  }
+
+  const ManifestOptions& options_;
+  NamePattern pattern_;
+  std::optional<NamePattern> push_pattern_;
+  MotionFormat format_ = MotionFormat::kBvh;
+  std::map<std::string, std::vector<FoundFile>> recordings_;  // by id, which is their order
+  std::set<std::string> massless_;
+  MadeManifest made_;
+};
+
+}  // namespace
+
+Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
+
+Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
+  LineReader reader;
+  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+  std::map<std::string, double> masses;
+  std::string_view line;
+  bool head = true;
+  while (reader.NextNonBlank(&line)) {
+    const std::size_t comma = line.find(',');
+    const std::string_view id = Trimmed(line.substr(0, comma));
+    const std::string_view mass =
+        comma == std::string_view::npos ? "" : Trimmed(line.substr(comma + 1));
+    if (head) {
+      if (id != "id" || mass != "mass_kg") {
+        return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
+      }
+      head = false;
+      continue;
+    }
+    double value = 0.0;
+    if (!ParseDouble(mass, &value)) return reader.ErrorHere("mass_kg: " + NumberProblem(mass));
+    if (!(value > 0.0 && value <= 400.0)) {
+      return reader.ErrorHere("a mass in kg is above 0 and at most 400, not " + Rounded(value));
+    }
+    if (!masses.emplace(id, value).second) {
+      return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");
+    }
+  }
+  if (reader.error()) return *reader.error();
+  if (masses.empty()) return reader.ErrorHere("the file lists no masses");
+  return masses;
+}
+
+}  // namespace pushid

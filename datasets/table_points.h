@@ -1,0 +1,24 @@
+// datasets: points as three columns of a table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/point_motion.h"
+
+namespace pushid {
+
+struct TablePoint {
+  std::string name;
+  int columns[3] = {-1, -1, -1};  // x, y, z
+};
+
+// Columns that belong together by their names: hip_x, hip_y, hip_z; hip.X, ...; hipX; hip:x; the
+// point is called what is left without axis and separator. Columns without a partner are no points.
+std::vector<TablePoint> PointsOf(const std::vector<std::string>& names);
+
+// `format`: kCsv or kStorage. Points are those of options.columns, otherwise of PointsOf.
+Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format,
+                                    const PointReadOptions& options);
+
+}  // namespace pushid

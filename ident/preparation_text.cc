@@ -1,0 +1,24 @@
+// ident: how the motion was prepared.
+#include "ident/preparation_text.h"
+
+#include "datasets/number_text.h"
+
+namespace pushid {
+
+std::string PreparationText(const std::map<std::string, std::string>& configuration) {
+  const auto flag = [&configuration](const char* name) {
+    const auto found = configuration.find(name);
+    double value = 0.0;
+    return found != configuration.end() && ParseDouble(found->second, &value) ? value : 0.0;
+  };
+  std::string text;
+  const double cutoff = flag("lowpass_hz"), rate = flag("resample_fps");
+  if (cutoff > 0.0) text = "low-pass at " + Rounded(cutoff) + " Hz (zero-phase Butterworth)";
+  if (rate > 0.0) {
+    text += (text.empty() ? "" : ", ") + std::string("resampled to ") + Rounded(rate) +
+            " frames per second";
+  }
+  return text.empty() ? "" : "motion: " + text + "\n";
+}
+
+}  // namespace pushid

@@ -1,0 +1,243 @@
+// Recordings in other formats than BVH, from the user's side: looked at, listed, fitted, pushed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "datasets/c3d.h"
+#include "datasets/load_recordings.h"
+#include "datasets/numeric_table.h"
+#include "datasets/trc.h"
+#include "tests/apps/app_fixture.h"
+#include "tests/datasets/c3d_samples.h"
+
+namespace pushid {
+namespace {
+
+class AnyRecordingTest : public AppTest {
+ protected:
+  // The recordings of the folder again as `format`, with markers of their own names in mm; returns
+  // --recordings=... of the manifest.
+  std::string As(MotionFormat format, const std::string& ending) {
+    const auto loaded = LoadRecordings(manifest_);
+    EXPECT_TRUE(loaded.ok());
+    nlohmann::ordered_json json = Json(manifest_);
+    json.erase("units");
+    json.erase("length_unit");
+    for (std::size_t i = 0; i < loaded.value().size(); ++i) {
+      const Recording& recording = loaded.value()[i];
+      const std::string file = recording.id + ending;
+      Write(recording, format, Path(file));
+      auto& entry = json["recordings"][i];
+      entry.erase("bvh");
+      entry.erase("joints");
+      entry[format == MotionFormat::kC3d   ? "c3d"
+            : format == MotionFormat::kTrc ? "trc"
+                                           : "csv"] = {file};
+      entry["joints"]["hip"] = {"WL", "WR"};
+      entry["joints"]["left_ankle"] = "AL";
+      entry["joints"]["right_ankle"] = "AR";
+    }
+    return "--recordings=" + WriteText("other.json", json.dump(1));
+  }
+
+  void Write(const Recording& recording, MotionFormat format, const std::string& path) {
+    PointMotion motion;
+    motion.rate_hz = recording.fps;
+    motion.unit = LengthUnit::kMillimetre;
+    motion.names = {"WL", "WR", "AL", "AR"};
+    motion.positions.resize(4);
+    const RecordedPerson& person = recording.people[0];
+    for (int t = 0; t < recording.num_frames(); ++t) {
+      const Eigen::Vector3d side(0.0, 0.15, 0.0);
+      motion.positions[0].push_back(1e3 * (person.hip[t] + side));
+      motion.positions[1].push_back(1e3 * (person.hip[t] - side));
+      motion.positions[2].push_back(1e3 * person.left_ankle[t]);
+      motion.positions[3].push_back(1e3 * person.right_ankle[t]);
+    }
+    if (format == MotionFormat::kTrc) {
+      EXPECT_FALSE(WriteTrc(path, motion));
+    } else if (format == MotionFormat::kC3d) {
+      C3dFile c3d;
+      c3d.point_rate_hz = motion.rate_hz;
+      c3d.point_unit = "mm";
+      c3d.point_names = motion.names;
+      c3d.points = motion.positions;
+      EXPECT_FALSE(WriteC3d(path, c3d));
+    } else {
+      NumericTable table;
+      for (std::size_t i = 0; i < 4; ++i) {
+        for (int axis = 0; axis < 3; ++axis) {
+          table.chosen.push_back(static_cast<int>(table.names.size()));
+          table.names.push_back(motion.names[i] + "." + "xyz"[axis]);
+          table.data.emplace_back();
+          for (const auto& p : motion.positions[i]) table.data.back().push_back(p[axis]);
+        }
+      }
+      EXPECT_FALSE(WriteNumericTable(path, TableFormat::kCsv, table));
+    }
+  }
+
+  static std::vector<double> Values(const std::string& model) {
+    std::vector<double> values;
+    for (const auto& [name, value] : Json(model)["values"].items()) values.push_back(value);
+    return values;
+  }
+};
+
+TEST_F(AnyRecordingTest, TheFitIsThatOfTheBvhFiles) {
+  const std::vector<double> bvh = Values(FitModel());
+  struct Case {
+    MotionFormat format;
+    std::string ending;
+    double tolerance;  // relative; C3D keeps 24 bits
+  };
+  for (const Case& one :
+       {Case{MotionFormat::kTrc, ".trc", 1e-6}, Case{MotionFormat::kCsv, ".csv", 1e-6},
+        Case{MotionFormat::kC3d, ".c3d", 1e-3}}) {
+    SCOPED_TRACE(one.ending);
+    const AppRun run = RunApp(
+        "pushid-fit", {As(one.format, one.ending), "--model_out=" + Path("other_model.json")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err.find("warning"), std::string::npos) << run.err;
+    const std::vector<double> values = Values(Path("other_model.json"));
+    ASSERT_EQ(values.size(), bvh.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      EXPECT_NEAR(values[i], bvh[i], one.tolerance * (std::abs(bvh[i]) + 0.01)) << i;
+    }
+  }
+}
+
+TEST_F(AnyRecordingTest, FilterAndRateAreSaid) {
+  const AppRun run = RunApp("pushid-fit", {Recordings(), "--lowpass_hz=10", "--resample_fps=30",
+                                           "--model_out=" + Path("m.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out,
+                       "motion: low-pass at 10 Hz (zero-phase Butterworth), resampled to 30 frames "
+                       "per second\n"));
+  EXPECT_EQ(Json(Path("m.json"))["configuration"]["lowpass_hz"], "10");
+  const AppRun report = RunApp("pushid-report", {"--model=" + Path("m.json")});
+  EXPECT_TRUE(Contains(report.out, "motion: low-pass at 10 Hz"));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--resample_fps=30"}),
+                      {"--lowpass_hz=7.5", "recording '"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--max_gap_s=-1"}), {"--max_gap_s"}));
+}
+
+TEST_F(AnyRecordingTest, Inspect) {
+  ASSERT_FALSE(WriteC3d(Path("a.c3d"), SampleC3d()));
+  AppRun run = RunApp("pushid-inspect", {Path("a.c3d"), "--svg_out=" + Path("a.svg"), "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, Path("a.c3d") + ": C3D, Intel, floats\n"));
+  const std::string svg = ReadText(Path("a.svg"));
+  EXPECT_EQ(svg.rfind("<svg", 0), 0u);
+  EXPECT_TRUE(Contains(svg, "Anna:RANK hidden, frames 3 to 4"));
+  EXPECT_TRUE(Contains(svg, "forces, N"));
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  // One bad file among good ones.
+  run = RunApp("pushid-inspect", {Path("none.trc"), manifest_});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(Contains(run.err, "none.trc: there is no such file"));
+  EXPECT_TRUE(Contains(run.out, "12, 12 can be read, 12 have a push"));
+  EXPECT_TRUE(Refused(RunApp("pushid-inspect", {}), {"name one or more files"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-inspect", {"a", "b", "--svg_out=" + Path("x.svg")}),
+                      {"--svg_out draws one file"}));
+}
+
+TEST_F(AnyRecordingTest, Manifest) {
+  const std::string pattern = "--pattern=bvh/{subject}_{take}.bvh";
+  const std::string push = "--push_pattern=push/{subject}_{take}.csv";
+  AppRun run =
+      RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push, "--mass_kg=80",
+                                 "--push_kind=net", "--out=" + Path("made.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
+  run = RunApp("pushid-fit", {"--recordings=" + Path("made.json")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const int files = CountFiles();
+  const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> bad = {
+      {{pattern}, {"--folder is missing"}},
+      {{"--folder=" + folder_.string()}, {"--pattern is missing"}},
+      {{"--folder=" + folder_.string(), pattern}, {"no mass is known of"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass_kg=-1"}, {"--mass_kg"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--fps=0.1"}, {"--fps"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--push_kind=soft"}, {"'soft'"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--length_unit=inch"}, {"'inch'"}},
+      {{"--folder=" + folder_.string(), pattern, "--masses=" + Path("none.csv")}, {"none.csv"}},
+  };
+  for (const auto& [flags, says] : bad) {
+    std::vector<std::string> all = flags;
+    all.push_back("--out=" + Path("bad.json"));
+    EXPECT_TRUE(Refused(RunApp("pushid-manifest", all), says)) << flags.back();
+  }
+  EXPECT_EQ(CountFiles(), files) << "something was written";
+}
+
+// The push of a recording through a C3D channel, a list of two halves, and with its clock wrong.
+TEST_F(AnyRecordingTest, PushesFromSensors) {
+  SyntheticOptions options;
+  options.subjects = 1;
+  options.recordings_per_subject = 1;
+  options.frames = 90;
+  options.push_kind = PushKind::kExternal;
+  options.push_start_frame = 15;
+  options.direction_sigma_rad = 0.0;
+  options.min_height = options.max_height = 1.0;
+  options.model.push_tail = PushTail::kNone;
+  const auto made = MakeSyntheticRecordings(options);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_FALSE(WriteSyntheticRecordings(Path("external"), options, made.value()));
+  const Recording& recording = made.value()[0].recording;
+  const Push& push = recording.pushes[0];
+  C3dFile c3d;
+  c3d.point_rate_hz = 60.0;
+  c3d.point_unit = "mm";
+  c3d.point_names = {"spare"};
+  c3d.points = {std::vector<Eigen::Vector3d>(90, Eigen::Vector3d::Ones())};
+  c3d.analog = {{"rod", "V", {}}};
+  for (int i = 0; i < 90 * 20; ++i) {
+    const int row = i / 20 - push.start_frame;
+    const bool pushed = row >= 0 && row < static_cast<int>(push.force.size());
+    c3d.analog[0].samples.push_back(pushed ? push.force[row].x() / -50.0 : 0.0);
+  }
+  ASSERT_FALSE(WriteC3d(Path("rod.c3d"), c3d));
+  const std::vector<std::string> common = {"--recordings=" + Path("external/manifest.json"),
+                                           "--id=" + recording.id, "--out=" + Path("p.csv")};
+  const auto with = [&common](std::vector<std::string> flags) {
+    flags.insert(flags.end(), common.begin(), common.end());
+    return RunApp("pushid-push", flags);
+  };
+  const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
+  AppRun run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  double impulse = 0.0;
+  for (const Eigen::Vector4d& row : push.force) impulse += row.x() / 60.0;
+  char said[64];
+  std::snprintf(said, sizeof said, "impulse %.3g N s forwards", impulse);
+  EXPECT_TRUE(Contains(run.out, said));
+  const std::string alone = ReadText(Path("p.csv"));
+
+  WriteText("halves.json",
+            "[{\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25},"
+            " {\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25}]");
+  run = with({"--sensors=" + Path("halves.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(ReadText(Path("p.csv")), alone);
+  EXPECT_TRUE(Contains(run.out, "from 2 sensors together"));
+
+  // Its clock a fifth of a second late: found from the motion.
+  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--sensor_start=-0.2",
+              "--estimate_offset"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::size_t at = run.out.find("clock at frame 0 moved by ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
+
+  EXPECT_TRUE(Refused(with({c3d_flag}), {"an analog channel or platform:1"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
+  EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
+  EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--sensors=x.json"}), {"not both"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,24 @@
+// CSV: pushes, sensors, masses and tables with points.
+#include "datasets/manifest_maker.h"
+#include "datasets/numeric_table.h"
+#include "datasets/point_motion.h"
+#include "datasets/push_csv.h"
+#include "datasets/sensor_csv.h"
+#include "tests/fuzz/memory_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace pushid;
+  static MemoryFile file;
+  const CpuSecond limit;
+  const std::string& path = file.Fill(data, size);
+  const auto push = ReadPushCsv(path);
+  if (push.ok()) Demand(!push.value().empty());
+  const Result<SensorRecord> sensor = ReadSensorCsv(path);
+  if (sensor.ok()) Demand(sensor.value().time_s.size() == sensor.value().force.size());
+  (void)ReadMasses(path);
+  const Result<NumericTable> table = ReadNumericTable(path, TableFormat::kCsv);
+  if (table.ok()) Demand(table.value().num_rows() >= 1);
+  const Result<PointMotion> motion = ReadPointMotion(path, MotionFormat::kCsv);
+  if (motion.ok()) Demand(table.ok() && motion.value().num_frames() == table.value().num_rows());
+  return 0;
+}
