@@ -7,6 +7,7 @@
 
 #include "apps/app_support.h"
 #include "apps/confidence_flags.h"
+#include "apps/fit_flag_checks.h"
 #include "apps/fit_flags.h"
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
@@ -14,6 +15,8 @@
 #include "ident/advice.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
+
+DECLARE_string(bootstrap_file);
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 
@@ -32,6 +35,12 @@ int Run() {
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
+  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
+                                        {"model_out", FLAGS_model_out},
+                                        {"bootstrap_file", FLAGS_bootstrap_file}})) {
+    return Fail(*error);
+  }
+  for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
@@ -60,6 +69,7 @@ int Run() {
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.
   result.configuration.erase("recordings");
+  result.changed_flags = ChangedFlags();
   result.manifest = FLAGS_recordings;
   result.setting = FLAGS_setting;
   const Result<std::string> hash = HashFile(FLAGS_recordings);

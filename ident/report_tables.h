@@ -22,6 +22,10 @@ TextTable PooledTable(const FitResult& result);
 // Pairs of parameters that the data separate poorly.
 std::string CorrelationText(const FitResult& result);
 
+// "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
+// for the shared values and say so.
+std::string DemonstrationName(const Demonstration& d, bool settings_differ);
+
 // What people do after a push, in words, and demonstration by demonstration.
 std::string BehaviourText(const FitResult& result);
 TextTable BehaviourTable(const FitResult& result);
