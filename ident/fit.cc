@@ -143,7 +143,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     warnings.push_back("pushed forwards by " + Significant(d->impulse) + " N s, the pushed person" +
                        (d->people > 1 ? " of the line" : "") + " ends " +
                        Significant(-d->pushed_advance, 2) + " m behind the start (" +
-                       DemonstrationName(*d, true) + ")");
+                       DemonstrationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   if (result.uncertainty.num_clusters == 1) {
     warnings.push_back("a single recording: errors cannot be clustered and are too small");

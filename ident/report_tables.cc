@@ -8,21 +8,26 @@
 #include "ident/report_text.h"
 
 namespace pushid {
+
+bool SettingsDiffer(const Behaviour& behaviour) {
+  return std::any_of(behaviour.demonstrations.begin(), behaviour.demonstrations.end(),
+                     [](const Demonstration& d) { return !d.setting.empty(); });
+}
+
 namespace {
 
 std::string Interval(double lower, double upper) {
   return "[" + Significant(lower) + ", " + Significant(upper) + "]";
 }
 
-bool SettingsDiffer(const Behaviour& b) {
-  return std::any_of(b.demonstrations.begin(), b.demonstrations.end(),
-                     [](const Demonstration& d) { return !d.setting.empty(); });
-}
-
 std::string SettlingText(const Behaviour& b) {
   if (b.settles) {
-    return "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within two "
-           "seconds\n";
+    const bool lines = std::any_of(b.demonstrations.begin(), b.demonstrations.end(),
+                                   [](const Demonstration& d) { return d.people > 1; });
+    return std::string(
+               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within "
+               "two seconds") +
+           (lines ? "; so do lines of five after 4, 20 and 80 N s\n" : "\n");
   }
   std::string text = "NOT SETTLING, two seconds after a push:\n";
   for (const Demonstration& d : b.demonstrations) {
@@ -36,34 +41,22 @@ std::string SettlingText(const Behaviour& b) {
   return text;
 }
 
-// Where lines that are pushed forwards at their first person end up.
-std::string LinesText(const Behaviour& b) {
-  TextTable table({"a line pushed forwards, two seconds later", "all moved on, m", "the pushed, m",
-                   "either way, m"},
-                  {true, false, false, false});
-  std::string back;  // settings where a harder push does not move the line on farther
+// Settings in which a harder push does not move the line on farther.
+std::string NoFartherText(const Behaviour& b) {
+  if (b.harder_moves_farther) return "";
+  std::string where;
   const Demonstration* before = nullptr;
   for (const Demonstration& d : b.demonstrations) {
     if (d.people == 1) continue;
-    table.Add({"  " + DemonstrationName(d, SettingsDiffer(b)), Significant(d.advance, 2),
-               Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
-    const bool weaker = before != nullptr && before->setting == d.setting;
-    const std::string where = d.setting.empty() ? "shared values" : d.setting;
-    if (weaker && d.advance <= before->advance && back.find(where) == std::string::npos) {
-      back += (back.empty() ? "" : ", ") + where;
+    const std::string name = d.setting.empty() ? "shared values" : d.setting;
+    const bool harder = before != nullptr && before->setting == d.setting;
+    if (harder && d.advance <= before->advance && where.find(name) == std::string::npos) {
+      where += (where.empty() ? ": " : ", ") + name;
     }
     before = &d;
   }
-  if (before == nullptr) return "";
-  std::string text = table.ToString();
-  if (!b.harder_moves_farther) {
-    text += "a harder push does NOT move the line on farther" +
-            (back.empty()        ? ""
-             : SettingsDiffer(b) ? ": " + back
-                                 : "") +
-            "\n";
-  }
-  return text;
+  return "a harder push does NOT move the line on farther" + (SettingsDiffer(b) ? where : "") +
+         "\n";
 }
 
 }  // namespace
@@ -145,9 +138,22 @@ std::string CorrelationText(const FitResult& result) {
 
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
-  return SettlingText(b) + LinesText(b) +
+  return SettlingText(b) + NoFartherText(b) +
          "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
          (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
+}
+
+TextTable LinesTable(const FitResult& result) {
+  TextTable table({"a line pushed forwards, two seconds later", "all moved on, m", "the pushed, m",
+                   "either way, m"},
+                  {true, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const Demonstration& d : result.behaviour.demonstrations) {
+    if (d.people == 1) continue;
+    table.Add({DemonstrationName(d, differ), Significant(d.advance, 2),
+               Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
+  }
+  return table;
 }
 
 TextTable BehaviourTable(const FitResult& result) {

@@ -69,7 +69,10 @@ std::string ReportText(const FitResult& result) {
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
-  text += BehaviourText(result) + "\n";
+  text += BehaviourText(result);
+  const TextTable lines = LinesTable(result);
+  if (lines.rows().size() > 1) text += lines.ToString();
+  text += "\n";
   text += "cost " + Significant(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +

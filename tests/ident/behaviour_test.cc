@@ -154,7 +154,7 @@ TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
   b.harder_moves_farther = false;
   FitResult result;
   result.behaviour = b;
-  const std::string text = BehaviourText(result);
+  const std::string text = BehaviourText(result) + LinesTable(result).ToString();
   EXPECT_TRUE(Contains(text, "does NOT move the line on farther: row"));
   EXPECT_TRUE(Contains(text, "-0.3"));
   EXPECT_TRUE(Contains(text, "-0.6"));
