@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <set>
 #include <vector>
 
@@ -28,6 +29,15 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
     if (flag.filename.find("apps/") != std::string::npos) own.push_back(flag);
   }
   return own;
+}
+
+// What names outputs or only changes speed and talk is no part of a result.
+bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "bootstrap_file",
+                                                 "checkpoint_seconds"};
+  const std::string& name = flag.name;
+  const bool output = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
+  return name != "out" && (!output || name == "leave_out") && kLeftOut.count(name) == 0;
 }
 
 // gflags prints 0.2 as 0.20000000000000001.
@@ -52,6 +62,30 @@ bool Asked(const char* flag) {
   return gflags::GetCommandLineOption(flag, &value) && value == "true";
 }
 
+// gflags would name neither the program nor what to do.
+MaybeError CheckFlagNames(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--" || word.find("undefok") != std::string::npos) return std::nullopt;
+    if (word.size() < 2 || word[0] != '-') continue;
+    const size_t equals = word.find('=');
+    const size_t first = word[1] == '-' ? 2 : 1;
+    const std::string name =
+        word.substr(first, equals == std::string::npos ? equals : equals - first);
+    gflags::CommandLineFlagInfo flag;
+    if (gflags::GetCommandLineFlagInfo(name.c_str(), &flag)) {
+      // Its value may be the next word.
+      if (flag.type != "bool" && equals == std::string::npos) ++i;
+      continue;
+    }
+    const bool negated = name.rfind("no", 0) == 0 &&
+                         gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) &&
+                         flag.type == "bool";
+    if (!negated) return Error{"there is no flag --" + name + "; see " + g_program + " --help"};
+  }
+  return std::nullopt;
+}
+
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -68,6 +102,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   // back.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
+  if (MaybeError error = CheckFlagNames(argc, argv)) return Fail(*error);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   google::InitGoogleLogging(argv[0]);
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
@@ -106,18 +141,37 @@ MaybeError Require(const std::string& flag, const std::string& value, const std:
   return Error{"--" + flag + " is missing: " + what};
 }
 
+MaybeError CheckDistinct(const std::vector<std::pair<std::string, std::string>>& flag_and_path) {
+  std::map<std::string, std::string> flag_of;
+  for (const auto& [flag, path] : flag_and_path) {
+    if (path.empty()) continue;
+    std::string whole = std::filesystem::absolute(path).lexically_normal().string();
+    if (whole.back() == '/') whole.pop_back();
+    const auto [known, is_new] = flag_of.emplace(whole, flag);
+    if (!is_new) {
+      return Error{"--" + known->second + " and --" + flag + " both name " + path +
+                   "; give each a file of its own"};
+    }
+  }
+  return std::nullopt;
+}
+
 std::map<std::string, std::string> EffectiveFlags() {
-  // What names outputs or only changes speed and talk is no part of a result.
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "bootstrap_file",
-                                                 "checkpoint_seconds"};
   std::map<std::string, std::string> flags;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const bool output =
-        flag.name.size() >= 3 &&
-        (flag.name == "out" || flag.name.compare(flag.name.size() - 3, 3, "out") == 0);
-    if (!output && kLeftOut.count(flag.name) == 0) flags[flag.name] = flag.current_value;
+    if (IsPartOfResult(flag)) flags[flag.name] = flag.current_value;
   }
   return flags;
+}
+
+std::vector<std::string> ChangedFlags() {
+  std::vector<std::string> names;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    // By value: a default that is given is no change, `none` over a preset's value is one.
+    const bool changed = flag.current_value != flag.default_value;
+    if (changed && IsPartOfResult(flag)) names.push_back(flag.name);
+  }
+  return names;
 }
 
 std::string Version() { return PUSHID_VERSION; }

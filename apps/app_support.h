@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/result.h"
@@ -27,9 +28,15 @@ void Warn(const std::string& message);
 // "--recordings is missing ..." when a flag that is needed is empty.
 MaybeError Require(const std::string& flag, const std::string& value, const std::string& what);
 
+// Two flags of one path: the later output would replace the earlier one. Empty paths are none.
+MaybeError CheckDistinct(const std::vector<std::pair<std::string, std::string>>& flag_and_path);
+
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.
 std::map<std::string, std::string> EffectiveFlags();
+
+// Names of those that are not at their defaults.
+std::vector<std::string> ChangedFlags();
 
 std::string Version();
 std::string HostName();

@@ -3,9 +3,11 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "apps/fit_flag_checks.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
@@ -27,9 +29,11 @@ DEFINE_string(push, "", "as_recorded (honour push_kind) or added (default: the p
 DEFINE_string(push_tail, "", "none or exponential (default: the preset's)");
 DEFINE_string(cart_derivative, "none", "none or backward: lets Kd_x and Kd_y act");
 DEFINE_string(interaction, "",
-              "what people do to each other: none, or comma-separated terms: contact (smooth and "
-              "mutual: spring,damping), ldp (potential,lean), ldp_discrete (to evaluate), drive "
-              "(who was pushed by others steps on) (default: the preset's)");
+              "what people do to each other: none, or some of these, comma-separated: contact "
+              "(smooth and mutual: spring,damping), spring, damping, ldp (smoothed: "
+              "potential,lean), potential, lean, ldp_discrete (LDP's exact form, to evaluate), "
+              "network (of --interaction_network), drive (who was pushed by others steps on) "
+              "(default: the preset's)");
 DEFINE_string(
     interaction_network, "",
     "JSON file of the network that --interaction=network evaluates (ident/network_json.h)");
@@ -129,47 +133,6 @@ MaybeError ReadHorizons(FitOptions* o) {
   return std::nullopt;
 }
 
-// Written so that NaN and infinity fail.
-MaybeError CheckPositive(const char* flag, double value) {
-  if (value > 0.0 && std::isfinite(value)) return std::nullopt;
-  return Error{std::string("--") + flag + " must be positive"};
-}
-
-MaybeError CheckNotNegative(const char* flag, double value) {
-  if (value >= 0.0 && std::isfinite(value)) return std::nullopt;
-  return Error{std::string("--") + flag + " must be a number of at least 0"};
-}
-
-MaybeError CheckNumbers() {
-  for (MaybeError error : {CheckPositive("sigma_hip", FLAGS_sigma_hip),
-                           CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
-                           CheckPositive("sigma_angle", FLAGS_sigma_angle),
-                           CheckPositive("sigma_rate", FLAGS_sigma_rate),
-                           CheckPositive("num_threads", FLAGS_num_threads),
-                           CheckPositive("max_iterations", FLAGS_max_iterations),
-                           CheckNotNegative("robust", FLAGS_robust),
-                           CheckNotNegative("stability_weight", FLAGS_stability_weight),
-                           CheckPositive("starts", FLAGS_starts),
-                           CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
-                           CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
-    if (error) return error;
-  }
-  // Below zero stands for the preset's value.
-  if (!std::isfinite(FLAGS_pooling_sigma) || FLAGS_pooling_sigma == 0.0) {
-    return Error{"--pooling_sigma must be positive"};
-  }
-  if (!std::isfinite(FLAGS_function_tolerance)) {
-    return Error{"--function_tolerance must be a number of at least 0"};
-  }
-  if (!std::isfinite(FLAGS_mode_weight)) return Error{"--mode_weight must be a number"};
-  if (!std::isfinite(FLAGS_mode_margin)) return Error{"--mode_margin must be a number"};
-  if (!std::isfinite(FLAGS_settling_weight)) return Error{"--settling_weight must be a number"};
-  if (!(FLAGS_start_spread >= 1.0 && FLAGS_start_spread <= 1000.0)) {
-    return Error{"--start_spread must lie between 1 and 1000"};
-  }
-  return std::nullopt;
-}
-
 // Parameters of terms that the options switched off must not be fitted: they have no effect.
 void FixWhatDoesNotAct(const ModelOptions& model, ParameterTable* table) {
   for (ParameterSpec& spec : table->specs) {
@@ -204,9 +167,7 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   return std::nullopt;
 }
 
-}  // namespace
-
-Result<FitOptions> FitOptionsFromFlags() {
+Result<FitOptions> OptionsOfFlags() {
   Result<Preset> preset = MakePreset(FLAGS_preset);
   if (!preset.ok()) return preset.error();
   FitOptions o;
@@ -220,7 +181,7 @@ Result<FitOptions> FitOptionsFromFlags() {
   o.stability_weight = FLAGS_stability_weight;
   if (MaybeError error = ReadModel(&o)) return *error;
   if (MaybeError error = ReadHorizons(&o)) return *error;
-  if (MaybeError error = CheckNumbers()) return *error;
+  if (MaybeError error = CheckFitNumbers()) return *error;
 
   const double hinge = o.self_force == SelfForceKind::kLinear ? kLinearModeWeight : 0.0;
   o.mode_weight = FLAGS_mode_weight >= 0.0 ? FLAGS_mode_weight : hinge;
@@ -257,6 +218,24 @@ Result<FitOptions> FitOptionsFromFlags() {
   return o;
 }
 
+bool AnyPooled(const ParameterTable& table) {
+  return std::any_of(table.specs.begin(), table.specs.end(),
+                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
+}
+
+}  // namespace
+
+Result<FitOptions> FitOptionsFromFlags() {
+  const Result<FitOptions> options = OptionsOfFlags();
+  if (!options.ok() || AnyPooled(options.value().table)) return options;
+  for (const char* flag : {"pool_by", "pooling_sigma"}) {
+    if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) continue;
+    return Error{std::string("--") + flag +
+                 " says how parameters differ, but none does; name some with --pool"};
+  }
+  return options;
+}
+
 Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
   // Other flags than those of this file would be taken and do nothing.
   const std::string this_file = gflags::GetCommandLineFlagInfoOrDie("preset").filename;
@@ -272,7 +251,7 @@ Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
       return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
     }
   }
-  return FitOptionsFromFlags();
+  return OptionsOfFlags();
 }
 
 int NumThreads() { return FLAGS_num_threads; }

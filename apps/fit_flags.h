@@ -1,6 +1,9 @@
 // apps: the flags that say what to fit and how; shared by pushid-fit and pushid-crossvalidate.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "datasets/result.h"
 #include "ident/fit_options.h"
 

@@ -13,7 +13,8 @@ DECLARE_double(fps);
 DEFINE_string(
     formation, "",
     "line, diamond or grid: instead of recordings, roll --model out on --people who stand "
-    "together");
+    "together; its table judges everybody 2 s after the last push (or the onset, where that is "
+    "later), never at the end");
 DEFINE_double(spacing, 0.45, "formation: between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
               "formation: who is pushed, comma-separated; people count from 0, from the back "
@@ -135,9 +136,9 @@ std::string Title(const std::vector<HipPush>& pushes) {
 bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
 
 const char* GivenFormationFlag() {
-  for (const char* flag :
-       {"spacing", "pushed", "push", "push_duration", "mass", "rod_length", "duration", "csv_out",
-        "forces_out", "bvh_out", "svg_out", "forces_svg_out", "restoration"}) {
+  for (const char* flag : {"spacing", "pushed", "push", "push_duration", "mass", "rod_length",
+                           "duration", "as_setting", "csv_out", "forces_out", "bvh_out", "svg_out",
+                           "forces_svg_out", "restoration"}) {
     if (Given(flag)) return flag;
   }
   return nullptr;
@@ -172,6 +173,13 @@ Result<FormationPlan> PlanOfFlags() {
                              : plan.scene.LastPushEnd() * plan.scene.dt + kWatchSeconds;
   plan.frames = static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
   if (plan.frames < 3) return Error{"--duration is shorter than two frames"};
+  for (const HipPush& push : pushes.value()) {
+    if (std::lround(push.start * FLAGS_fps) < plan.frames - 1) continue;
+    std::ostringstream text;
+    text << "--duration ends at " << seconds << " s, before the push of " << push.impulse
+         << " N s at " << push.start << " s; lengthen it, or leave the push out";
+    return Error{text.str()};
+  }
   if (static_cast<double>(plan.frames) * FLAGS_people > kMostPersonFrames) {
     return Error{std::to_string(FLAGS_people) + " people over " + std::to_string(plan.frames) +
                  " frames are too many; lower --people, --duration or --fps"};

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "apps/app_support.h"
+#include "apps/fit_flag_checks.h"
 #include "apps/fit_flags.h"
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
@@ -55,10 +56,10 @@ MaybeError AddRivals(Predictors* predictors) {
     if (colon == std::string::npos || Trim(item.substr(0, colon)).empty()) {
       return Error{"--compare: '" + Trim(item) + "' is not 'name: --flag=value ...'"};
     }
+    const std::string name = Trim(item.substr(0, colon));
     const Result<FitOptions> options = FitOptionsWith(item.substr(colon + 1));
-    if (!options.ok()) return Error{"--compare: " + options.error().message};
-    predictors->push_back(
-        std::make_unique<ModelPredictor>(Trim(item.substr(0, colon)), options.value()));
+    if (!options.ok()) return Error{"--compare, '" + name + "': " + options.error().message};
+    predictors->push_back(std::make_unique<ModelPredictor>(name, options.value()));
   }
   return std::nullopt;
 }
@@ -89,6 +90,12 @@ int Run() {
         std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
   }
   if (MaybeError error = CheckNames(predictors)) return Fail(*error);
+  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
+                                        {"json_out", FLAGS_json_out},
+                                        {"frontier_out", FLAGS_frontier_out}})) {
+    return Fail(*error);
+  }
+  for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   for (const std::string& file : {FLAGS_json_out, FLAGS_frontier_out}) {
     if (file.empty()) continue;
     if (MaybeError error = CheckWritable(file)) return Fail(*error);

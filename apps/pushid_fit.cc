@@ -7,6 +7,7 @@
 
 #include "apps/app_support.h"
 #include "apps/confidence_flags.h"
+#include "apps/fit_flag_checks.h"
 #include "apps/fit_flags.h"
 #include "apps/recording_flags.h"
 #include "datasets/atomic_file.h"
@@ -18,6 +19,7 @@
 
 DECLARE_uint64(seed);
 DECLARE_string(bootstrap_file);
+
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(
     resample, 0,
@@ -52,11 +54,14 @@ int Run() {
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (FLAGS_resample < 0) return Fail("--resample must not be negative");
+  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
+                                        {"model_out", FLAGS_model_out},
+                                        {"bootstrap_file", FLAGS_bootstrap_file}})) {
+    return Fail(*error);
+  }
+  for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
-    if (FLAGS_model_out == FLAGS_bootstrap_file) {
-      return Fail("--model_out and --bootstrap_file name the same file");
-    }
   }
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
@@ -85,6 +90,7 @@ int Run() {
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.
   result.configuration.erase("recordings");
+  result.changed_flags = ChangedFlags();
   result.manifest = FLAGS_recordings;
   result.setting = FLAGS_setting;
   const Result<std::string> hash = HashFile(FLAGS_recordings);

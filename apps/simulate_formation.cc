@@ -1,6 +1,7 @@
 // apps: from flags to a run, from a run to files and a table.
 #include "apps/simulate_formation.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/app_support.h"
@@ -38,6 +39,14 @@ MaybeError CheckOutputs(int people) {
   if (!FLAGS_forces_svg_out.empty() && people > kMostPeopleInForces) {
     return Error{"--forces_svg_out shows at most " + std::to_string(kMostPeopleInForces) +
                  " people; leave it out or lower --people"};
+  }
+  if (MaybeError error = CheckDistinct({{"csv_out", FLAGS_csv_out},
+                                        {"forces_out", FLAGS_forces_out},
+                                        {"svg_out", FLAGS_svg_out},
+                                        {"forces_svg_out", FLAGS_forces_svg_out},
+                                        {"bvh_out", FLAGS_bvh_out},
+                                        {"model", FLAGS_model}})) {
+    return error;
   }
   for (const std::string& file :
        {FLAGS_csv_out, FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out}) {
@@ -81,7 +90,17 @@ void PrintPeople(const FormationRun& run) {
                Fixed(person.peak_speed, 2), Fixed(person.displacement, 2),
                std::string(Name(person.outcome))});
   }
-  std::printf("%s", table.ToString().c_str());
+  std::printf("%s%s", table.ToString().c_str(), OutcomeLegend().c_str());
+}
+
+// Why there is no one speed of the push; empty where there is.
+std::string WhyNoSpeed(const Scene& scene) {
+  const size_t pushes = scene.pushes.size();
+  const bool one_person = std::all_of(
+      scene.pushes.begin(), scene.pushes.end(),
+      [&scene](const ScenePush& push) { return push.person == scene.pushes.front().person; });
+  if (!one_person) return "; no speed: several people are pushed";
+  return pushes > 1 ? "; no speed: there are several pushes" : "";
 }
 
 // How fast the onset went from the first person who moved to the foremost one who did.
@@ -95,7 +114,9 @@ void PrintWave(const FormationRun& run) {
     foremost = n;  // people are numbered forwards
   }
   std::printf("%d of %d people moved by 2 cm or more", moved, run.num_people());
-  if (moved > 1) {
+  const std::string no_speed = moved > 1 ? WhyNoSpeed(run.recording.scene) : "";
+  std::printf("%s", no_speed.c_str());
+  if (moved > 1 && no_speed.empty()) {
     const auto& people = run.recording.scene.people;
     const double metres = people[foremost].start.q[0] - people[first].start.q[0];
     const double seconds =
@@ -109,11 +130,24 @@ void PrintWave(const FormationRun& run) {
   std::printf("\n");
 }
 
-int LeftDomain(const RolloutStatus& status) {
-  std::fprintf(stderr,
-               "pushid-simulate: %s of person %d leaves the model's domain at frame %d; nothing is "
-               "written\n",
-               std::string(status.quantity).c_str(), status.person, status.frame);
+// Steps much longer than those of the recordings make stiff contact unstable.
+constexpr double kUsualFps = 60.0;
+
+std::string LeftDomainAdvice(double fps) {
+  return fps < kUsualFps - 0.5
+             ? "the steps are long: try --fps=60, and if that does not help a weaker --push"
+             : "she falls: try a weaker or longer push (--push, --push_duration), or a higher "
+               "--fps "
+               "if the push is no harder than those the model was fitted to";
+}
+
+int LeftDomain(const RolloutStatus& status, double dt) {
+  std::fprintf(
+      stderr,
+      "pushid-simulate: %s of person %d leaves the model's domain at frame %d; %s; nothing "
+      "is written\n",
+      std::string(status.quantity).c_str(), status.person, status.frame,
+      LeftDomainAdvice(1.0 / dt).c_str());
   return kFitFailed;
 }
 
@@ -161,7 +195,7 @@ int SimulateFormation() {
          "pushid-fit --setting=groups --interaction=contact");
   }
   const FormationRun run = RunFormation(model.value(), plan.value().scene, plan.value().frames);
-  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status);
+  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, plan.value().scene.dt);
   if (MaybeError error = WriteOutputs(run, plan.value().title)) return Fail(*error);
   if (bodies.value()) {
     const MaybeError error = WriteFormationBodies(run, *bodies.value(), plan.value().title);

@@ -140,7 +140,7 @@ ModelOptions SyntheticOptions::TailModel() {
 }
 
 ParameterSet<double> PublishedTailParameters() {
-  // DESIGN section 3 quotes them per mass, per m g l and per m l^2 of the point mass.
+  // They are known per mass, per m g l and per m l^2 of the point mass.
   const double point_mass = (1.0 - kCartShare) * kReferenceMass;
   const double stiffness = point_mass * kGravity * kReferenceRod;     // N m/rad
   const double damping = point_mass * kReferenceRod * kReferenceRod;  // N m s/rad

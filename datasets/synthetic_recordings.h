@@ -32,8 +32,8 @@ struct PushStrength {
   double acceleration;  // m/s^2
 };
 
-// The settled seven-parameter model of DESIGN section 3 for the person of 85 kg and 0.95 m: the
-// values identified from the published recordings of single people.
+// The settled seven-parameter model for the person of 85 kg and 0.95 m: the values identified from
+// the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
 
 struct SyntheticOptions {

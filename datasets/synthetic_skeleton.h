@@ -19,7 +19,7 @@
 
 namespace pushid {
 
-// Joint indices in the skeleton (DESIGN section 4) of those the pendulum is read from.
+// Joint indices in the skeleton of the published recordings of those the pendulum is read from.
 inline constexpr int kHipJoint = 0, kRightAnkleJoint = 16, kLeftAnkleJoint = 20;
 inline constexpr int kSkeletonJoints = 22;
 

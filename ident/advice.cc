@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ident/confidence.h"
+#include "ident/fit_command.h"
 #include "ident/report_text.h"
 
 namespace pushid {
@@ -15,40 +16,19 @@ constexpr double kStrongLeverage = 1.0;  // standard errors that one recording m
 constexpr double kDisagreement = 1.5;    // of interval widths
 constexpr int kFewRecordings = 10;
 constexpr double kPushDependence = 0.15;  // mean correlation that is more than a detail
-
-// The flags of the fit that are not at their defaults and decide what it finds.
-std::string SameFlags(const FitResult& result) {
-  std::string command = " --recordings=M/manifest.json";
-  for (const char* flag : {"setting", "ids", "preset", "self_force", "posture", "push", "push_tail",
-                           "friction", "interaction", "fix", "free", "prior", "pool"}) {
-    const auto at = result.configuration.find(flag);
-    if (at == result.configuration.end()) continue;
-    const std::string& value = at->second;
-    const bool is_default = value.empty() || value == "all" || value == "none" ||
-                            (std::string(flag) == "preset" && value == "tail");
-    if (!is_default) command += " --" + std::string(flag) + "=" + value;
-  }
-  return command;
-}
-
-std::string SameFit(const FitResult& result) { return "pushid-fit" + SameFlags(result); }
-
-// --fix given again would replace the first one: one list holds both.
-std::string WithFixed(const FitResult& result, const std::string& assignment) {
-  FitResult fixed = result;
-  std::string& list = fixed.configuration["fix"];
-  list += (list.empty() ? "" : ",") + assignment;
-  return SameFit(fixed);
-}
+constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
+constexpr int kManyIterations = 1000, kManyStarts = 8;
+constexpr int kReplicas = 199, kManyReplicas = 999;
 
 class Adviser {
  public:
-  explicit Adviser(const FitResult& result) : result_(result), same_(SameFit(result)) {}
+  explicit Adviser(const FitResult& result) : result_(result) {}
 
   std::vector<Advice> Run() {
     Solver();
     Identifiability();
     Person();
+    People();
     Recordings();
     Intervals();
     Residuals();
@@ -56,43 +36,52 @@ class Adviser {
   }
 
  private:
-  void Add(const std::string& sentence, const std::string& command) {
-    advice_.push_back({sentence, command});
+  void Add(const std::string& sentence, const FitCommand& command) {
+    advice_.push_back({sentence, command.ToString()});
   }
+  FitCommand Same() const { return FitCommand("pushid-fit", result_); }
+  FitCommand Bootstrap(int replicas) const {
+    return Same().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
+  }
+  // More of it than the fit had.
+  FitCommand SettleHarder(double weight) const;
   void Solver();
   void Identifiability();
   void Person();
+  void People();
   void Recordings();
   void Intervals();
   void Residuals();
 
   const FitResult& result_;
-  const std::string same_;
   std::vector<Advice> advice_;
 };
 
 void Adviser::Solver() {
   if (!result_.converged) {
     Add("The solver stopped before it converged; give it more iterations and more starts.",
-        same_ + " --max_iterations=1000 --starts=8");
+        Same()
+            .Set("max_iterations",
+                 std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
+            .Set("starts", std::to_string(std::max(kManyStarts, 2 * result_.options.num_starts))));
   }
 }
 
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
     Add("The data cannot say: " + n.sentence + ". Hold one of them.",
-        WithFixed(result_, n.parameters.back()));
+        Same().Append("fix", n.parameters.back()));
   }
   for (const Estimate& e : result_.estimates) {
     if (e.status == EstimateStatus::kAtBound) {
       Add(e.name +
               " stands at its bound, so its error is unknown; see whether the data mind its "
               "being held there.",
-          WithFixed(result_, e.name + "=" + Significant(e.value)));
+          Same().Append("fix", e.name + "=" + Significant(e.value)));
     }
     if (e.status == EstimateStatus::kWeak) {
       Add(e.name + " is only weakly known; ask which further push would tell most about it.",
-          same_ + " --design=" + e.name);
+          Same().Set("design", e.name));
     }
   }
   const Uncertainty& u = result_.uncertainty;
@@ -101,25 +90,41 @@ void Adviser::Identifiability() {
     for (int j = i + 1; j < std::min<int>(shared, u.correlation.cols()); ++j) {
       if (std::abs(u.correlation(i, j)) < kStrongCorrelation) continue;
       const Estimate& second = u.estimates[j];
+      const std::string held = second.name + "=" + Significant(second.value);
+      FitCommand compare("pushid-crossvalidate", result_);
+      compare.Set("compare", "held: --fix=" + compare.Appended("fix", held));
       Add(u.estimates[i].name + " and " + second.name + " trade off (correlation " +
               Significant(u.correlation(i, j), 2) +
               "); hold one, and see whether the errors of prediction grow.",
-          "pushid-crossvalidate" + SameFlags(result_) + " --compare='held: --fix=" + second.name +
-              "=" + Significant(second.value) + "'");
+          compare);
     }
   }
 }
 
+FitCommand Adviser::SettleHarder(double weight) const {
+  const double more = std::max(weight, 2.0 * result_.options.settling_weight);
+  return Same().Set("settling_weight", Significant(more, 6));
+}
+
 void Adviser::Person() {
   if (result_.behaviour.self_propelling) {
-    Add("The fitted person drives herself; hold the fit to people who stand again, or let a push "
-        "tail carry what the recorded push leaves out.",
-        same_ + (result_.options.model.push_tail == PushTail::kNone ? " --preset=tail"
-                                                                    : " --settling_weight=30"));
+    const bool tail = result_.options.model.push_tail == PushTail::kExponential;
+    Add(tail ? "The fitted person drives herself; hold the fit to people who stand again."
+             : "The fitted person drives herself; let a push tail carry what the recorded push "
+               "leaves out.",
+        tail ? SettleHarder(kMuchSettling) : Same().Set("push_tail", "exponential"));
   } else if (!result_.behaviour.settles) {
     Add("The fitted person is slow to stand again; see what holding it to settle costs.",
-        same_ + " --settling_weight=10");
+        SettleHarder(kSomeSettling));
   }
+}
+
+void Adviser::People() {
+  const bool groups = std::any_of(result_.recordings.begin(), result_.recordings.end(),
+                                  [](const FittedRecording& r) { return r.people > 1; });
+  if (!groups || result_.options.model.interaction.Any()) return;
+  Add("Several people stand in one recording and do nothing to each other here; let them touch.",
+      Same().Set("interaction", "contact"));
 }
 
 void Adviser::Recordings() {
@@ -134,38 +139,45 @@ void Adviser::Recordings() {
       parameter = p;
     }
   }
-  if (most > kStrongLeverage) {
+  // Of a single one nothing would be left.
+  if (most > kStrongLeverage && l.recordings.size() > 1) {
     Add("Recording " + l.recordings[recording] + " alone moves " + l.parameters[parameter] +
             " by " + Significant(most, 2) + " standard errors; look at it, and fit without it.",
-        same_ + " --leave_out=" + l.recordings[recording]);
+        Same().Append("leave_out", l.recordings[recording]));
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
             " recordings the clustered errors are themselves uncertain; record more, where the "
             "design says it helps.",
-        same_ + " --design=" + (l.parameters.empty() ? std::string("all") : l.parameters.front()));
+        Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }
 }
 
 void Adviser::Intervals() {
   if (result_.profiles.empty()) {
     Add("The intervals take the cost for quadratic; profiles show its true shape.",
-        same_ + " --profile --num_threads=2");
+        Same().Set("profile", "all").Set("num_threads", "2"));
   }
-  if (!result_.bootstrap) {
+  const bool several = result_.recordings.size() > 1;  // a single one is its only resample
+  if (!result_.bootstrap && several) {
     Add("Resampling the recordings checks the standard errors without any formula.",
-        same_ + " --bootstrap=199 --num_threads=2");
+        Bootstrap(kReplicas));
   }
+  const int had = result_.bootstrap ? result_.bootstrap->replicas : 0;
   for (const Agreement& row : CompareIntervals(result_)) {
+    if (!several) break;
     if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
     Add("The intervals of " + row.name + " differ by a factor of " + Significant(row.ratio, 2) +
             " in width: its cost is far from quadratic; quote the widest, and more replicas.",
-        same_ + " --bootstrap=999 --num_threads=2");
+        Bootstrap(std::max(kManyReplicas, 2 * had)));
     break;  // one command serves all
   }
 }
 
 void Adviser::Residuals() {
+  const bool linear = result_.options.self_force == SelfForceKind::kLinear;
+  const bool tail = result_.options.model.push_tail == PushTail::kExponential;
+  if (linear && tail) return;  // nothing is left to switch on
   for (const Whiteness& w : result_.diagnostics.whiteness) {
     for (size_t k = 0; k < w.push.size(); ++k) {
       const double limit = std::max(kPushDependence, 2.0 * w.push_error[k]);
@@ -173,7 +185,7 @@ void Adviser::Residuals() {
       Add("The errors of " + w.channel + " follow the push (correlation " +
               Significant(w.push[k], 2) + " at lag " + std::to_string(k) +
               "): the model misses part of the answer to it; try more terms.",
-          same_ + " --self_force=linear");
+          linear ? Same().Set("push_tail", "exponential") : Same().Set("self_force", "linear"));
       return;
     }
   }

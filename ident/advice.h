@@ -7,8 +7,7 @@
 
 namespace pushid {
 
-// Most pressing first. Commands repeat the settings of the fit; M/manifest.json stands for the
-// recordings.
+// Most pressing first. Commands repeat the settings of the fit (fit_command.h).
 std::vector<Advice> Advise(const FitResult& result);
 
 }  // namespace pushid

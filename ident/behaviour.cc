@@ -14,9 +14,6 @@ constexpr double kMasses[] = {60.0, 80.0, 100.0};
 constexpr double kImpulses[] = {4.0, 25.0, 80.0};
 constexpr double kLineMass = 80.0;
 constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};
-constexpr double kWaitSeconds = 2.0;
-constexpr double kSettledSpeed = 0.1;
-constexpr double kSettledLean = 0.05;
 
 Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double>& parameters,
                           double mass, double impulse, int people) {
@@ -42,12 +39,17 @@ Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double
     result.speed = std::max(result.speed, end.qd.head<2>().norm());
     result.lean = std::max(result.lean, end.q.tail<2>().cwiseAbs().maxCoeff());
     result.distance += moved.head<2>().norm() / people;
+    result.advance += moved.x() / people;
+    if (n == 0) result.pushed_advance = moved.x();
   }
   result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
   return result;
 }
 
-// Eigenvalues of one free step about rest, as growth rates.
+using Matrix8 = Eigen::Matrix<double, 8, 8>;
+
+// Eigenvalues of one free step about rest, as growth rates. The state is [theta, phi, qd] and, for
+// the backward difference of the cart's velocity, that velocity one step earlier.
 double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
   const Scene scene = DemonstrationScene(80.0, 0.0);
   const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
@@ -57,23 +59,34 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const double mgl = scene.people[0].body.point_mass() * kGravity * scene.people[0].body.rod_length;
   force(2, 2) += mgl;  // minus the derivative of gravity at rest
   force(3, 3) += mgl;
-  const Eigen::Matrix<double, 4, 8> acceleration =
-      InverseMassMatrix<double>(scene.people[0].body, Vector4<double>::Zero()) * force;
+  const Eigen::Matrix4d inverse =
+      InverseMassMatrix<double>(scene.people[0].body, Vector4<double>::Zero());
+  const Eigen::Matrix<double, 4, 8> acceleration = inverse * force;
   // Free modes do not depend on where the cart stands: drop x and y.
-  Eigen::Matrix<double, 6, 6> step;  // [theta, phi, qd]
-  Eigen::Matrix<double, 4, 6> a;
-  a << acceleration.middleCols<2>(2), acceleration.rightCols<4>();
-  step.bottomRows<4>() << Eigen::Matrix<double, 4, 2>::Zero(), Eigen::Matrix4d::Identity();
-  step.bottomRows<4>() += scene.dt * a;
-  step.topRows<2>() << Eigen::Matrix2d::Identity(), Eigen::Matrix<double, 2, 4>::Zero();
-  step.topRows<2>() += scene.dt * step.bottomRows<2>();
-  const Eigen::EigenSolver<Eigen::Matrix<double, 6, 6>> solver(step);
+  Matrix8 step = Matrix8::Zero();
+  auto velocity = step.middleRows<4>(2);
+  velocity.middleCols<4>(2).setIdentity();
+  velocity.leftCols<6>() += scene.dt * acceleration.rightCols<6>();
+  velocity.rightCols<2>() = scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+  step.topLeftCorner<2, 2>().setIdentity();
+  step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
+  step.bottomRows<2>().middleCols<2>(2).setIdentity();
+  const Eigen::EigenSolver<Matrix8> solver(step);
   double largest = 0.0;
-  for (int i = 0; i < 6; ++i) largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
+  for (int i = 0; i < 8; ++i) largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
   return std::log(largest) / scene.dt;
 }
 
 }  // namespace
+
+const Demonstration* Behaviour::FarthestBehind() const {
+  const Demonstration* farthest = nullptr;
+  for (const Demonstration& d : demonstrations) {
+    if (d.fell || d.pushed_advance > -kBehind) continue;
+    if (farthest == nullptr || d.pushed_advance < farthest->pushed_advance) farthest = &d;
+  }
+  return farthest;
+}
 
 void Behaviour::Add(const Behaviour& other, const std::string& setting) {
   for (Demonstration d : other.demonstrations) {
@@ -101,7 +114,7 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
     }
     for (size_t i = first + 1; i < all.size(); ++i) {
       behaviour.harder_moves_farther =
-          behaviour.harder_moves_farther && all[i - 1].distance < all[i].distance;
+          behaviour.harder_moves_farther && all[i - 1].advance < all[i].advance;
     }
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);

@@ -12,7 +12,14 @@ namespace pushid {
 
 inline constexpr int kLinePeople = 5;  // in a line, where people touch
 
-// The demonstration people two seconds after the last push.
+// Settled: so slow and so near the rest posture, so long after the last push.
+inline constexpr double kWaitSeconds = 2.0;
+inline constexpr double kSettledSpeed = 0.1;  // m/s
+inline constexpr double kSettledLean = 0.05;  // rad
+
+inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
+
+// The demonstration people two seconds after the last push, which goes forwards.
 struct Demonstration {
   std::string setting;    // where settings differ: with whose parameters; empty: the shared ones
   int people = 1;         // more than one: in a line, the first one pushed
@@ -20,9 +27,11 @@ struct Demonstration {
   double impulse = 0.0;   // N s
   double speed = 0.0;     // m/s, of the fastest cart
   double lean = 0.0;      // rad, largest deviation from the rest posture
-  double distance = 0.0;  // m, how far the carts went on average
-  bool fell = false;      // beyond 1.0 rad at any time
-  bool settled = false;   // slower than 0.1 m/s and within 0.05 rad
+  double distance = 0.0;  // m, of the carts from where they stood, on average
+  double advance = 0.0;   // m, the same along the push: negative where they end behind
+  double pushed_advance = 0.0;  // m, of the pushed person alone
+  bool fell = false;            // beyond 1.0 rad at any time
+  bool settled = false;         // slower than 0.1 m/s and within 0.05 rad
 };
 
 struct Behaviour {
@@ -32,11 +41,16 @@ struct Behaviour {
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
   double fastest_growth = 0.0;
-  bool settles = false;              // every demonstration settled
-  bool harder_moves_farther = true;  // each line went farther than the one pushed more weakly
+  bool settles = false;  // every demonstration settled
+  // Each line moved on farther along the push than the one pushed more weakly.
+  bool harder_moves_farther = true;
   // The person drives herself: an unstable free mode, negative damping of the cart, or a fall. One
   // who is merely slow to stand again does not.
   bool self_propelling = false;
+
+  // The demonstration whose pushed person ends farthest behind the start, beyond kBehind; nullptr
+  // when there is none.
+  const Demonstration* FarthestBehind() const;
 
   // Adds what people do in one setting.
   void Add(const Behaviour& other, const std::string& setting);

@@ -146,7 +146,8 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     fold.behaviour = predictions[f].behaviour;
     if (fold.behaviour) {
       ++result.fits;
-      result.settling += fold.behaviour->settles && fold.behaviour->harder_moves_farther;
+      result.settling += fold.behaviour->settles;
+      result.harder_farther += fold.behaviour->harder_moves_farther;
       for (const Demonstration& d : fold.behaviour->demonstrations) {
         result.slowest_to_settle = std::max(result.slowest_to_settle, d.speed);
       }

@@ -60,10 +60,10 @@ struct CrossValidation {
   // Each recording's score averaged over the repeats that held it out.
   ScoreSummary summary;
   int failures = 0, falls = 0;  // over all folds
-  // Over all folds whose model was fitted: how many, how many of them settle in every demonstration
-  // and move a line the farther the harder they are pushed, and the fastest anybody still is two
-  // seconds after a push.
-  int fits = 0, settling = 0;
+  // Over all folds whose model was fitted: how many, how many of them settle in every
+  // demonstration, how many move a line on the farther the harder it is pushed, and the fastest
+  // anybody still is two seconds after a push.
+  int fits = 0, settling = 0, harder_farther = 0;
   double slowest_to_settle = 0.0;  // m/s
 };
 

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "ident/fit_result.h"
+#include "ident/report_tables.h"
+#include "ident/report_text.h"
 
 namespace pushid {
 namespace {
@@ -102,6 +104,7 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
     one.id = recording.id;
     one.content_hash = recording.content_hash;
     one.frames = recording.num_frames();
+    one.people = recording.num_people();
     fitted.push_back(one);
   }
   for (const FailedRollout& failed : best.failed) {
@@ -135,6 +138,12 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     warnings.push_back(
         "slow to settle: the fitted person stands again later than two seconds after "
         "some pushes (--settling_weight holds it to settle sooner)");
+  }
+  if (const Demonstration* d = result.behaviour.FarthestBehind()) {
+    warnings.push_back("pushed forwards by " + Significant(d->impulse) + " N s, the pushed person" +
+                       (d->people > 1 ? " of the line" : "") + " ends " +
+                       Significant(-d->pushed_advance, 2) + " m behind the start (" +
+                       DemonstrationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   if (result.uncertainty.num_clusters == 1) {
     warnings.push_back("a single recording: errors cannot be clustered and are too small");

@@ -26,6 +26,7 @@ struct FittedRecording {
   std::string id;
   std::string content_hash;
   int frames = 0;
+  int people = 1;
   double cost = 0.0;    // robust cost in the objective
   std::string failure;  // empty, or where its rollout left the domain
 };
@@ -57,6 +58,7 @@ struct FitResult {
   // Provenance.
   std::string version;
   std::map<std::string, std::string> configuration;  // effective flags
+  std::vector<std::string> changed_flags;            // those of them that are not at their defaults
   std::string manifest, manifest_hash, setting;
   double solve_seconds = 0.0;
 

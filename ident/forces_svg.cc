@@ -17,12 +17,16 @@ constexpr const char* kHeads[] = {"force along the push (N)",
 
 using Points = std::vector<std::pair<double, double>>;
 
-// Okabe and Ito's colours, told apart by the colour-blind, on light and on dark paper.
+// After Okabe and Ito: told apart by the colour-blind, on light and on dark paper.
 std::string PartColour(std::string_view part) {
   static const std::map<std::string_view, const char*> colours = {
-      {"push", "#d55e00"},    {"tail", "#cc79a7"},   {"friction", "#e69f00"},
-      {"balance", "#56b4e9"}, {"linear", "#009e73"}, {"interaction", "#3b82f6"},
-      {"drive", "#8b5cf6"}};
+      {"push", "#d55e00"},
+      {"tail", "#cc79a7"},
+      {"friction", "#e69f00"},
+      {"balance", "#56b4e9"},
+      {"linear", "#009e73"},
+      {"interaction", "#9333ea"},
+      {"drive", "#b45309;stroke-dasharray:4 2"}};
   const auto found = colours.find(part);
   return found == colours.end() ? "#999999" : found->second;
 }
@@ -32,7 +36,10 @@ std::string PartLook(std::string_view part) {
 }
 
 constexpr char kNetLook[] = "ink net";
-constexpr double kSmallestRange = 10.0;  // N or N m, so that nothing is not blown up
+constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up
+constexpr double kNothing = 1e-6;        // N or N m
+constexpr double kLegendStep = 104.0;    // pixels
+constexpr double kLabelRoom = 6.0;       // pixels from a panel's edge to a tick with a label
 
 class ForcesPicture {
  public:
@@ -59,8 +66,8 @@ class ForcesPicture {
     return {0.0, run_.Seconds(run_.num_frames() - 1), kLeft[column], kLeft[column] + kPanelWidth};
   }
 
-  // Each panel its own, with a fifth of air: what the tenth person feels is a fraction of the push.
-  SvgScale Value(int person, int column) const {
+  // Lowest and highest of what a panel shows.
+  std::pair<double, double> Range(int person, int column) const {
     const int row = kRows[column];
     double lowest = 0.0, highest = 0.0;
     const auto include = [&](double force) {
@@ -72,8 +79,7 @@ class ForcesPicture {
       include(force.Total()[row]);
       for (const ForcePart& part : parts_) include((force.*part.value)[row]);
     }
-    const double air = 0.1 * std::max(kSmallestRange, highest - lowest);
-    return {lowest - air, highest + air, Top(person) + kHeight, Top(person)};
+    return {lowest, highest};
   }
 
   void Legend() {
@@ -81,20 +87,36 @@ class ForcesPicture {
     const auto entry = [&](std::string_view name, const std::string& look) {
       svg_.Polyline({{x, 40}, {x + 18, 40}}, look);
       svg_.Text(x + 23, 44, name, "ink small");
-      x += 44 + 6.2 * static_cast<double>(name.size());
+      x += kLegendStep;
     };
-    entry("net (the sum of the parts)", kNetLook);
+    entry("net (the sum)", kNetLook);
     for (const ForcePart& part : parts_) entry(part.name, PartLook(part.name));
     for (int column : {0, 1}) svg_.Text(kLeft[column], kTop - 12, kHeads[column], "ink");
   }
 
-  void Panel(int person, int column) {
-    const SvgScale value = Value(person, column);
+  void Ticks(int person, int column, const SvgScale& value) {
     for (double tick : value.Ticks(4)) {
-      svg_.Line(kLeft[column], value(tick), kLeft[column] + kPanelWidth, value(tick),
-                tick == 0.0 ? "axis" : "grid");
-      svg_.Text(kLeft[column] - 5, value(tick) + 3.5, SvgNumber(tick), "faint small end");
+      const double y = value(tick);
+      svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, tick == 0.0 ? "axis" : "grid");
+      // Near the edge a label would run into the next panel's.
+      if (y < Top(person) + kLabelRoom || y > Top(person) + kHeight - kLabelRoom) continue;
+      svg_.Text(kLeft[column] - 5, y + 3.5, SvgNumber(tick), "faint small end");
     }
+  }
+
+  void Panel(int person, int column) {
+    const auto [lowest, highest] = Range(person, column);
+    if (highest - lowest < kNothing) {
+      const double y = Top(person) + 0.5 * kHeight;
+      svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, "axis");
+      svg_.Text(kLeft[column] + 4, y - 5, "nothing", "faint small");
+      return;
+    }
+    // Each panel its own, with a fifth of air: what the tenth person feels is a fraction of the
+    // push.
+    const double air = 0.1 * std::max(kSmallestRange, highest - lowest);
+    const SvgScale value(lowest - air, highest + air, Top(person) + kHeight, Top(person));
+    Ticks(person, column, value);
     const auto line = [&](auto force_at, const std::string& look) {
       Points points;
       bool acts = false;

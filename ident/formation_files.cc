@@ -88,7 +88,8 @@ MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
   const auto row = [&](int t, int n, std::string_view part, const Vector4<double>& f) {
     char text[256];
     std::snprintf(text, sizeof text, "%d,%.9g,%d,%.*s,%.9g,%.9g,%.9g,%.9g\n", t, run.Seconds(t), n,
-                  static_cast<int>(part.size()), part.data(), f[0], f[1], f[2], f[3]);
+                  static_cast<int>(part.size()), part.data(), f[0] + 0.0, f[1] + 0.0, f[2] + 0.0,
+                  f[3] + 0.0);  // no -0
     file.Append(text);
   };
   for (int t = 0; t < run.num_frames(); ++t) {

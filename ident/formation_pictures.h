@@ -12,7 +12,8 @@ namespace pushid {
 inline constexpr int kMostPeopleInWave = 300;
 inline constexpr int kMostPeopleInForces = 40;
 
-// The wave: time across, person down, colour the hip's speed (on a square-root scale); pushes
+// The wave: time across, person down, colour the hip's speed (on a square-root scale; orange for
+// going back, so that recoil does not look like the wave); pushes
 // framed, each person's onset dotted; a plan of the formation beside it.
 std::string WaveSvg(const FormationRun& run, const std::string& title);
 

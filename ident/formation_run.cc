@@ -5,14 +5,12 @@
 #include <cmath>
 #include <string>
 
+#include "ident/behaviour.h"
 #include "ident/propagation.h"
+#include "ident/report_text.h"
 
 namespace pushid {
 namespace {
-
-constexpr double kWaitSeconds = 2.0;
-constexpr double kSettledSpeed = 0.1;
-constexpr double kSettledLean = 0.05;
 
 // p00, p01, ...: names that sort in the order of the people.
 std::string PersonName(int person, int people) {
@@ -46,7 +44,7 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   const Vector4<double>& rest = scene.people[person].start.q;
   const bool settled = end.qd.head<2>().norm() < kSettledSpeed &&
                        (end.q - rest).tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
-  return settled ? Outcome::kSettled : Outcome::kMoving;
+  return settled ? Outcome::kSettled : Outcome::kSlow;
 }
 
 PersonSummary Summarize(const FormationRun& run, int person) {
@@ -69,14 +67,22 @@ std::string_view Name(Outcome outcome) {
       return "settled";
     case Outcome::kUnmoved:
       return "unmoved";
-    case Outcome::kMoving:
-      return "moving";
+    case Outcome::kSlow:
+      return "slow to settle";
     case Outcome::kFell:
       return "fell";
     case Outcome::kNotJudged:
       return "not judged";
   }
   return "";
+}
+
+std::string OutcomeLegend() {
+  return "outcome: judged " + Significant(kWaitSeconds) +
+         " s after the last push, or after the onset where that is later; settled: slower than " +
+         Significant(kSettledSpeed) + " m/s\nand within " + Significant(kSettledLean) +
+         " rad of the rest posture then; slow to settle: not yet. fell: at any time. displaced: at "
+         "the end of the run\n";
 }
 
 const std::vector<ForcePart>& ForceParts() {

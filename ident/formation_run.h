@@ -1,6 +1,7 @@
 // ident: an identified model rolled out on a formation: who moves when, how far, with which forces.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,15 +13,19 @@
 namespace pushid {
 
 // What became of a person, judged two seconds after the last push, or after the onset where the
-// push arrives later than it ends: whom it has not reached yet has not settled.
+// push arrives later than it ends: whom it has not reached yet has not settled. Never at the end of
+// the run: who was slow to settle may have settled by then.
 enum class Outcome {
   kSettled,   // slower than 0.1 m/s and within 0.05 rad of the rest posture
   kUnmoved,   // no onset
-  kMoving,    // none of these
+  kSlow,      // none of these: slow to settle
   kFell,      // theta or phi beyond 1.0 rad at any time
   kNotJudged  // the run ends before the two seconds are over
 };
 std::string_view Name(Outcome outcome);
+
+// What a table of outcomes and displacements means, for the line under it.
+std::string OutcomeLegend();
 
 struct PersonSummary {
   int onset_frame = -1;       // of 2 cm of hip motion (propagation.h); -1: never

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/behaviour.h"
 #include "ident/report_text.h"
 #include "ident/svg.h"
 
@@ -12,8 +13,7 @@ namespace {
 
 constexpr double kWidth = 760, kHeight = 460;
 constexpr double kLeft = 70, kRight = 560, kTop = 40, kBottom = 400;
-constexpr double kSettledSpeed = 0.1;  // m/s
-constexpr double kLabelStep = 15;      // pixels between labels
+constexpr double kLabelStep = 15;  // pixels between labels
 
 struct Label {
   double x, y;  // of the point

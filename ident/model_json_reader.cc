@@ -108,10 +108,21 @@ Behaviour BehaviourFrom(const Json& json) {
   b.self_propelling = json.at("self_propelling");
   b.fastest_growth = json.at("fastest_growth_per_s");
   b.harder_moves_farther = json.at("harder_moves_farther");
-  for (const Json& d : json.at("demonstrations")) {
-    b.demonstrations.push_back({d.at("setting"), d.at("people"), d.at("mass_kg"),
-                                d.at("impulse_Ns"), d.at("speed_m_s"), d.at("lean_rad"),
-                                d.at("distance_m"), d.at("fell"), d.at("settled")});
+  for (const Json& from : json.at("demonstrations")) {
+    Demonstration d;
+    d.setting = from.at("setting");
+    d.people = from.at("people");
+    d.mass = from.at("mass_kg");
+    d.impulse = from.at("impulse_Ns");
+    d.speed = from.at("speed_m_s");
+    d.lean = from.at("lean_rad");
+    d.distance = from.at("distance_m");
+    // Models written before these were kept.
+    d.advance = from.value("advance_m", 0.0);
+    d.pushed_advance = from.value("pushed_advance_m", 0.0);
+    d.fell = from.at("fell");
+    d.settled = from.at("settled");
+    b.demonstrations.push_back(d);
   }
   return b;
 }
@@ -260,10 +271,13 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.manifest_hash = at("data").at("manifest_hash");
     result.setting = at("data").at("setting");
     for (const Json& r : at("data").at("recordings")) {
-      result.recordings.push_back(
-          {r.at("id"), r.at("content_hash"), r.at("frames"), r.at("cost"), r.at("failure")});
+      result.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
+                                   r.value("people", 1), r.at("cost"), r.at("failure")});
     }
     result.configuration = at("configuration").get<std::map<std::string, std::string>>();
+    if (json.contains("changed_flags")) {
+      result.changed_flags = at("changed_flags").get<std::vector<std::string>>();
+    }
     result.manifest = at("run").at("manifest");
     result.solve_seconds = at("run").at("solve_seconds");
     CheckConsistent(result);

@@ -140,6 +140,8 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
                               {"speed_m_s", d.speed},
                               {"lean_rad", d.lean},
                               {"distance_m", d.distance},
+                              {"advance_m", d.advance},
+                              {"pushed_advance_m", d.pushed_advance},
                               {"fell", d.fell},
                               {"settled", d.settled}});
   }
@@ -172,6 +174,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   for (const FittedRecording& r : result.recordings) {
     recordings.push_back({{"id", r.id},
                           {"frames", r.frames},
+                          {"people", r.people},
                           {"cost", r.cost},
                           {"failure", r.failure},
                           {"content_hash", r.content_hash}});
@@ -202,6 +205,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                  {"setting", result.setting},
                  {"recordings", recordings}}},
                {"configuration", result.configuration},
+               {"changed_flags", result.changed_flags},
                {"run",
                 {{"date", run.date},
                  {"host", run.host},

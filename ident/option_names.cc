@@ -104,6 +104,16 @@ const TermNames& Terms() {
   return names;
 }
 
+// Empty for an unknown name.
+std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
+  if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
+  if (name == "ldp") return {&InteractionTerms::potential, &InteractionTerms::lean};
+  for (const auto& [known, member] : Terms()) {
+    if (name == known) return {member};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string NameOf(const InteractionTerms& terms) {
@@ -119,20 +129,20 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
   if (text == "none") return std::nullopt;
   std::stringstream list(text);
   for (std::string part; std::getline(list, part, ',');) {
-    if (part == "contact") {
-      terms->spring = terms->damping = true;
-    } else if (part == "ldp") {
-      terms->potential = terms->lean = true;
-    } else {
-      const auto found = std::find_if(Terms().begin(), Terms().end(),
-                                      [&part](const auto& term) { return term.first == part; });
-      if (found == Terms().end()) {
-        return Error{
-            flag + " names '" + part +
-            "'; it must be none, or some of contact (spring,damping), ldp "
-            "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, drive"};
+    const std::vector<bool InteractionTerms::*> members = TermsOf(part);
+    if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
+    if (members.empty()) {
+      return Error{flag + " names '" + part +
+                   "'; it must be none, or some of contact (spring,damping), ldp "
+                   "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, "
+                   "drive"};
+    }
+    for (bool InteractionTerms::*member : members) {
+      if (terms->*member) {
+        return Error{flag + " names '" + part +
+                     "' twice (contact is spring,damping; ldp is potential,lean)"};
       }
-      terms->*(found->second) = true;
+      terms->*member = true;
     }
   }
   if (terms->drive && !terms->Any()) {

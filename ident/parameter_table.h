@@ -51,7 +51,7 @@ struct ParameterTable {
   ParameterMap Map() const;             // fitted = free, in table order
 };
 
-// Settings of the models (DESIGN section 3).
+// Settings of the models (the README has their scores).
 //   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
 //   ldp:   one person: plain PD balance and friction from upright; six free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter

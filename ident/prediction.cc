@@ -52,7 +52,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
   text += "\n";
   char number[32];
   auto add = [&text, &number](double value) {
-    std::snprintf(number, sizeof number, ",%.9g", value);
+    std::snprintf(number, sizeof number, ",%.9g", value + 0.0);  // no -0
     text += number;
   };
   const int frames = prediction.status.ok ? prediction.path.num_frames() : prediction.status.frame;

@@ -208,7 +208,8 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
   }
   f[kContactWork] = {books.TotalWork(), 1.0};
   f[kContactAbsorbed] = {books.absorbed, 1.0};
-  f[kRestitution] = {books.returned, books.absorbed};
+  // Of mutual contact alone: LDP's terms and networks push without taking anything first.
+  if (!model.options.interaction.AtCarts()) f[kRestitution] = {books.returned, books.absorbed};
 }
 
 }  // namespace pushid

@@ -71,7 +71,9 @@ enum PropagationFigure : int {
   kContactPassedOn,  // sum I_k / sum I_(k-1), k > 0
   kContactWork,      // J per recording, negative: contact dissipates
   kContactAbsorbed,  // J per recording taken from people's motion while contact takes energy
-  kRestitution,      // returned over absorbed energy, the square of a coefficient of restitution
+  // Returned over absorbed energy, the square of a coefficient of restitution; only of models whose
+  // interaction is mutual contact alone.
+  kRestitution,
   kNumPropagationFigures
 };
 

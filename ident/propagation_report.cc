@@ -29,6 +29,14 @@ std::string SpeedText(const PropagationMean& slowness) {
   return speed ? MeanText(*speed) : (slowness.known() ? "undefined" : "-");
 }
 
+// The onset errors of those who move in both say little where most movers are missed: a model that
+// moves only the pushed person would look best.
+bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
+
+bool OfThoseWhoMoveInBoth(int figure) {
+  return figure == kOnsetError || figure == kOnsetErrorReached || figure == kOnsetBias;
+}
+
 std::string CountsText(double part, double whole) {
   return Significant(part, 3) + " of " + Significant(whole, 4);
 }
@@ -84,18 +92,25 @@ std::string PropagationText(const std::vector<PropagationColumn>& columns) {
     bool any = false;
     for (const PropagationColumn& column : columns) any |= column.summary->figures[i].known();
     if (!any) continue;
-    row(Info(static_cast<PropagationFigure>(i)).title,
-        [i](const S& s) { return MeanText(s.figures[i]); });
+    row(Info(static_cast<PropagationFigure>(i)).title, [i](const S& s) {
+      return OfThoseWhoMoveInBoth(i) && MostMissed(s) ? "-" : MeanText(s.figures[i]);
+    });
     if (i == kSlownessMeasured || i == kSlownessPredicted) {
       row("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });
     }
   }
-  return table.ToString();
+  std::string text = table.ToString();
+  for (const PropagationColumn& column : columns) {
+    if (!MostMissed(*column.summary)) continue;
+    return text + "onset error -: most movers are missed; see the row that counts them\n";
+  }
+  return text;
 }
 
 std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
   const PropagationMean& onset = s.figures[kOnsetError];
-  return {onset.known() ? Significant(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
+  const bool says = onset.known() && !MostMissed(s);
+  return {says ? Significant(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
           CountsText(s.false_movers, s.bystanders)};
 }
 

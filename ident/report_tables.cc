@@ -1,25 +1,73 @@
 // ident: tables and sentences of a result.
 #include "ident/report_tables.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ident/option_names.h"
 #include "ident/report_text.h"
 
 namespace pushid {
+
+bool SettingsDiffer(const Behaviour& behaviour) {
+  return std::any_of(behaviour.demonstrations.begin(), behaviour.demonstrations.end(),
+                     [](const Demonstration& d) { return !d.setting.empty(); });
+}
+
 namespace {
 
 std::string Interval(double lower, double upper) {
   return "[" + Significant(lower) + ", " + Significant(upper) + "]";
 }
 
-std::string DemonstrationName(const Demonstration& d) {
-  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
-  const std::string where = d.setting.empty() ? "" : d.setting + ": ";
-  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+std::string SettlingText(const Behaviour& b) {
+  if (b.settles) {
+    const bool lines = std::any_of(b.demonstrations.begin(), b.demonstrations.end(),
+                                   [](const Demonstration& d) { return d.people > 1; });
+    return std::string(
+               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within "
+               "two seconds") +
+           (lines ? "; so do lines of five after 4, 20 and 80 N s\n" : "\n");
+  }
+  std::string text = "NOT SETTLING, two seconds after a push:\n";
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.settled) continue;
+    text += "  " + DemonstrationName(d, SettingsDiffer(b)) + ": " +
+            (d.fell ? "fell"
+                    : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
+                          " rad from rest") +
+            "\n";
+  }
+  return text;
+}
+
+// Settings in which a harder push does not move the line on farther.
+std::string NoFartherText(const Behaviour& b) {
+  if (b.harder_moves_farther) return "";
+  std::string where;
+  const Demonstration* before = nullptr;
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.people == 1) continue;
+    const std::string name = d.setting.empty() ? "shared values" : d.setting;
+    const bool harder = before != nullptr && before->setting == d.setting;
+    if (harder && d.advance <= before->advance && where.find(name) == std::string::npos) {
+      where += (where.empty() ? ": " : ", ") + name;
+    }
+    before = &d;
+  }
+  return "a harder push does NOT move the line on farther" + (SettingsDiffer(b) ? where : "") +
+         "\n";
 }
 
 }  // namespace
+
+std::string DemonstrationName(const Demonstration& d, bool settings_differ) {
+  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
+  const std::string where = !d.setting.empty() ? d.setting + ": "
+                            : settings_differ  ? "shared values: "
+                                               : "";
+  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+}
 
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
@@ -95,65 +143,63 @@ std::string CorrelationText(const FitResult& result) {
 
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
-  std::string text, line;
-  for (const Demonstration& d : b.demonstrations) {
+  return SettlingText(b) + NoFartherText(b) +
+         "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
+         (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
+}
+
+TextTable LinesTable(const FitResult& result) {
+  TextTable table({"a line pushed forwards, two seconds later", "all moved on, m", "the pushed, m",
+                   "either way, m"},
+                  {true, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const Demonstration& d : result.behaviour.demonstrations) {
     if (d.people == 1) continue;
-    line += "  " + DemonstrationName(d) + ": they move on by " + Significant(d.distance, 2) +
-            " m on average\n";
+    table.Add({DemonstrationName(d, differ), Significant(d.advance, 2),
+               Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
   }
-  if (b.settles) {
-    text =
-        "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within two "
-        "seconds" +
-        std::string(line.empty() ? "\n" : "; so do\n" + line);
-  } else {
-    text = "NOT SETTLING, two seconds after a push:\n";
-    for (const Demonstration& d : b.demonstrations) {
-      if (d.settled) continue;
-      text += "  " + DemonstrationName(d) + ": " +
-              (d.fell ? "fell"
-                      : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
-                            " rad from rest") +
-              "\n";
-    }
-    text += line;
-  }
-  if (!b.harder_moves_farther) text += "a harder push does NOT move the line farther\n";
-  text += "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
-          (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
-  return text;
+  return table;
 }
 
 TextTable BehaviourTable(const FitResult& result) {
-  TextTable table(
-      {"demonstration", "two seconds after the push", "m/s", "rad from rest", "m moved"},
-      {true, true, false, false, false});
+  TextTable table({"demonstration", "two seconds after the push", "m/s", "rad from rest",
+                   "m moved on", "the pushed, m"},
+                  {true, true, false, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
   for (const Demonstration& d : result.behaviour.demonstrations) {
-    table.Add({DemonstrationName(d),
+    table.Add({DemonstrationName(d, differ),
                d.fell      ? "fell"
                : d.settled ? "stands"
                            : "still moving",
-               Significant(d.speed, 2), Significant(d.lean, 2), Significant(d.distance, 2)});
+               Significant(d.speed, 2), Significant(d.lean, 2), Significant(d.advance, 2),
+               Significant(d.pushed_advance, 2)});
   }
   return table;
 }
 
 TextTable PooledTable(const FitResult& result) {
   const bool by_setting = !result.settings.empty();
-  TextTable table({by_setting ? "setting" : "subject", "kg", "parameter", "value", "std error",
-                   "95 % interval", "unit"},
-                  {true, false, true, false, false, true, true});
-  const auto add = [&](const std::string& unit, const std::string& mass,
-                       const std::map<std::string, Estimate>& pooled) {
+  std::vector<std::string> header = {by_setting ? "setting" : "subject"};
+  std::vector<bool> left = {true};
+  if (!by_setting) header.push_back("kg"), left.push_back(false);
+  header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
+  left.insert(left.end(), {true, false, false, true, true});
+  TextTable table(header, left);
+  const auto add = [&table](const std::vector<std::string>& unit,
+                            const std::map<std::string, Estimate>& pooled) {
     for (const auto& [name, e] : pooled) {
-      table.Add({unit, mass, name, Significant(e.value), Significant(e.standard_error, 3),
-                 Interval(e.lower95, e.upper95), e.unit});
+      std::vector<std::string> row = unit;
+      row.insert(row.end(), {name, Significant(e.value), Significant(e.standard_error, 3),
+                             Interval(e.lower95, e.upper95), e.unit});
+      table.Add(row);
     }
   };
-  for (const auto& [id, subject] : result.subjects) {
-    add(id, Significant(subject.mass_kg), subject.pooled);
+  if (!by_setting) {
+    for (const auto& [id, subject] : result.subjects) {
+      add({id, Significant(subject.mass_kg)}, subject.pooled);
+    }
   }
-  for (const auto& [setting, pooled] : result.settings) add(setting, "", pooled);
+  for (const auto& [setting, pooled] : result.settings) add({setting}, pooled);
   return table;
 }
 

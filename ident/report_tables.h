@@ -22,8 +22,16 @@ TextTable PooledTable(const FitResult& result);
 // Pairs of parameters that the data separate poorly.
 std::string CorrelationText(const FitResult& result);
 
+// "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
+// for the shared values and say so.
+bool SettingsDiffer(const Behaviour& behaviour);
+std::string DemonstrationName(const Demonstration& d, bool settings_differ);
+
 // What people do after a push, in words, and demonstration by demonstration.
 std::string BehaviourText(const FitResult& result);
+// Where lines that are pushed forwards at their first person end up; only a header where nobody
+// touches.
+TextTable LinesTable(const FitResult& result);
 TextTable BehaviourTable(const FitResult& result);
 
 }  // namespace pushid

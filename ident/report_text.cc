@@ -18,14 +18,28 @@ std::string Count(int number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
 
+// A single recording has no error.
 std::string WithError(double value, double error, const MeanScore& mean) {
   if (mean.recordings == 0) return "-";
-  return Significant(value, 3) + " +- " + Significant(error, 2);
+  return Significant(value, 3) + (mean.recordings > 1 ? " +- " + Significant(error, 2) : "");
 }
 
 std::string MeanText(const MeanScore& mean) {
-  return Significant(mean.hip_ade, 3) + " +- " + Significant(mean.hip_ade_error, 2) + " / " +
-         Significant(mean.hip_fde, 3) + " +- " + Significant(mean.hip_fde_error, 2);
+  return WithError(mean.hip_ade, mean.hip_ade_error, mean) + " / " +
+         WithError(mean.hip_fde, mean.hip_fde_error, mean);
+}
+
+std::string PoolingText(const FitOptions& options) {
+  for (const ParameterSpec& spec : options.table.specs) {
+    if (spec.free && spec.pooled) return ", pooled by " + NameOf(options.pool_by);
+  }
+  return "";
+}
+
+std::string SelfFromText(const FitResult& result) {
+  const auto from = result.configuration.find("self_from");
+  if (from == result.configuration.end() || from->second.empty()) return "";
+  return ", self parameters from " + from->second;
 }
 
 }  // namespace
@@ -43,7 +57,7 @@ std::string ReportText(const FitResult& result) {
                      result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
                      ", self force " + NameOf(o.self_force) + ", interaction " +
-                     NameOf(o.model.interaction) + "\n\n";
+                     NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(result) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
@@ -56,7 +70,10 @@ std::string ReportText(const FitResult& result) {
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
-  text += BehaviourText(result) + "\n";
+  text += BehaviourText(result);
+  const TextTable lines = LinesTable(result);
+  if (lines.rows().size() > 1) text += lines.ToString();
+  text += "\n";
   text += "cost " + Significant(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
@@ -105,7 +122,8 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     }
   };
   if (m.by_magnitude.size() > 1) groups("strength ", &ScoreSummary::by_magnitude);
-  if (m.by_subject.size() > 1) groups("subject ", &ScoreSummary::by_subject);
+  const char* subject = m.propagation.recordings > 0 ? "pushed person " : "subject ";
+  if (m.by_subject.size() > 1) groups(subject, &ScoreSummary::by_subject);
   if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
   text += table.ToString();
   if (m.propagation.recordings == 0) return text;
@@ -141,9 +159,13 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
     folds.Add(row);
   }
   text += folds.ToString() + "\n";
-  TextTable table({"held out", "hipADE m", "hipFDE m", "frame-weighted",
-                   "hipADE - " + rivals[0].predictor, "failed", "fell", "settle"},
-                  {true, true, true, true, true, false, false, false});
+  TextTable table(
+      {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + rivals[0].predictor,
+       "failed", "fell", "settle", groups ? "harder, farther" : ""},
+      {true, true, true, true, true, false, false, false, false});
+  const auto folds_that = [](int number, const CrossValidation& rival) {
+    return rival.fits > 0 ? std::to_string(number) + " of " + std::to_string(rival.fits) : "";
+  };
   for (const CrossValidation& rival : rivals) {
     const MeanScore& mean = rival.summary.mean;
     const MeanScore& frames = rival.summary.frame_weighted;
@@ -156,8 +178,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
                               Significant(difference.hip_ade_error, 2)
                         : "",
                std::to_string(rival.failures), std::to_string(rival.falls),
-               rival.fits > 0 ? std::to_string(rival.settling) + " of " + std::to_string(rival.fits)
-                              : ""});
+               folds_that(rival.settling, rival),
+               groups ? folds_that(rival.harder_farther, rival) : ""});
   }
   text += table.ToString();
   if (!groups) return text;

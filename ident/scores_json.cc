@@ -69,6 +69,7 @@ Json ToJson(const CrossValidation& validation) {
   if (validation.fits > 0) {
     json["fits"] = validation.fits;
     json["fits_that_settle"] = validation.settling;
+    json["fits_that_move_lines_farther_the_harder"] = validation.harder_farther;
     json["slowest_to_settle_m_s"] = validation.slowest_to_settle;
   }
   json["folds"] = Json::array();

@@ -75,4 +75,7 @@ class SvgScale {
 // (viridis), so that it reads in grey and by the colour-blind.
 std::string ColourOf(double fraction);
 
+// The same for a fraction in [-1, 1]: from orange over near white at zero to blue.
+std::string SignedColourOf(double fraction);
+
 }  // namespace pushid

@@ -12,6 +12,11 @@ namespace {
 
 constexpr double kFileRounding = 1e-6;  // of a parameter
 
+bool IsFormation(const nlohmann::ordered_json& manifest) {
+  return manifest.is_object() && manifest.contains("synthetic") &&
+         manifest["synthetic"].is_object() && manifest["synthetic"].contains("formation");
+}
+
 }  // namespace
 
 Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path) {
@@ -23,6 +28,12 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
         .at("truth")
         .get<std::map<std::string, double>>();
   } catch (const nlohmann::json::exception&) {
+    if (IsFormation(document.value().content)) {
+      return Error{
+          "a formation of pushid-simulate --formation: its truth is the model it was rolled out "
+          "with; compare with that model's own report",
+          manifest_path};
+    }
     return Error{"no `synthetic.truth`: only recordings of pushid-simulate have a known truth",
                  manifest_path};
   }

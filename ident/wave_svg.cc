@@ -10,7 +10,7 @@ namespace pushid {
 namespace {
 
 constexpr double kLeft = 112, kTop = 40, kMapWidth = 610, kWidth = 960, kSide = 770;
-constexpr int kColours = 64;  // levels of speed that are told apart
+constexpr int kColours = 48;  // levels of speed that are told apart, either way
 constexpr char kPushFrame[] = "fill:none;stroke:#ff5a36;stroke-width:2";
 constexpr char kOnsetDot[] = "fill:#fff;stroke:#000;stroke-width:1";
 
@@ -41,8 +41,14 @@ class WavePicture {
   double RowTop(int person) const { return kTop + row_ * person; }
   // The colour goes with the root of the speed: a wave that fades stays visible.
   double Fraction(double speed) const { return fastest_ > 0.0 ? std::sqrt(speed / fastest_) : 0.0; }
+  // Negative for whoever goes back more than aside.
   int Level(int person, int frame) const {
-    return static_cast<int>(std::lround(Fraction(HipSpeed(run_, person, frame)) * (kColours - 1)));
+    const int level =
+        static_cast<int>(std::lround(Fraction(HipSpeed(run_, person, frame)) * (kColours - 1)));
+    if (frame == 0) return level;
+    const std::vector<Vector3<double>>& hip = run_.prediction.hip[person];
+    const Vector3<double> step = hip[frame] - hip[frame - 1];
+    return -step.x() > std::abs(step.y()) ? -level : level;
   }
 
   // Frames of the same level are one rectangle.
@@ -54,7 +60,7 @@ class WavePicture {
       // Overlaps the next one, for rounded numbers would leave gaps.
       const double overlap = end < run_.num_frames() ? 0.5 : 0.0;
       svg_.Rect({x, RowTop(person), time_(run_.Seconds(end)) - x + overlap, row_},
-                "fill:" + ColourOf(level / (kColours - 1.0)));
+                "fill:" + SignedColourOf(level / (kColours - 1.0)));
     }
   }
 
@@ -68,8 +74,10 @@ class WavePicture {
                 "ink small end");
     }
     const Outcome outcome = run_.summaries[person].outcome;
-    if (outcome == Outcome::kFell || (outcome == Outcome::kMoving && every == 1)) {
-      svg_.Text(kLeft + kMapWidth + 4, y, Name(outcome), "ink small");
+    if (outcome == Outcome::kFell || (outcome == Outcome::kSlow && every == 1)) {
+      // There is no room for "slow to settle".
+      svg_.Text(kLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : Name(outcome),
+                "ink small");
     }
   }
 
@@ -103,17 +111,22 @@ class WavePicture {
   }
 
   void ColourBar() {
-    constexpr double kLength = 160.0;
+    constexpr double kHalf = 80.0, kStep = kHalf / kColours;
+    const double middle = kSide + kHalf;
     svg_.Text(kSide, kTop + 2, "speed of the hip (m/s)", "ink");
-    for (int k = 0; k < kColours; ++k) {
-      svg_.Rect({kSide + kLength * k / kColours, kTop + 10, kLength / kColours, 12},
-                "fill:" + ColourOf(k / (kColours - 1.0)));
+    for (int k = -kColours; k < kColours; ++k) {
+      svg_.Rect({middle + kStep * k, kTop + 10, kStep, 12},
+                "fill:" + SignedColourOf((k + 0.5) / kColours));
     }
-    for (double v : SvgScale(0.0, fastest_, 0.0, 1.0).Ticks(5)) {
-      const double x = kSide + kLength * Fraction(v);
-      svg_.Line(x, kTop + 22, x, kTop + 26, "axis");
-      svg_.Text(x, kTop + 38, SvgNumber(v), "ink small middle");
+    for (double v : SvgScale(0.0, fastest_, 0.0, 1.0).Ticks(2)) {
+      for (double side : {-1.0, 1.0}) {
+        const double x = middle + side * kHalf * Fraction(v);
+        svg_.Line(x, kTop + 22, x, kTop + 26, "axis");
+        if (v > 0.0 || side > 0.0) svg_.Text(x, kTop + 37, SvgNumber(v), "ink small middle");
+      }
     }
+    svg_.Text(kSide, kTop + 51, "back", "ink small");
+    svg_.Text(middle + kHalf, kTop + 51, "forward or aside", "ink small end");
   }
 
   // Seen from above, x to the right as the push goes, y (left) up.
@@ -127,7 +140,7 @@ class WavePicture {
     }
     const double pixels =
         std::min(140.0 / std::max(x_max, 0.1), 110.0 / std::max(2.0 * y_max, 0.1));
-    const double left = kSide + 12, middle = kTop + 90 + pixels * y_max;
+    const double left = kSide + 12, middle = kTop + 102 + pixels * y_max;
     double radius = 11.0;
     for (size_t n = 1; n < people.size(); ++n) {
       const double gap = (people[n].start.q - people[n - 1].start.q).head<2>().norm();
@@ -135,7 +148,7 @@ class WavePicture {
     }
     std::set<int> pushed;
     for (const ScenePush& push : run_.recording.scene.pushes) pushed.insert(push.person);
-    svg_.Text(kSide, kTop + 66, "from above; pushes go right", "ink");
+    svg_.Text(kSide, kTop + 78, "from above; pushes go right", "ink");
     for (size_t n = 0; n < people.size(); ++n) {
       const double x = left + pixels * people[n].start.q[0];
       const double y = middle - pixels * people[n].start.q[1];

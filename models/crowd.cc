@@ -33,6 +33,8 @@ void Crowd::AdvanceSome(int first, int last) {
 }
 
 RolloutStatus Crowd::Advance() {
+  // The forces have gone on to what was received at the failed frame: there is no way back.
+  if (!status_.ok) return status_;
   forces_.Update(now_.data());
   const int people = scene_.num_people();
   const int threads = std::clamp(people / kPeoplePerThread, 1, num_threads_);
@@ -48,7 +50,9 @@ RolloutStatus Crowd::Advance() {
   for (std::thread& other : others) other.join();
   for (int n = 0; n < people; ++n) {
     const std::string_view outside = OutsideDomain(next_[n]);
-    if (!outside.empty()) return {false, frame_ + 1, n, outside};
+    if (outside.empty()) continue;
+    status_ = {false, frame_ + 1, n, outside};
+    return status_;
   }
   std::swap(before_, now_);
   std::swap(now_, next_);

@@ -25,7 +25,7 @@ class Crowd {
   Crowd& operator=(const Crowd&) = delete;
 
   // One frame on. Names the first person (in the scene's order) who leaves the model's domain;
-  // the crowd stays at the frame before.
+  // the crowd stays at the frame before, and further calls say the same.
   RolloutStatus Advance();
 
   int frame() const { return frame_; }
@@ -41,6 +41,7 @@ class Crowd {
   int num_threads_;
   SceneForces<double> forces_;
   int frame_ = 0;
+  RolloutStatus status_;
   std::vector<PendulumState<double>> before_, now_, next_;
 };
 

@@ -3,7 +3,8 @@
 //
 // Pushes go along +x, so people are numbered from the back (smallest x) forwards, and within a row
 // from the right (smallest y) to the left: person 0 is the one, or among the ones, pushed first.
-// Rows are centred on y = 0, the first row stands at x = 0.
+// The formation is centred on y = 0 as a whole (a last row that is not full stands to the right);
+// the first row stands at x = 0.
 #pragma once
 
 #include <Eigen/Core>

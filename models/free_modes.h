@@ -3,9 +3,12 @@
 // Linearized about the upright rest posture the two planes (x, theta) and (y, phi) decouple. With
 // e the angle's deviation, v the cart's velocity, w = e', masses M and m, rod l (all sources as in
 // self_force.h and ipm.h)
-//   M v' + sigma m l w' = f_v v + f_e e + f_w w          sigma = +1 (x, theta), -1 (y, phi)
-//   sigma m l v' + m l^2 w' = t_v v + (t_e + m g l) e + t_w w
-// so d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of rate zero and left out.
+//   (M + K) v' + m l w' = f_v v + f_e e + f_w w
+//   m l v' + m l^2 w' = t_v v + t_e e + t_w w
+// in the plane (x, theta), and alike in (y, phi) mirrored (phi turns towards -y). t_e is gravity
+// less the balance, m g l - Kp; K = Kd of the cart, scaled, acts like a mass (only with a backward
+// difference of the cart's velocity, here in the limit of short steps). So d/dt [e, v, w] = A [e,
+// v, w]; the cart's own place is a free mode of rate zero and left out.
 #pragma once
 
 #include <Eigen/Core>

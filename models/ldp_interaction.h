@@ -179,7 +179,9 @@ struct LeanTerm {
   }
 
  private:
-  // "a or b" of two switches, each weighted by the side the neighbour stands on.
+  // "I lean towards the neighbour, or the neighbour leans towards me", of two smooth switches;
+  // side: +1 where the neighbour stands ahead (or to the left), -1 where behind. The caller weights
+  // the two sides.
   template <typename T>
   static T TowardsEachOther(const T& mine, const T& theirs, double side) {
     const T a = SoftStep<T>(side * mine - kLdpLean, kLdpSoftLean);

@@ -36,7 +36,7 @@ class NeighbourGrid {
     near->clear();
     const auto consider = [&](int other) {
       const Eigen::Vector2d apart = (at_[other] - at_[person]).cwiseAbs();
-      const bool close = other != person && apart[0] < reach_[0] && apart[1] < reach_[1];
+      const bool close = other != person && apart[0] <= reach_[0] && apart[1] <= reach_[1];
       if (close && keep(other)) near->push_back(other);
     };
     ForEachCandidate(person, consider);
@@ -90,16 +90,16 @@ class PairFinder {
   void Update(const ParameterSet<T>& p, const PendulumState<T>* states) {
     if (!Active()) return;
     for (int i = 0; i < kNumParameters; ++i) parameters_[i] = RealPart(p[i]);
-    double lean = 0.0;
+    double lean_squared = 0.0;  // m^2, of the contact point farthest off its cart
     for (std::size_t n = 0; n < cart_.size(); ++n) {
       const Vector4<T>& t = states[n].q;
       const Vector4<double> q(RealPart(t[0]), RealPart(t[1]), RealPart(t[2]), RealPart(t[3]));
       cart_[n] = q.head<2>();
       if (!terms_.Contact()) continue;
       point_[n] = ContactPoint<double>(scene_->people[n].body, q, parameters_[kContactHeight]);
-      lean = std::max(lean, (point_[n] - cart_[n]).squaredNorm());
+      lean_squared = std::max(lean_squared, (point_[n] - cart_[n]).squaredNorm());
     }
-    grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean)));
+    grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean_squared)));
   }
 
   // Neighbours of a person in canonical order.

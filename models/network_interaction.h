@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "models/ldp_interaction.h"
 #include "models/mlp.h"

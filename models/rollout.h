@@ -96,6 +96,10 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
 }
 
 // The initial velocities that the scene itself holds.
-std::vector<Vector4<double>> InitialVelocities(const Scene& scene);
+inline std::vector<Vector4<double>> InitialVelocities(const Scene& scene) {
+  std::vector<Vector4<double>> velocities;
+  for (const ScenePerson& person : scene.people) velocities.push_back(person.start.qd);
+  return velocities;
+}
 
 }  // namespace pushid

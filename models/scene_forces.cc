@@ -1,5 +1,5 @@
 // models: which forces act when; what does not depend on the scalar.
-#include "models/rollout.h"
+#include "models/scene_forces.h"
 
 namespace pushid {
 
@@ -29,12 +29,6 @@ std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& option
     self.emplace_back(options, person.body, person.start.q, scene.dt);
   }
   return self;
-}
-
-std::vector<Vector4<double>> InitialVelocities(const Scene& scene) {
-  std::vector<Vector4<double>> velocities;
-  for (const ScenePerson& person : scene.people) velocities.push_back(person.start.qd);
-  return velocities;
 }
 
 }  // namespace pushid

@@ -1,8 +1,8 @@
 // models: the net force on everybody in a scene, frame by frame.
 //
-//   F_net = self force + push + tail + interaction + drive, where by push kind and PushUse (DESIGN
-//   section 3) a `net` push may replace all other forces, and a `net_without_friction` push all but
-//   the friction, while it lasts.
+//   F_net = self force + push + tail + interaction + drive, where by push kind (push.h) and PushUse
+//   (options.h) a `net` push may replace all other forces, and a `net_without_friction` push all
+//   but the friction, while it lasts.
 //
 // Templated, so that the same lines serve doubles and automatic differentiation.
 #pragma once

@@ -57,6 +57,15 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--function_tolerance=nan"}, {"--function_tolerance"}},
       {{"--pooling_sigma=0"}, {"--pooling_sigma"}},
       {{"--mode_margin=inf"}, {"--mode_margin"}},
+      {{"--mode_weight=-1"}, {"--mode_weight"}},
+      {{"--settling_weight=-2"}, {"--settling_weight"}},
+      {{"--pool_by=subject"}, {"--pool_by", "--pool"}},
+      {{"--preset=group", "--pool=none", "--pooling_sigma=0.3"}, {"--pooling_sigma", "--pool"}},
+      {{"--interaction=contact,contact"}, {"--interaction", "'contact' twice"}},
+      {{"--interaction=contact,spring"}, {"--interaction", "'spring' twice"}},
+      {{"--interaction=contact,none"}, {"--interaction", "none stands alone"}},
+      {{"--bootstrap=9", "--bootstrap_file=" + Path("out.json")},
+       {"--model_out", "--bootstrap_file", "out.json"}},
       {{"--interaction=hug"}, {"--interaction", "hug", "contact"}},
       {{"--interaction=drive"}, {"drive", "add contact"}},
       {{"--interaction=network"}, {"--interaction_network"}},
@@ -130,6 +139,13 @@ TEST_F(BadUsageTest, Models) {
   }
   EXPECT_TRUE(
       Refused(RunApp("pushid-report", {"--model=" + Path("none")}), {"none", "no such file"}));
+}
+
+TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
+  FitModel("m.json", {"--fix=mu_y=10", "--quiet"});
+  EXPECT_TRUE(Contains(fit_.err, "warning: --fix=mu_y=10 does nothing"));
+  FitModel("m.json", {"--interaction=ldp_discrete", "--quiet"});
+  EXPECT_TRUE(Contains(fit_.err, "warning: --interaction=ldp_discrete"));
 }
 
 TEST_F(BadUsageTest, WhatIfsAndIds) {
@@ -207,6 +223,8 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
       {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
       {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
+      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"},
+       {"--compare", "'held'", "nothing is left"}},
   };
   for (const Case& one : cases) {
     SCOPED_TRACE(one.flags[0]);

@@ -35,13 +35,13 @@ class SimulateFormationTest : public AppTest {
   std::string model_;  // flag
 };
 
-// The onsets of the table on stdout, "-" for none: the lines between its header and the last line.
+// The onsets of the table on stdout, "-" for none: the lines between its header and the legend.
 std::vector<std::string> Onsets(const std::string& out) {
   std::istringstream lines(out.substr(out.find("person   x")));
   std::vector<std::string> onsets;
   std::string line;
   std::getline(lines, line);
-  while (std::getline(lines, line) && line.find("people moved") == std::string::npos) {
+  while (std::getline(lines, line) && line.find("outcome: ") == std::string::npos) {
     std::istringstream words(line);
     std::string person, x, y, onset;
     words >> person >> x >> y >> onset;
@@ -61,7 +61,8 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const std::vector<std::string> onsets = Onsets(run.out);
   ASSERT_EQ(onsets.size(), 4u) << run.out;
   for (int n = 1; n < 4; ++n) EXPECT_GT(std::stod(onsets[n]), std::stod(onsets[n - 1])) << run.out;
-  EXPECT_TRUE(Contains(run.out, "4 of 4 people moved"));
+  EXPECT_TRUE(Contains(run.out, "4 of 4 people moved by 2 cm or more; from person 0 to 3"));
+  EXPECT_TRUE(Contains(run.out, "outcome: judged 2 s after the last push, or after the onset"));
 
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
@@ -78,6 +79,8 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
       "pushid-evaluate",
       {model_, "--recordings=" + Path("line/manifest.json"), "--json_out=" + Path("scores.json")});
   ASSERT_EQ(scores.exit_code, 0) << scores.err;
+  EXPECT_TRUE(Refused(RunApp("pushid-report", {model_, "--truth=" + Path("line/manifest.json")}),
+                      {"a formation of pushid-simulate", "the model"}));
   EXPECT_LT(Json(Path("scores.json"))["mean"]["hipADE_m"].get<double>(), 1e-9) << scores.out;
 }
 
@@ -86,12 +89,14 @@ TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "13 people in a diamond"));
   EXPECT_EQ(Onsets(run.out).size(), 13u);
+  EXPECT_TRUE(Contains(run.out, "no speed: several people are pushed"));
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   const AppRun run = Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5",
                                "--fps=120", "--bvh_out=" + Path("three")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "no speed: there are several pushes"));
   const auto pushes = Json(Path("three/manifest.json"))["recordings"][0]["pushes"];
   ASSERT_EQ(pushes.size(), 3u);
   EXPECT_EQ(pushes[1]["start_frame"], 120);
@@ -119,6 +124,9 @@ TEST_F(SimulateFormationTest, WhoLeavesTheDomainIsNamedAndNothingIsWritten) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(run.out, "");
   EXPECT_TRUE(Contains(run.err, "of person 0 leaves the model's domain at frame"));
+  EXPECT_TRUE(Contains(run.err, "try a weaker or longer push"));
+  const AppRun coarse = Simulate({"--formation=line", "--push=2000", "--fps=20"});
+  EXPECT_TRUE(Contains(coarse.err, "try --fps=60"));
   for (const char* out : {"out.csv", "out", "out.svg"}) {
     EXPECT_FALSE(std::filesystem::exists(Path(out))) << out;
   }
@@ -162,6 +170,10 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
       {{"--out=" + Path("made"), "--spacing=1"}, {"--spacing needs --formation"}},
       {{"--out=" + Path("made"), "--svg_out=x"}, {"--svg_out needs --formation"}},
+      {{"--out=" + Path("made"), "--as_setting=row"}, {"--as_setting needs --formation"}},
+      {{"--formation=line", "--push=80@0,80@3", "--duration=2"}, {"--duration", "at 3 s"}},
+      {{"--formation=line", "--csv_out=" + Path("o"), "--forces_out=" + Path("./o")},
+       {"--csv_out and --forces_out", "file of its own"}},
   };
   const int files = CountFiles();
   for (const auto& one : cases) {

@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "datasets/load_recordings.h"
+#include "datasets/random.h"
 #include "datasets/synthetic_recordings.h"
 #include "ident/fit_result.h"
+#include "ident/report_tables.h"
+#include "models/free_modes.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -75,6 +80,84 @@ TEST(Behaviour, TooSoftABalanceFalls) {
   EXPECT_GT(b.fastest_growth, 0.5);
   EXPECT_FALSE(b.settles);
   EXPECT_TRUE(b.demonstrations.back().fell);
+}
+
+// Largest real root of the free modes' polynomials, 1/s.
+double FastestFreeMode(const ModelOptions& options, const ParameterSet<double>& p) {
+  const Body body{80.0, kReferenceRod, 0.0};
+  double fastest = -1e9;
+  for (int plane : {0, 1}) {
+    const ModePolynomial<double> c = FreeModes<double>(options, body, p, plane);
+    Eigen::Matrix3d companion;
+    companion << 0, 0, -c.c0, 1, 0, -c.c1, 0, 1, -c.c2;
+    fastest = std::max(fastest, companion.eigenvalues().real().maxCoeff());
+  }
+  return fastest;
+}
+
+// The step's growth is that of the modes in the limit of short steps; here they differ by percents.
+TEST(Behaviour, GrowthIsThatOfTheFreeModesWithAndWithoutTheCartsAcceleration) {
+  Random random(11);
+  int grow = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    ModelOptions options = SyntheticOptions::TailModel();
+    options.friction = FrictionKind::kAnisotropic;
+    ParameterSet<double> p = FirmParameters();
+    p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
+    p[kAx] = random.Uniform(-15, 2);
+    p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
+    for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
+      options.cart_derivative = derivative;
+      const double growth = ComputeBehaviour(options, p).fastest_growth;
+      const double mode = FastestFreeMode(options, p);
+      EXPECT_NEAR(growth, mode, 0.02 + 0.1 * std::abs(mode)) << "Kd_x " << p[kKdX];
+      grow += growth > 0.0;
+    }
+  }
+  EXPECT_GT(grow, 10);
+  EXPECT_LT(grow, 110);
+}
+
+// Five in a line, the pushed one thrown back by the contact: the signed means say so.
+TEST(Behaviour, MovesAreSignedAlongThePush) {
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.interaction.spring = options.interaction.damping = true;
+  ParameterSet<double> p = FirmParameters();
+  p[kContactStiffness] = 2900.0, p[kContactDistance] = 0.47, p[kContactKappa] = 0.45;
+  p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
+  p[kAx] = -18.0, p[kMu] = 8.0;
+  const Behaviour b = ComputeBehaviour(options, p);
+  ASSERT_EQ(b.demonstrations.size(), 12u);
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.people == 1) {
+      EXPECT_EQ(d.advance, d.pushed_advance);
+      EXPECT_NEAR(std::abs(d.advance), d.distance, 1e-3);
+    }
+    EXPECT_LE(std::abs(d.advance), d.distance + 1e-12);
+  }
+  const Demonstration& hardest = b.demonstrations.back();
+  EXPECT_LT(hardest.pushed_advance, 0.0);
+  EXPECT_LT(hardest.advance, 0.9 * hardest.distance);
+  ASSERT_NE(b.FarthestBehind(), nullptr);
+  EXPECT_LE(b.FarthestBehind()->pushed_advance, hardest.pushed_advance);
+  EXPECT_EQ(Of(FirmParameters()).FarthestBehind(), nullptr);
+}
+
+TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
+  Behaviour b;
+  Demonstration weak, hard;
+  weak.people = hard.people = kLinePeople;
+  weak.setting = hard.setting = "row";
+  weak.advance = -0.01, hard.advance = -0.3, hard.pushed_advance = -0.6;
+  weak.distance = 0.01, hard.distance = 0.4;
+  b.demonstrations = {weak, hard};
+  b.harder_moves_farther = false;
+  FitResult result;
+  result.behaviour = b;
+  const std::string text = BehaviourText(result) + LinesTable(result).ToString();
+  EXPECT_TRUE(Contains(text, "does NOT move the line on farther: row"));
+  EXPECT_TRUE(Contains(text, "-0.3"));
+  EXPECT_TRUE(Contains(text, "-0.6"));
 }
 
 // Upright, friction and damping off along x: the cart's speed neither grows nor fades.

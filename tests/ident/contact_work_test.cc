@@ -151,6 +151,13 @@ TEST(ContactFigures, MomentumCrossesFromOneToTheNext) {
   EXPECT_NEAR(score.figures[kContactWork].sum, total, 1e-9);
   EXPECT_GT(score.figures[kRestitution].sum, 0.0);
   EXPECT_LT(score.figures[kRestitution].sum, score.figures[kRestitution].weight);
+
+  // Not where something else than mutual contact acts between people.
+  model.options.interaction.lean = true;
+  PropagationScore mixed = ScorePropagation(recording, prediction.hip);
+  AddContactFigures(model, recording, prediction, &mixed);
+  EXPECT_EQ(mixed.figures[kRestitution].weight, 0.0);
+  EXPECT_GT(mixed.figures[kContactAbsorbed].sum, 0.0);
 }
 
 }  // namespace

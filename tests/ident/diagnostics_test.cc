@@ -7,6 +7,7 @@
 
 #include "ident/advice.h"
 #include "ident/confidence_text.h"
+#include "ident/fit_command.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -163,6 +164,7 @@ TEST(Leverage, IsWhatRefitsFind) {
 TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
   FitResult result = *result_;
   result.configuration = {{"setting", "single"}, {"preset", "tail"}, {"fix", "mu_y=10"}};
+  result.changed_flags = {"fix", "setting"};
   result.diagnostics.leverage.in_errors[5][0] = 1.7;
   const std::vector<Advice> advice = Advise(result);
   const auto about = std::find_if(advice.begin(), advice.end(), [](const Advice& a) {
@@ -173,6 +175,62 @@ TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
   EXPECT_TRUE(Contains(about->command, "--setting=single --fix=mu_y=10 --leave_out="));
   result.diagnostics.advice = advice;
   EXPECT_TRUE(Contains(DiagnosticsText(result), about->command));
+}
+
+std::string AllAdvice(const FitResult& result) {
+  std::string all;
+  for (const Advice& advice : Advise(result)) all += advice.sentence + "\n" + advice.command + "\n";
+  return all;
+}
+
+TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
+  FitResult result;
+  result.manifest = "my data/manifest.json";
+  result.configuration = {
+      {"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
+      {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
+      {"preset_priors", "false"}, {"profile", "all"}, {"pooling_sigma", "0.14999999999999999"}};
+  result.changed_flags = {"fix",           "interaction", "leave_out",     "pool",
+                          "pooling_sigma", "preset",      "preset_priors", "profile"};
+  const FitCommand same("pushid-fit", result);
+  EXPECT_EQ(same.ToString(),
+            "pushid-fit --recordings='my data/manifest.json' --leave_out=a,b --preset=group "
+            "--fix=mu=3 --interaction=none --pool=none --pooling_sigma=0.15 --preset_priors=false");
+  EXPECT_TRUE(Contains(FitCommand(same).Append("fix", "a_x=1").ToString(), "--fix=mu=3,a_x=1 "));
+  const std::string set = FitCommand(same).Set("interaction", "contact").ToString();
+  EXPECT_TRUE(Contains(set, "--interaction=contact "));
+  EXPECT_FALSE(Contains(set, "--interaction=none"));
+}
+
+TEST(Advice, IsNotWhatIsOnAlready) {
+  FitResult result;
+  result.recordings.resize(3);
+  Whiteness follows;
+  follows.channel = "hip x";
+  follows.push = {0.9};
+  follows.push_error = {0.01};
+  result.diagnostics.whiteness = {follows};
+  result.behaviour.settles = false;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--self_force=linear"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--settling_weight=10"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--bootstrap=199"));
+  result.options.self_force = SelfForceKind::kLinear;
+  result.options.settling_weight = 20.0;
+  EXPECT_FALSE(Contains(AllAdvice(result), "--self_force=linear"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--settling_weight=40"));
+  result.options.model.push_tail = PushTail::kNone;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--push_tail=exponential"));
+}
+
+TEST(Advice, OfGroupsAndOfSingleRecordings) {
+  FitResult result;
+  result.recordings.resize(1);
+  EXPECT_FALSE(Contains(AllAdvice(result), "--bootstrap"));
+  EXPECT_FALSE(Contains(AllAdvice(result), "--interaction"));
+  result.recordings[0].people = 4;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--interaction=contact"));
+  result.options.model.interaction.spring = true;
+  EXPECT_FALSE(Contains(AllAdvice(result), "--interaction"));
 }
 
 TEST(Advice, OfNullDirectionsHoldsOneOfThem) {

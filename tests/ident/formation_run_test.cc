@@ -127,6 +127,20 @@ TEST(FormationPictures, NobodyPushedNobodyMoves) {
       RunFormation(ContactModel(), SampleFormation(FormationShape::kLine, 1, {}), 10);
   EXPECT_FALSE(Has(WaveSvg(run, "still"), "nan"));
   EXPECT_FALSE(Has(ForcesSvg(run, "still"), "nan"));
+  EXPECT_TRUE(Has(ForcesSvg(run, "still"), ">nothing<"));
+}
+
+TEST(FormationPictures, RecoilIsNotDrawnAsTheWave) {
+  // The pushed one of a line comes back; alone with as much friction nobody does.
+  const std::string line = WaveSvg(RunShape(FormationShape::kLine, 3, {0}), "line");
+  EXPECT_TRUE(Has(line, ">back<"));
+  EXPECT_TRUE(Has(line, ">forward or aside<"));
+  const FormationRun run = RunShape(FormationShape::kLine, 3, {0});
+  bool recoils = false;
+  for (int t = 1; t < run.num_frames(); ++t) {
+    recoils = recoils || run.prediction.hip[0][t].x() < run.prediction.hip[0][t - 1].x();
+  }
+  EXPECT_TRUE(recoils);
 }
 
 }  // namespace

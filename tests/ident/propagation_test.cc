@@ -111,6 +111,25 @@ TEST(Propagation, SinglePeopleHaveNone) {
   EXPECT_EQ(SummarizePropagation({&score}).recordings, 0);
 }
 
+// Whoever misses all but the pushed person has no onset error to be praised for.
+TEST(Propagation, OnsetErrorsOfAModelThatMissesMostMoversAreNotShown) {
+  PropagationSummary misses;
+  misses.recordings = 1;
+  misses.movers = 5.0;
+  misses.missed_movers = 4.0;
+  misses.figures[kOnsetError] = {1.25, 0.0, 1.0};
+  misses.figures[kOnsetErrorWithMissed] = {33.5, 0.0, 5.0};
+  PropagationSummary finds = misses;
+  finds.missed_movers = 2.0;
+  const std::string text = PropagationText({{"misses", &misses}, {"finds", &finds}});
+  EXPECT_EQ(text.find("1.25"), text.rfind("1.25")) << text;
+  EXPECT_TRUE(Contains(text, "33.5"));
+  EXPECT_TRUE(Contains(text, "most movers are missed"));
+  EXPECT_FALSE(Contains(PropagationText({{"finds", &finds}}), "most movers are missed"));
+  EXPECT_EQ(FoldPropagationCells(misses)[0], "-");
+  EXPECT_EQ(FoldPropagationCells(finds)[0], "1.25");
+}
+
 // A wave of 2.5 m/s, people unevenly apart.
 TEST(Propagation, SpeedOfAPlantedWave) {
   const std::vector<double> x = {0.0, 0.6, 1.1, 1.9, 2.4};

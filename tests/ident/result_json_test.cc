@@ -24,6 +24,7 @@ FitResult SampleResult(const TableEdits& edits = {}, int num_threads = 1) {
   FitResult result = Fit(MakePendulums(study), options);
   result.version = "0.1.0";
   result.configuration = {{"seed", "1"}, {"preset", "tail"}};
+  result.changed_flags = {"preset"};
   result.manifest = "m.json";
   result.manifest_hash = "abc";
   result.setting = "single";
@@ -168,7 +169,8 @@ TEST(ResultJson, DamageIsNamed) {
   EXPECT_TRUE(Contains(message(json), "damaged"));
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
-    if (key == "format_version" || key == "diagnostics") continue;  // older models have none
+    // Older models have none.
+    if (key == "format_version" || key == "diagnostics" || key == "changed_flags") continue;
     json = good;
     json.erase(key);
     EXPECT_FALSE(message(json).empty()) << key;

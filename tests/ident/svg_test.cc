@@ -40,6 +40,9 @@ TEST(Svg, ColoursRunFromDarkToBright) {
   EXPECT_EQ(ColourOf(-1), "#440154");
   EXPECT_EQ(ColourOf(1), "#fde725");
   EXPECT_EQ(ColourOf(0.2), "#414487");
+  EXPECT_EQ(SignedColourOf(-2), "#7f3b08");  // brown
+  EXPECT_EQ(SignedColourOf(0), "#f4f4f4");
+  EXPECT_EQ(SignedColourOf(1), "#053061");  // blue
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace pushid {
 namespace {
 
-// The tail model of DESIGN section 3, quoted for the reference person.
+// The tail model of the published recordings, quoted for the reference person.
 ParameterSet<double> SensibleGains() {
   ParameterSet<double> p{};
   p[kMu] = 29.0;
@@ -57,7 +57,7 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
     for (double impulse : {4.0, 25.0, 80.0}) {
       const RestProblem problem =
           SettlingProblem(DemonstrationScene(mass, impulse), {}, map, {}, 1.0);
-      // Half a mean square in sigmas; DESIGN's settled person is within 0.1 m/s and 0.05 rad.
+      // Half a mean square in sigmas; a settled person is within 0.1 m/s and 0.05 rad.
       EXPECT_LT(Cost(problem, {SharedBlock(map, SensibleGains())}), 0.02)
           << mass << ", " << impulse;
       // A person who drives themselves never stops walking.
