@@ -190,7 +190,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
   u.freedom = u.clustered ? u.num_clusters - 1 : c.freedom;
   u.t_quantile = StudentQuantile95(u.freedom);
   u.covariance = u.clustered ? c.clustered : c.naive;
-  u.too_few_clusters = u.clustered && u.num_clusters - 1 < c.directions.rank;
+  u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
   u.correlation = Correlation(u.too_few_clusters ? c.naive : u.covariance);
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();

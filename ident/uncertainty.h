@@ -50,8 +50,8 @@ struct Uncertainty {
   int freedom = 1;                // degrees of freedom of Student's t
   double t_quantile = 0.0;        // of the 95 % interval
   double condition_number = 0.0;  // of the scaled Jacobian, without null directions
-  // Fewer clusters than fitted numbers and one: the clustered covariance has no full rank, so
-  // correlations are the naive ones, and nobody is called identified.
+  // Fewer clusters than shared parameters and one: their clustered covariance has no full rank, so
+  // correlations are the naive ones, and nothing is called identified.
   bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
