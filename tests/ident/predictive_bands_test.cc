@@ -41,9 +41,8 @@ TEST(PredictiveBands, BootstrapRowsAreParameterSets) {
   options.from_bootstrap = true;
   for (const ParameterSet<double>& set : SampleParameters(result, options).value()) {
     const auto& rows = result.bootstrap->values;
-    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&set](const std::vector<double>& row) {
-      return row[0] == set[kMu];
-    }));
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(),
+                            [&set](const std::vector<double>& row) { return row[0] == set[kMu]; }));
   }
 }
 
