@@ -26,7 +26,7 @@ Crowd::Crowd(Scene scene, const ModelOptions& options, std::vector<ParameterSet<
 void Crowd::AdvanceSome(int first, int last) {
   std::vector<int> scratch;
   for (int n = first; n < last; ++n) {
-    forces_.Interact(n, &scratch);
+    forces_.Prepare(n, &scratch);
     const Vector4<double> force = forces_.On(n, frame_, before_[n].qd).Total();
     next_[n] = Step(now_[n], Acceleration(scene_.people[n].body, now_[n], force), scene_.dt);
   }

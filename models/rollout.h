@@ -61,14 +61,16 @@ std::string_view OutsideDomain(const PendulumState<T>& state) {
 }
 
 // initial_velocity: one entry per person; parameters as in SceneForces. path is overwritten; on
-// failure it holds the frames before the named one. trace may be null.
+// failure it holds the frames before the named one. trace may be null. network_weights: as in
+// SceneForces.
 template <typename T>
 RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const std::vector<ParameterSet<T>>& parameters,
                       const std::vector<Vector4<T>>& initial_velocity, int num_frames,
-                      RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr) {
+                      RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
+                      const T* network_weights = nullptr) {
   const int people = scene.num_people();
-  SceneForces<T> forces(scene, options, parameters);
+  SceneForces<T> forces(scene, options, parameters, network_weights);
   std::vector<int> scratch;
   *path = RolloutPath<T>(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
@@ -80,7 +82,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
     const bool last = t + 1 == num_frames;
     if (last && trace == nullptr) break;
     forces.Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces.Interact(n, &scratch);
+    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
     for (int n = 0; n < people; ++n) {
       const NetForce<T> force = forces.On(n, t, path->At(t > 0 ? t - 1 : 0, n).qd);
       if (trace != nullptr) trace->At(t, n) = force;

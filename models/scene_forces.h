@@ -1,8 +1,8 @@
 // models: the net force on everybody in a scene, frame by frame.
 //
-//   F_net = self force + push + tail + interaction + drive, where by push kind (push.h) and PushUse
-//   (options.h) a `net` push may replace all other forces, and a `net_without_friction` push all
-//   but the friction, while it lasts.
+//   F_net = self force + network + push + tail + interaction + drive, where by push kind (push.h)
+//   and PushUse (options.h) a `net` push may replace all other forces, and a `net_without_friction`
+//   push all but the friction, while it lasts.
 //
 // Templated, so that the same lines serve doubles and automatic differentiation.
 #pragma once
@@ -16,6 +16,7 @@
 #include "models/parameters.h"
 #include "models/scene.h"
 #include "models/self_force.h"
+#include "models/self_network.h"
 
 namespace pushid {
 
@@ -37,9 +38,10 @@ struct NetForce {
   Vector4<T> tail = Vector4<T>::Zero();
   Vector4<T> interaction = Vector4<T>::Zero();
   Vector4<T> drive = Vector4<T>::Zero();
+  Vector4<T> network = Vector4<T>::Zero();
 
   Vector4<T> Total() const {
-    return friction + balance + linear + push + tail + interaction + drive;
+    return friction + balance + linear + push + tail + interaction + drive + network;
   }
 };
 
@@ -53,7 +55,8 @@ template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
                        const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                       const Received<T>& received = {}) {
+                       const Received<T>& received = {},
+                       const Vector4<T>& network = Vector4<T>::Zero()) {
   NetForce<T> force;
   force.push = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
@@ -70,27 +73,32 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   force.linear = self.Linear(p, state);
   force.interaction = received.now;
   if (options.interaction.drive) force.drive = DriveForce(p, received.lately);
+  force.network = network;
   return force;
 }
 
 // The self force of everybody in a scene.
 std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
 
-// Everything a step needs besides the states, allocated once. Frame by frame: Update, then On for
-// each person, in any order and from any thread (each with a scratch of its own).
+// Everything a step needs besides the states, allocated once. Frame by frame: Update,
+// Prepare for each person, then On, each person in any order and from any thread (each with a
+// scratch of its own).
 template <typename T>
 class SceneForces {
  public:
   // parameters: one entry per person, or a single one for everybody. What two people share (the
   // pair parameters) is taken from the first. All arguments must outlive the object.
+  // network_weights: of options.self_network, instead of its own.
   SceneForces(const Scene& scene, const ModelOptions& options,
-              const std::vector<ParameterSet<T>>& parameters)
+              const std::vector<ParameterSet<T>>& parameters, const T* network_weights = nullptr)
       : scene_(&scene),
         options_(&options),
         parameters_(&parameters),
         self_(SelfForces(scene, options)),
         finder_(scene, options.interaction),
-        received_(scene.people.size()) {}
+        received_(scene.people.size()) {
+    if (options.self_network != nullptr) StartNetworks(network_weights);
+  }
 
   // states: of everybody at the next frame, the first one at the first call.
   void Update(const PendulumState<T>* states) {
@@ -105,8 +113,9 @@ class SceneForces {
     finder_.Update(Parameters(0), states);
   }
 
-  // What everybody does to one person. Each person adds up in canonical order (neighbours.h).
-  void Interact(int person, std::vector<int>* scratch) {
+  // What everybody does to one person, and what her own network answers: once a frame. Each person
+  // adds up in canonical order (neighbours.h).
+  void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
     Vector4<T> sum = Vector4<T>::Zero();
     for (int other : *scratch) {
@@ -116,6 +125,13 @@ class SceneForces {
       if (force.acts) sum += first ? force.on_n : force.on_j;
     }
     received_[person].now = sum;
+    if (networks_.empty()) return;
+    const PendulumState<T>& state = states_[person];
+    const SelfForce& self = self_[person];
+    SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
+                        T(0.0), &networks_[person].state);
+    networks_[person].force = StepNetwork(options_->self_network->shape, network_weights_,
+                                          self.body.mass, &networks_[person].state);
   }
 
   PairForce<T> Between(int n, int j) const {
@@ -126,7 +142,8 @@ class SceneForces {
   // The parts of the net force; qd_previous: the velocity one frame earlier.
   NetForce<T> On(int person, int frame, const Vector4<T>& qd_previous) const {
     return NetForceAt(*scene_, *options_, self_[person], Parameters(person), person, frame,
-                      states_[person], qd_previous, received_[person]);
+                      states_[person], qd_previous, received_[person],
+                      networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force);
   }
 
   const ParameterSet<T>& Parameters(int person) const {
@@ -134,15 +151,36 @@ class SceneForces {
   }
   const SelfForce& self(int person) const { return self_[person]; }
   const Received<T>& received(int person) const { return received_[person]; }
+  // As Prepare left it; only where options have a network.
+  const NetworkState<T>& network(int person) const { return networks_[person].state; }
   PairFinder& pairs() { return finder_; }
 
  private:
+  struct Network {
+    NetworkState<T> state;
+    Vector4<T> force;
+  };
+
+  void StartNetworks(const T* weights) {
+    const SelfNetwork& network = *options_->self_network;
+    if (weights == nullptr) {
+      for (double weight : network.weights) own_weights_.push_back(T(weight));
+    }
+    network_weights_ = weights != nullptr ? weights : own_weights_.data();
+    for (const SelfForce& self : self_) {
+      networks_.push_back({NetworkState<T>(network.shape, self.body), Vector4<T>::Zero()});
+    }
+  }
+
   const Scene* scene_;
   const ModelOptions* options_;
   const std::vector<ParameterSet<T>>* parameters_;
   std::vector<SelfForce> self_;
   PairFinder finder_;
   std::vector<Received<T>> received_;
+  std::vector<Network> networks_;
+  std::vector<T> own_weights_;
+  const T* network_weights_ = nullptr;
   const PendulumState<T>* states_ = nullptr;
   bool started_ = false;
 };

@@ -9,7 +9,8 @@ BlockLayout::BlockLayout(const ParameterMap& map,
                          const std::vector<std::string>& unit_of_each_person, bool free_velocity)
     : free_initial_velocity(free_velocity),
       num_shared(map.num_shared()),
-      num_deviations(map.num_deviations) {
+      num_deviations(map.num_deviations),
+      num_weights(map.num_weights) {
   for (const std::string& unit : unit_of_each_person) {
     const auto found = std::find(units.begin(), units.end(), unit);
     unit_of_person.push_back(static_cast<int>(found - units.begin()));
@@ -21,6 +22,7 @@ std::vector<int> BlockLayout::BlockSizes() const {
   std::vector<int> sizes = {num_shared};
   if (num_deviations > 0) sizes.insert(sizes.end(), units.size(), num_deviations);
   if (free_initial_velocity) sizes.push_back(4 * num_people());
+  if (num_weights > 0) sizes.push_back(num_weights);
   return sizes;
 }
 
@@ -36,7 +38,9 @@ int BlockLayout::DeviationColumn(int person) const {
 }
 
 int BlockLayout::VelocityColumn() const {
-  return free_initial_velocity ? num_columns() - 4 * num_people() : -1;
+  return free_initial_velocity ? num_columns() - num_weights - 4 * num_people() : -1;
 }
+
+int BlockLayout::WeightColumn() const { return num_weights > 0 ? num_columns() - num_weights : -1; }
 
 }  // namespace pushid

@@ -4,7 +4,8 @@
 //   0        shared values on the fitted scale, one entry per fitted parameter
 //   1 .. S   deviations of each distinct unit - subject or setting - one entry per pooled parameter
 //            (absent when none)
-//   last     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
+//   next     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
+//   last     weights of the self-force network (only when there is one)
 // A person's value is natural(shared + deviation); with no deviation, natural(shared). Adding on
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
 #pragma once
@@ -72,6 +73,7 @@ struct ParameterMap {
   std::vector<FittedParameter> fitted;  // in the order of the shared block
   int num_deviations = 0;               // length of a unit's block; 0: no such blocks
   PoolBy pool_by = PoolBy::kSubject;
+  int num_weights = 0;  // of the self-force network
 
   int num_shared() const { return static_cast<int>(fitted.size()); }
 
@@ -111,6 +113,7 @@ struct BlockLayout {
   bool free_initial_velocity = false;
   int num_shared = 0;
   int num_deviations = 0;
+  int num_weights = 0;
 
   BlockLayout() = default;
   BlockLayout(const ParameterMap& map, const std::vector<std::string>& unit_of_each_person,
@@ -122,6 +125,7 @@ struct BlockLayout {
   // First column of a person's deviations; negative when there are none.
   int DeviationColumn(int person) const;
   int VelocityColumn() const;  // negative when the initial velocities are not fitted
+  int WeightColumn() const;    // negative when there is no network
 
   // The parameters and initial velocities of every person, for any scalar.
   template <typename T>
@@ -135,11 +139,16 @@ struct BlockLayout {
   // nullptr when the initial velocities are not fitted.
   template <typename T>
   const T* VelocityBlock(T const* const* blocks) const {
-    return free_initial_velocity ? blocks[num_blocks() - 1] : nullptr;
+    return free_initial_velocity ? blocks[num_blocks() - (num_weights > 0 ? 2 : 1)] : nullptr;
+  }
+  // nullptr when there is no network.
+  template <typename T>
+  const T* WeightBlock(T const* const* blocks) const {
+    return num_weights > 0 ? blocks[num_blocks() - 1] : nullptr;
   }
   int num_blocks() const {
     return 1 + (num_deviations > 0 ? static_cast<int>(units.size()) : 0) +
-           (free_initial_velocity ? 1 : 0);
+           (free_initial_velocity ? 1 : 0) + (num_weights > 0 ? 1 : 0);
   }
 };
 

@@ -52,11 +52,12 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
   const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
   RolloutPath<double> path;
   RolloutSensitivities sensitivities;
-  const RolloutStatus status = jacobians != nullptr
-                                   ? RolloutWithSensitivities(p.scene, p.options, inputs,
-                                                              p.last_frame, &path, &sensitivities)
-                                   : Rollout(p.scene, p.options, inputs.parameters,
-                                             inputs.initial_velocity, p.last_frame, &path);
+  const RolloutStatus status =
+      jacobians != nullptr
+          ? RolloutWithSensitivities(p.scene, p.options, inputs, p.last_frame, &path,
+                                     &sensitivities)
+          : Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity,
+                            p.last_frame, &path, nullptr, inputs.network_weights);
   if (!status.ok) return false;
 
   const double w = p.weight / std::sqrt((p.last_frame - p.first_frame) * p.scene.num_people());

@@ -43,6 +43,8 @@ SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
   }
   inputs.num_columns = layout.num_columns();
   inputs.velocity_column = layout.VelocityColumn();
+  inputs.network_weights = layout.WeightBlock(blocks);
+  inputs.weight_column = layout.WeightColumn();
   return inputs;
 }
 
@@ -74,7 +76,8 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
   const RolloutStatus status =
       jacobians != nullptr
           ? RolloutWithSensitivities(scene, p.options, inputs, p.horizon, &path, &sensitivities)
-          : Rollout(scene, p.options, inputs.parameters, inputs.initial_velocity, p.horizon, &path);
+          : Rollout<double>(scene, p.options, inputs.parameters, inputs.initial_velocity, p.horizon,
+                            &path, nullptr, inputs.network_weights);
   if (!status.ok) {
     last_failure_ = status;
     return false;

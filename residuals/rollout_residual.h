@@ -84,7 +84,7 @@ struct RolloutResidualFunctor {
     }
     RolloutPath<T> path;
     if (!Rollout<T>(scene, p.options, p.layout.Parameters<T>(p.map, blocks), velocities, p.horizon,
-                    &path)
+                    &path, nullptr, p.layout.WeightBlock(blocks))
              .ok) {
       return false;
     }

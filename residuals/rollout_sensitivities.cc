@@ -3,6 +3,8 @@
 
 #include <ceres/jet.h>
 
+#include "residuals/network_sensitivities.h"
+
 namespace pushid {
 namespace {
 
@@ -129,6 +131,21 @@ class ReceivedSensitivities {
   std::vector<Columns> now_, lately_;
 };
 
+// One for each person, or none.
+std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelOptions& options,
+                                                const SensitivityInputs& inputs) {
+  std::vector<NetworkSensitivities> networks;
+  if (options.self_network == nullptr) return networks;
+  const SelfNetwork& network = *options.self_network;
+  const double* weights =
+      inputs.network_weights != nullptr ? inputs.network_weights : network.weights.data();
+  for (const ScenePerson& person : scene.people) {
+    networks.emplace_back(network.shape, weights, person.body.mass, inputs.num_columns,
+                          inputs.weight_column);
+  }
+  return networks;
+}
+
 }  // namespace
 
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
@@ -136,7 +153,8 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
                                        RolloutPath<double>* path,
                                        RolloutSensitivities* sensitivities) {
   const int people = scene.num_people();
-  SceneForces<double> forces(scene, options, inputs.parameters);
+  SceneForces<double> forces(scene, options, inputs.parameters, inputs.network_weights);
+  std::vector<NetworkSensitivities> networks = StartNetworks(scene, options, inputs);
   ReceivedSensitivities received(scene, options, inputs);
   *path = RolloutPath<double>(num_frames, people);
   sensitivities->Resize(num_frames, people, inputs.num_columns);
@@ -155,7 +173,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
     forces.Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces.Interact(n, &scratch);
+    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
     received.Update(*path, *sensitivities, t, &forces);
     for (int n = 0; n < people; ++n) {
       const Body& body = scene.people[n].body;
@@ -182,8 +200,10 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         by_column.col(entry.column) +=
             entry.derivative * jacobian.by_parameter.col(entry.parameter);
       }
+      if (!networks.empty()) networks[n].Advance(forces.network(n), now);
       if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
         received.AddTo(n, forces, &by_column);
+        if (!networks.empty()) networks[n].AddTo(&by_column);
       }
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>().noalias() =

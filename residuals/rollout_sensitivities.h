@@ -5,7 +5,8 @@
 //   S_qd <- S_qd + dt da,   S_q <- S_q + dt S_qd
 // Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
-// columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too:
+// columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too
+// (so is a network's memory: network_sensitivities.h):
 //   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da.
 #pragma once
 
@@ -24,7 +25,9 @@ struct SensitivityInputs {
   std::vector<Vector4<double>> initial_velocity;
   std::vector<std::vector<ColumnEntry>> entries;
   int num_columns = 0;
-  int velocity_column = -1;  // first of 4 * people columns; negative when not fitted
+  int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
+  const double* network_weights = nullptr;  // of options.self_network, instead of its own
+  int weight_column = -1;                   // of the first of them; negative when not fitted
 };
 
 // d [q, qd] / d columns at every frame and person.

@@ -57,7 +57,7 @@ struct Bounce {
     for (int t = 0; t < path.num_frames(); ++t) {
       forces.Update(path.Frame(t));
       for (int n : {0, 1}) {
-        forces.Interact(n, &scratch);
+        forces.Prepare(n, &scratch);
         trace.At(t, n).interaction = forces.received(n).now;
       }
     }

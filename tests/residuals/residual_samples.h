@@ -179,7 +179,7 @@ inline std::vector<ModelOptions> EveryModelOptions() {
             for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
               for (const InteractionTerms& interaction : SomeInteractions())
                 all.push_back(
-                    {posture, scaling, friction, use, tail, derivative, interaction, nullptr});
+                    {posture, scaling, friction, use, tail, derivative, interaction, nullptr, nullptr});
   return all;
 }
 

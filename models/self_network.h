@@ -1,0 +1,165 @@
+// models: a small network as a part of the self force: what a person does beyond balance and
+// friction, learned. An MLP, a GRU or an LSTM of any size, from the person's own state alone.
+//
+//   u = [e_theta / 0.15, e_phi / 0.15, xd / 0.8, yd / 0.8, thd / 0.6, phd / 0.6 (, (l - l_0) /
+//   0.05)] k = [(M - 85 kg) / 20 kg, 1]         what does not change during a rollout x = u, or
+//   tanh(E u) with an embedding mlp    h  = tanh(W x + C k) - tanh(C k) gru    z, r = s(W x + U h +
+//   C k),  n = tanh(W_n x + r (U_n h)),  h' = (1 - z) n + z h lstm   i, f, o = s(W x + U h + C k),
+//   g = tanh(W_g x + U_g h),  c' = f c + i g,  h' = o tanh(c') F  = 2 M [O h']   (m/s^2 and m^2/s^2
+//   per unit of output)
+// s is the logistic function, products of vectors are by element, memories start at zero. What
+// could answer to k alone has no bias and no mass: whoever stands at rest (u = 0) feels exactly no
+// force, whatever the weights, and O = 0 is no force at all. Source: LDP's self-force network
+// (Yue et al., CVPR 2024: a 32-d embedding before an LSTM of 256), with that guarantee added.
+//
+// Weights are one flat array: E, then the rows [W U C] of the gates, then the rows [W U] of the
+// candidates (n or g), then O; each matrix by rows.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "models/ipm.h"
+
+namespace pushid {
+
+enum class NetworkKind { kNone, kMlp, kGru, kLstm };
+
+struct NetworkShape {
+  NetworkKind kind = NetworkKind::kNone;
+  int hidden = 0;
+  int embedding = 0;       // 0: none; of a GRU or an LSTM
+  bool rod_input = false;  // whether it sees the rod's deviation
+
+  bool any() const { return kind != NetworkKind::kNone; }
+  bool recurrent() const { return kind == NetworkKind::kGru || kind == NetworkKind::kLstm; }
+  int num_inputs() const { return rod_input ? 7 : 6; }
+  int num_features() const { return embedding > 0 ? embedding : num_inputs(); }
+  int gate_rows() const;
+  int candidate_rows() const { return recurrent() ? hidden : 0; }
+  int candidate_width() const { return num_features() + (recurrent() ? hidden : 0); }
+  int gate_width() const { return candidate_width() + 2; }
+  // Where each matrix starts in the flat array.
+  int gates_at() const { return embedding * num_inputs(); }
+  int candidates_at() const { return gates_at() + gate_rows() * gate_width(); }
+  int output_at() const { return candidates_at() + candidate_rows() * candidate_width(); }
+  int num_weights() const { return any() ? output_at() + 4 * hidden : 0; }
+};
+
+// "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
+std::string NetworkName(const NetworkShape& shape);
+
+// A network as a model holds it.
+struct SelfNetwork {
+  NetworkShape shape;
+  std::vector<double> weights;
+};
+
+template <typename T>
+using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
+template <typename T>
+using ConstRows =
+    Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0,
+               Eigen::OuterStride<>>;
+
+// The matrices in a flat array.
+template <typename T>
+struct NetworkWeights {
+  ConstRows<T> embed, gates, context, candidates, output;
+
+  NetworkWeights(const NetworkShape& s, const T* w)
+      : embed(w, s.embedding, s.num_inputs(), Stride(s.num_inputs())),
+        gates(w + s.gates_at(), s.gate_rows(), s.candidate_width(), Stride(s.gate_width())),
+        context(w + s.gates_at() + s.candidate_width(), s.gate_rows(), 2, Stride(s.gate_width())),
+        candidates(w + s.candidates_at(), s.candidate_rows(), s.candidate_width(),
+                   Stride(s.candidate_width())),
+        output(w + s.output_at(), 4, s.hidden, Stride(s.hidden)) {}
+
+ private:
+  static Eigen::OuterStride<> Stride(int width) { return Eigen::OuterStride<>(width); }
+};
+
+inline constexpr double kNetworkAngle = 0.15, kNetworkSpeed = 0.8, kNetworkRate = 0.6;  // scales
+inline constexpr double kNetworkRod = 0.05, kNetworkMass = 20.0;
+inline constexpr double kNetworkAcceleration = 2.0;  // m/s^2 per unit of output
+
+// One person's memory, and every value on the way from the inputs to the output of the last step:
+// what derivatives by hand are made of.
+template <typename T>
+struct NetworkState {
+  VectorX<T> inputs, features;       // u, x
+  VectorX<T> gates;                  // activations: mlp tanh; gru z, r; lstm i, f, o
+  VectorX<T> rest;                   // mlp: tanh(C k)
+  VectorX<T> candidates, recurrent;  // n or g; gru: U_n h
+  VectorX<T> hidden_before, cell_before, hidden, cell, cell_tanh;
+  Eigen::Vector2d context = Eigen::Vector2d::Zero();  // k
+
+  NetworkState(const NetworkShape& shape, const Body& body)
+      : inputs(VectorX<T>::Zero(shape.num_inputs())),
+        hidden(VectorX<T>::Zero(shape.hidden)),
+        context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {
+    if (shape.kind == NetworkKind::kLstm) cell = VectorX<T>::Zero(shape.hidden);
+  }
+};
+
+// e: (theta, phi) less the posture; rod: l - l_0, m.
+template <typename T>
+void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, const T& rod,
+                      NetworkState<T>* state) {
+  VectorX<T>& u = state->inputs;
+  u[0] = e_theta / kNetworkAngle;
+  u[1] = e_phi / kNetworkAngle;
+  u[2] = qd[0] / kNetworkSpeed;
+  u[3] = qd[1] / kNetworkSpeed;
+  u[4] = qd[2] / kNetworkRate;
+  u[5] = qd[3] / kNetworkRate;
+  if (u.size() > 6) u[6] = rod / kNetworkRod;
+}
+
+// One step of the network, its inputs set: the memory goes on, and the force is what it answers.
+template <typename T>
+Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
+                       NetworkState<T>* state) {
+  using std::exp, std::tanh;
+  const auto logistic = [](const T& a) { return T(1.0) / (T(1.0) + exp(-a)); };
+  const auto squash = [](const T& a) { return tanh(a); };
+  const NetworkWeights<T> w(shape, weights);
+  NetworkState<T>& s = *state;
+  if (shape.embedding > 0) {
+    s.features = (w.embed * s.inputs).unaryExpr(squash);
+  } else {
+    s.features = s.inputs;
+  }
+  const int nf = shape.num_features(), h = shape.hidden;
+  const VectorX<T> context = w.context * s.context.template cast<T>();
+  VectorX<T> sum = w.gates.leftCols(nf) * s.features + context;
+  if (shape.kind == NetworkKind::kMlp) {
+    s.gates = sum.unaryExpr(squash);
+    s.rest = context.unaryExpr(squash);
+    s.hidden = s.gates - s.rest;
+  } else {
+    s.hidden_before = s.hidden;
+    sum += w.gates.rightCols(h) * s.hidden;
+    s.gates = sum.unaryExpr(logistic);
+    VectorX<T> candidate = w.candidates.leftCols(nf) * s.features;
+    s.recurrent = w.candidates.rightCols(h) * s.hidden;
+    if (shape.kind == NetworkKind::kGru) {
+      candidate += s.gates.tail(h).cwiseProduct(s.recurrent);
+      s.candidates = candidate.unaryExpr(squash);
+      s.hidden = s.candidates + s.gates.head(h).cwiseProduct(s.hidden_before - s.candidates);
+    } else {
+      candidate += s.recurrent;
+      s.candidates = candidate.unaryExpr(squash);
+      s.cell_before = s.cell;
+      s.cell = s.gates.segment(h, h).cwiseProduct(s.cell_before) +
+               s.gates.head(h).cwiseProduct(s.candidates);
+      s.cell_tanh = s.cell.unaryExpr(squash);
+      s.hidden = s.gates.tail(h).cwiseProduct(s.cell_tanh);
+    }
+  }
+  return T(kNetworkAcceleration * mass) * (w.output * s.hidden);
+}
+
+}  // namespace pushid
