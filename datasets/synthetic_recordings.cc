@@ -78,9 +78,10 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   person.subject_id = subject.id;
   person.mass_kg = subject.mass_kg;
   person.file = "synthetic";
-  const Body& body = made.scene.people[n].body;
   for (int t = 0; t < options.frames; ++t) {
-    const Vector4<double>& q = made.path.At(t, n).q;
+    const PendulumState<double>& state = made.path.At(t, n);
+    const Vector4<double>& q = state.q;
+    const Body body = BodyNow(made.scene.people[n].body, state.rod, made.parameters[n][kRodLift]);
     const double sigma = t == 0 && !options.noise_at_first_frame ? 0.0 : options.joint_noise_m;
     const auto observed = [&](const Vector3<double>& position) {
       const double x = noise->Normal(), y = noise->Normal(), z = noise->Normal();

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "models/self_network.h"
+
 namespace pushid {
 namespace {
 
@@ -64,6 +66,7 @@ ParameterTable BaseTable() {
   add(Spec(kDriveGain, "1", 0.5, -20, 20, 0.5, plain, "cart force over the contact lately felt"));
   add(Spec(kDriveTorque, "1", 0.2, -20, 20, 0.2, plain, "torque over the contact lately felt"));
   add(Spec(kDriveTime, "s", 0.3, 0.01, 5, 0.3, log, "how long contact is felt"));
+  add(Spec(kRodLift, "1", 1, -10, 10, 0.5, plain, "rise of the cart over the rod's shortening"));
   return table;
 }
 
@@ -176,6 +179,13 @@ void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   }
 }
 
+void FreeRod(const ModelOptions& model, ParameterTable* table) {
+  if (!RodMoves(model)) return;
+  ParameterSpec& spec = (*table)[kRodLift];
+  spec.free = true;
+  if (!spec.prior) spec.prior = Prior{spec.nominal, spec.nominal};
+}
+
 void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
   std::vector<Parameter> free;
   if (terms.Contact()) free = {kContactDistance, kContactKappa};
@@ -225,6 +235,8 @@ bool Acts(Parameter id, const ModelOptions& model) {
     case kDriveTorque:
     case kDriveTime:
       return terms.drive;
+    case kRodLift:
+      return RodMoves(model);
     default:
       return true;
   }

@@ -73,6 +73,11 @@ Result<Preset> MakePreset(const std::string& name);
 // Frees the terms of a self force, where the model's options let them act.
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
 
+// Frees the cart's lift where the model has a law for the rod, with a weak prior as wide as its
+// centre: a rod that is learned while the cart stays low predicts the hip worse than a constant
+// one.
+void FreeRod(const ModelOptions& model, ParameterTable* table);
+
 // Frees the terms of the interaction, with weak priors as wide as their centres. The contact's
 // height stays fixed: heights from the ankles to the chest fit the group recordings alike. Those of
 // LDP's discrete form stay fixed too: it has no derivatives.

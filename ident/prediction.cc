@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "datasets/atomic_file.h"
+#include "models/self_network.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -24,14 +25,18 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
                    int num_frames) {
   Prediction prediction;
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  prediction.rod_moves = RodMoves(model.options);
+  for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
   prediction.status =
-      Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
-              InitialVelocities(recording.scene), frames, &prediction.path, &prediction.forces);
+      Rollout(recording.scene, model.options, parameters, InitialVelocities(recording.scene),
+              frames, &prediction.path, &prediction.forces);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<Vector3<double>> hip;
     for (int t = 0; t < frames; ++t) {
-      hip.push_back(HipPosition(recording.scene.people[n].body, prediction.path.At(t, n).q));
+      hip.push_back(
+          HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q));
     }
     prediction.hip.push_back(std::move(hip));
   }
@@ -49,6 +54,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       text += std::string(",") + part + "_" + row;
     }
   }
+  if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
   text += "\n";
   char number[32];
   auto add = [&text, &number](double value) {
@@ -64,13 +70,15 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       text += "," + std::to_string(n) + "," + recording.subject_ids[n];
       for (int i = 0; i < 4; ++i) add(state.q[i]);
       for (int i = 0; i < 4; ++i) add(state.qd[i]);
-      const Vector3<double> hip = HipPosition(recording.scene.people[n].body, state.q);
+      const Body body = prediction.BodyAt(recording.scene, t, n);
+      const Vector3<double> hip = HipPosition(body, state.q);
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double>& force = prediction.forces.At(t, n);
       for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
                                &force.tail, &force.interaction, &force.drive}) {
         for (int i = 0; i < 4; ++i) add((*part)[i]);
       }
+      if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
       text += "\n";
     }
   }

@@ -15,13 +15,22 @@ struct Prediction {
   RolloutPath<double> path;                       // frames before a failure are valid
   ForceTrace forces;                              // what drove it, part by part
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
+  bool rod_moves = false;
+  std::vector<double> rod_lift;  // of each person
+
+  // A person with the rod and the cart's height of one frame.
+  Body BodyAt(const Scene& scene, int frame, int person) const {
+    const Body& body = scene.people[person].body;
+    return rod_moves ? BodyNow(body, path.At(frame, person).rod, rod_lift[person]) : body;
+  }
 };
 
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0);
 
-// Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV;
+// Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV, and the
+// rod's length and the cart's height where the model has a law for them;
 // after a failure, the frames before it.
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);

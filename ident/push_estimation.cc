@@ -102,7 +102,7 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
   const Body& body = recording.scene.people[options.person].body;
   for (int t = window.start; t <= window.end; ++t) {
     const PendulumState<double>& state = states[t];
-    const std::string_view outside = OutsideDomain(state);
+    const std::string_view outside = OutsideDomain(body, state);
     if (!outside.empty()) {
       return Error{"recording " + recording.id + ": " + std::string(outside) + " at frame " +
                    std::to_string(t) + " is outside the model's domain of +-1.4 rad"};

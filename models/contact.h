@@ -26,7 +26,8 @@ namespace pushid {
 inline constexpr double kContactOnset = 0.05;     // m, w above
 inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
 
-// Position (x, y) of the contact point.
+// Position (x, y) of the contact point: at a height of the body, which has the rod of frame 0
+// even where the rod moves.
 template <typename T>
 Eigen::Matrix<T, 2, 1> ContactPoint(const Body& body, const Vector4<T>& q, const T& height) {
   using std::cos, std::sin;

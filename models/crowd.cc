@@ -28,7 +28,7 @@ void Crowd::AdvanceSome(int first, int last) {
   for (int n = first; n < last; ++n) {
     forces_.Prepare(n, &scratch);
     const Vector4<double> force = forces_.On(n, frame_, before_[n].qd).Total();
-    next_[n] = Step(now_[n], Acceleration(scene_.people[n].body, now_[n], force), scene_.dt);
+    next_[n] = forces_.Next(n, forces_.AccelerationOf(n, force), before_[n].qd);
   }
 }
 
@@ -49,7 +49,7 @@ RolloutStatus Crowd::Advance() {
   AdvanceSome(0, share(1));
   for (std::thread& other : others) other.join();
   for (int n = 0; n < people; ++n) {
-    const std::string_view outside = OutsideDomain(next_[n]);
+    const std::string_view outside = OutsideDomain(scene_.people[n].body, next_[n]);
     if (outside.empty()) continue;
     status_ = {false, frame_ + 1, n, outside};
     return status_;

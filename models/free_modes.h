@@ -8,7 +8,8 @@
 // in the plane (x, theta), and alike in (y, phi) mirrored (phi turns towards -y). t_e is gravity
 // less the balance, m g l - Kp; K = Kd of the cart, scaled, acts like a mass (only with a backward
 // difference of the cart's velocity, here in the limit of short steps). So d/dt [e, v, w] = A [e,
-// v, w]; the cart's own place is a free mode of rate zero and left out.
+// v, w]; the cart's own place is a free mode of rate zero and left out, and so are learned terms:
+// of a rod that moves (rod_law.h) the length alone has no part in the first order, upright.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,7 @@
 // models: the inverted pendulum on a cart (IPM) that stands for a person.
 //
 // q = [x, y, theta, phi]: cart position (m), angles about y and about x (rad); rod length l (m).
+// A learned law may change l from step to step (rod_law.h); what l' and l'' would add is left out.
 //   M(q) qdd + C(q, qd) + G(q) = F_net,   semi-implicit Euler: qd += dt qdd, q += dt qd.
 // Point mass (hip): p = (x + l sin(theta), y - l cos(theta) sin(phi), h + l cos(theta) cos(phi)).
 // Source: Yue et al., CVPR 2024, supplement, with row 3 of C as the derivation gives it (s_th c_th,
@@ -26,25 +27,38 @@ inline constexpr double kCartShare = 0.1;  // of the body's mass
 inline constexpr double kReferenceMass = 85;   // kg
 inline constexpr double kReferenceRod = 0.95;  // m
 
-// What does not change during a recording.
-struct Body {
-  double mass = kReferenceMass;       // kg
-  double rod_length = kReferenceRod;  // m
-  double cart_height = 0.0;           // m
+// L: of the lengths, which are constants (double) unless a rod moves.
+template <typename L>
+struct BodyOf {
+  double mass = kReferenceMass;     // kg
+  L rod_length = L(kReferenceRod);  // m
+  L cart_height = L(0.0);           // m
 
   double point_mass() const { return (1.0 - kCartShare) * mass; }
 };
+
+// What does not change during a recording; the lengths are those of frame 0.
+using Body = BodyOf<double>;
 
 template <typename T>
 struct PendulumState {
   Vector4<T> q = Vector4<T>::Zero();
   Vector4<T> qd = Vector4<T>::Zero();
+  T rod = T(0.0);  // l - l_0, m: how far a rod that moves has moved
 };
 
+// The body once its rod has moved. The cart rises as the rod shortens, h = h_0 + k (l_0 - l) with
+// k = lift: bent knees and raised heels.
 template <typename T>
-Matrix4<T> MassMatrix(const Body& body, const Vector4<T>& q) {
+BodyOf<T> BodyNow(const Body& body, const T& rod, const T& lift) {
+  return {body.mass, body.rod_length + rod, body.cart_height - lift * rod};
+}
+
+template <typename T, typename L>
+Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
   using std::cos, std::sin;
-  const double m = body.point_mass(), l = body.rod_length;
+  const double m = body.point_mass();
+  const L l = body.rod_length;
   const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
   const T zero(0.0), total(body.mass);
   Matrix4<T> mass;
@@ -55,10 +69,11 @@ Matrix4<T> MassMatrix(const Body& body, const Vector4<T>& q) {
   return mass;
 }
 
-template <typename T>
-Vector4<T> Coriolis(const Body& body, const Vector4<T>& q, const Vector4<T>& qd) {
+template <typename T, typename L>
+Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>& qd) {
   using std::cos, std::sin;
-  const double m = body.point_mass(), l = body.rod_length;
+  const double m = body.point_mass();
+  const L l = body.rod_length;
   const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
   const T thd = qd[2], phd = qd[3];
   return {-m * l * s_th * thd * thd,
@@ -66,16 +81,16 @@ Vector4<T> Coriolis(const Body& body, const Vector4<T>& q, const Vector4<T>& qd)
           m * l * l * s_th * c_th * phd * phd, -2.0 * m * l * l * s_th * c_th * thd * phd};
 }
 
-template <typename T>
-Vector4<T> Gravity(const Body& body, const Vector4<T>& q) {
+template <typename T, typename L>
+Vector4<T> Gravity(const BodyOf<L>& body, const Vector4<T>& q) {
   using std::cos, std::sin;
-  const double mgl = body.point_mass() * kGravity * body.rod_length;
+  const L mgl = body.point_mass() * kGravity * body.rod_length;
   return {T(0.0), T(0.0), -mgl * sin(q[2]) * cos(q[3]), -mgl * cos(q[2]) * sin(q[3])};
 }
 
 // Inverse of the mass matrix by its Schur complement: the cart block is diagonal, so 2 x 2 remains.
-template <typename T>
-Matrix4<T> InverseMassMatrix(const Body& body, const Vector4<T>& q) {
+template <typename T, typename L>
+Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
   const Matrix4<T> mass = MassMatrix(body, q);
   const double w = 1.0 / body.mass;
   const T b02 = mass(0, 2), b12 = mass(1, 2), b13 = mass(1, 3);
@@ -95,8 +110,9 @@ Matrix4<T> InverseMassMatrix(const Body& body, const Vector4<T>& q) {
 }
 
 // qdd for a generalized force [N, N, N m, N m].
-template <typename T>
-Vector4<T> Acceleration(const Body& body, const PendulumState<T>& state, const Vector4<T>& force) {
+template <typename T, typename L>
+Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
+                        const Vector4<T>& force) {
   const Vector4<T> right = force - Coriolis(body, state.q, state.qd) - Gravity(body, state.q);
   return InverseMassMatrix(body, state.q) * right;
 }
@@ -106,20 +122,22 @@ PendulumState<T> Step(const PendulumState<T>& state, const Vector4<T>& qdd, doub
   PendulumState<T> next;
   next.qd = state.qd + dt * qdd;
   next.q = state.q + dt * next.qd;
+  next.rod = state.rod;
   return next;
 }
 
-template <typename T>
-Vector3<T> HipPosition(const Body& body, const Vector4<T>& q) {
+template <typename T, typename L>
+Vector3<T> HipPosition(const BodyOf<L>& body, const Vector4<T>& q) {
   using std::cos, std::sin;
-  const double l = body.rod_length;
+  const L l = body.rod_length;
   return {q[0] + l * sin(q[2]), q[1] - l * cos(q[2]) * sin(q[3]),
           body.cart_height + l * cos(q[2]) * cos(q[3])};
 }
 
 // The generalized force whose acceleration is qdd: M qdd + C + G.
-template <typename T>
-Vector4<T> InverseDynamics(const Body& body, const PendulumState<T>& state, const Vector4<T>& qdd) {
+template <typename T, typename L>
+Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
+                           const Vector4<T>& qdd) {
   return MassMatrix(body, state.q) * qdd + Coriolis(body, state.q, state.qd) +
          Gravity(body, state.q);
 }

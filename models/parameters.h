@@ -44,6 +44,7 @@ enum Parameter : int {
   kDriveGain,          // cart force from the force lately received by contact, 1
   kDriveTorque,        // torque from the torque lately received by contact, 1
   kDriveTime,          // how long "lately" is, s
+  kRodLift,            // rise of the cart over the shortening of a rod that moves, 1
   kNumParameters
 };
 
@@ -89,7 +90,8 @@ inline constexpr std::array<std::string_view, kNumParameters> kParameterNames = 
     "lean_phi",
     "drive_gain",
     "drive_torque",
-    "drive_time"};
+    "drive_time",
+    "rod_lift"};
 
 template <typename T>
 using ParameterSet = std::array<T, kNumParameters>;

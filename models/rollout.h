@@ -17,7 +17,7 @@ struct RolloutStatus {
   bool ok = true;
   int frame = 0;
   int person = 0;
-  std::string_view quantity;  // theta, phi or "state" (not finite)
+  std::string_view quantity;  // theta, phi, rod or "state" (not finite)
 };
 
 // One value for everybody at frames 0 .. num_frames - 1, stored frame by frame.
@@ -49,14 +49,17 @@ using RolloutPath = FrameTable<PendulumState<T>>;
 // The parts of the net force that drove a rollout, for reports; the last frame's drive no step.
 using ForceTrace = FrameTable<NetForce<double>>;
 
-// Quantity that has left the domain, or an empty name.
+// Quantity that has left the domain, or an empty name. A rod that does not move may have any
+// length.
 template <typename T>
-std::string_view OutsideDomain(const PendulumState<T>& state) {
-  double sum = 0.0;
+std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) {
+  const double rod = RealPart(state.rod), length = body.rod_length + rod;
+  double sum = rod;
   for (int i = 0; i < 4; ++i) sum += RealPart(state.q[i]) + RealPart(state.qd[i]);
   if (!std::isfinite(sum)) return "state";
   if (std::abs(RealPart(state.q[2])) > kMaxAngle) return "theta";
   if (std::abs(RealPart(state.q[3])) > kMaxAngle) return "phi";
+  if (rod != 0.0 && !(kShortestRod <= length && length <= kLongestRod)) return "rod";
   return {};
 }
 
@@ -84,13 +87,13 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
     forces.Update(path->Frame(t));
     for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
     for (int n = 0; n < people; ++n) {
-      const NetForce<T> force = forces.On(n, t, path->At(t > 0 ? t - 1 : 0, n).qd);
+      const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
+      const NetForce<T> force = forces.On(n, t, qd_previous);
       if (trace != nullptr) trace->At(t, n) = force;
       if (last) continue;
-      const PendulumState<T>& state = path->At(t, n);
-      const Vector4<T> qdd = Acceleration(scene.people[n].body, state, force.Total());
-      path->At(t + 1, n) = Step(state, qdd, scene.dt);
-      const std::string_view outside = OutsideDomain(path->At(t + 1, n));
+      const Vector4<T> qdd = forces.AccelerationOf(n, force.Total());
+      path->At(t + 1, n) = forces.Next(n, qdd, qd_previous);
+      const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
     }
   }

@@ -14,6 +14,7 @@
 #include "models/neighbours.h"
 #include "models/options.h"
 #include "models/parameters.h"
+#include "models/rod_law.h"
 #include "models/scene.h"
 #include "models/self_force.h"
 #include "models/self_network.h"
@@ -81,14 +82,14 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
 std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
 
 // Everything a step needs besides the states, allocated once. Frame by frame: Update,
-// Prepare for each person, then On, each person in any order and from any thread (each with a
-// scratch of its own).
+// Prepare for each person, then On, AccelerationOf and Next, each person in any order and from any
+// thread (each with a scratch of its own).
 template <typename T>
 class SceneForces {
  public:
   // parameters: one entry per person, or a single one for everybody. What two people share (the
   // pair parameters) is taken from the first. All arguments must outlive the object.
-  // network_weights: of options.self_network, instead of its own.
+  // network_weights: of options.self_network, all of them, instead of its own.
   SceneForces(const Scene& scene, const ModelOptions& options,
               const std::vector<ParameterSet<T>>& parameters, const T* network_weights = nullptr)
       : scene_(&scene),
@@ -129,7 +130,7 @@ class SceneForces {
     const PendulumState<T>& state = states_[person];
     const SelfForce& self = self_[person];
     SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
-                        T(0.0), &networks_[person].state);
+                        state.rod, &networks_[person].state);
     networks_[person].force = StepNetwork(options_->self_network->shape, network_weights_,
                                           self.body.mass, &networks_[person].state);
   }
@@ -146,6 +147,19 @@ class SceneForces {
                       networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force);
   }
 
+  Vector4<T> AccelerationOf(int person, const Vector4<T>& force) const {
+    const Body& body = self_[person].body;
+    if (rods_.empty()) return Acceleration(body, states_[person], force);
+    return Acceleration(BodyNow(body, states_[person].rod, T(0.0)), states_[person], force);
+  }
+
+  // One step on: the pendulum under qdd and, where the model has a law for it, the rod.
+  PendulumState<T> Next(int person, const Vector4<T>& qdd, const Vector4<T>& qd_previous) {
+    PendulumState<T> next = Step(states_[person], qdd, scene_->dt);
+    if (!rods_.empty()) next.rod += scene_->dt * RodVelocityOf(person, qd_previous);
+    return next;
+  }
+
   const ParameterSet<T>& Parameters(int person) const {
     return (*parameters_)[parameters_->size() == 1 ? 0 : person];
   }
@@ -153,6 +167,8 @@ class SceneForces {
   const Received<T>& received(int person) const { return received_[person]; }
   // As Prepare left it; only where options have a network.
   const NetworkState<T>& network(int person) const { return networks_[person].state; }
+  // As Next left it; only where options have a law for the rod.
+  const RodLayers<T>& rod(int person) const { return rods_[person]; }
   PairFinder& pairs() { return finder_; }
 
  private:
@@ -168,8 +184,24 @@ class SceneForces {
     }
     network_weights_ = weights != nullptr ? weights : own_weights_.data();
     for (const SelfForce& self : self_) {
-      networks_.push_back({NetworkState<T>(network.shape, self.body), Vector4<T>::Zero()});
+      if (network.shape.any()) {
+        networks_.push_back({NetworkState<T>(network.shape, self.body), Vector4<T>::Zero()});
+      }
+      if (network.rod.moves()) rods_.emplace_back(network.rod);
     }
+  }
+
+  // dl/dt of a person, m/s.
+  T RodVelocityOf(int person, const Vector4<T>& qd_previous) {
+    const SelfForce& self = self_[person];
+    const PendulumState<T>& state = states_[person];
+    const SelfNetwork& network = *options_->self_network;
+    Vector4<T> force = self.Total(Parameters(person), state, qd_previous);
+    if (!networks_.empty()) force += networks_[person].force;
+    for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
+    SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
+                    state.rod, self.body.mass, &rods_[person]);
+    return RodVelocity(network.rod, network_weights_ + network.rod_at(), &rods_[person]);
   }
 
   const Scene* scene_;
@@ -179,6 +211,7 @@ class SceneForces {
   PairFinder finder_;
   std::vector<Received<T>> received_;
   std::vector<Network> networks_;
+  std::vector<RodLayers<T>> rods_;
   std::vector<T> own_weights_;
   const T* network_weights_ = nullptr;
   const PendulumState<T>* states_ = nullptr;

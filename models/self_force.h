@@ -22,7 +22,8 @@
 
 namespace pushid {
 
-// Factors from the reference person's gains to this body's.
+// Factors from the reference person's gains to this body's, with the rod of frame 0: gains are the
+// person's, not the posture's.
 struct GainScale {
   double force = 1.0;      // on N s/m
   double stiffness = 1.0;  // on N m/rad

@@ -21,7 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "models/ipm.h"
+#include "models/network_inputs.h"
+#include "models/options.h"
+#include "models/rod_law.h"
 
 namespace pushid {
 
@@ -35,7 +37,7 @@ struct NetworkShape {
 
   bool any() const { return kind != NetworkKind::kNone; }
   bool recurrent() const { return kind == NetworkKind::kGru || kind == NetworkKind::kLstm; }
-  int num_inputs() const { return rod_input ? 7 : 6; }
+  int num_inputs() const { return kMotionInputs + (rod_input ? 1 : 0); }
   int num_features() const { return embedding > 0 ? embedding : num_inputs(); }
   int gate_rows() const;
   int candidate_rows() const { return recurrent() ? hidden : 0; }
@@ -51,18 +53,20 @@ struct NetworkShape {
 // "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
 std::string NetworkName(const NetworkShape& shape);
 
-// A network as a model holds it.
+// What a model has learned about a person: a self force, a rod law (rod_law.h), or both.
 struct SelfNetwork {
-  NetworkShape shape;
-  std::vector<double> weights;
+  NetworkShape shape;           // of the self force
+  RodShape rod;                 // of the rod's law
+  std::vector<double> weights;  // of the self force, then of the rod's law
+
+  int num_weights() const { return shape.num_weights() + rod.num_weights(); }
+  int rod_at() const { return shape.num_weights(); }  // the first weight of the rod's law
 };
 
-template <typename T>
-using VectorX = Eigen::Matrix<T, Eigen::Dynamic, 1>;
-template <typename T>
-using ConstRows =
-    Eigen::Map<const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, 0,
-               Eigen::OuterStride<>>;
+// Whether somebody's rod moves.
+inline bool RodMoves(const ModelOptions& options) {
+  return options.self_network != nullptr && options.self_network->rod.moves();
+}
 
 // The matrices in a flat array.
 template <typename T>
@@ -80,10 +84,6 @@ struct NetworkWeights {
  private:
   static Eigen::OuterStride<> Stride(int width) { return Eigen::OuterStride<>(width); }
 };
-
-inline constexpr double kNetworkAngle = 0.15, kNetworkSpeed = 0.8, kNetworkRate = 0.6;  // scales
-inline constexpr double kNetworkRod = 0.05, kNetworkMass = 20.0;
-inline constexpr double kNetworkAcceleration = 2.0;  // m/s^2 per unit of output
 
 // One person's memory, and every value on the way from the inputs to the output of the last step:
 // what derivatives by hand are made of.
@@ -109,13 +109,8 @@ template <typename T>
 void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, const T& rod,
                       NetworkState<T>* state) {
   VectorX<T>& u = state->inputs;
-  u[0] = e_theta / kNetworkAngle;
-  u[1] = e_phi / kNetworkAngle;
-  u[2] = qd[0] / kNetworkSpeed;
-  u[3] = qd[1] / kNetworkSpeed;
-  u[4] = qd[2] / kNetworkRate;
-  u[5] = qd[3] / kNetworkRate;
-  if (u.size() > 6) u[6] = rod / kNetworkRod;
+  SetMotionInputs(e_theta, e_phi, qd, &u);
+  if (u.size() > kMotionInputs) u[kMotionInputs] = rod / kNetworkRod;
 }
 
 // One step of the network, its inputs set: the memory goes on, and the force is what it answers.

@@ -2,16 +2,18 @@
 #include "residuals/frame_residual.h"
 
 namespace pushid {
+namespace {
 
-FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
-                                              const MeasuredFrame& measured,
-                                              const ResidualSigmas& sigmas,
-                                              Eigen::Matrix<double, kFrameResiduals, 8>* jacobian) {
+// lift: of the cart, where the columns end with [rod, lift]. body: with the lengths of that frame.
+template <int kColumns>
+FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumState<double>& state,
+                                 const MeasuredFrame& measured, const ResidualSigmas& sigmas,
+                                 Eigen::Matrix<double, kFrameResiduals, kColumns>* jacobian) {
   const FrameVector<double> r = RawFrameResidual(body, state, measured, sigmas);
   const double l = body.rod_length;
   const double s_th = std::sin(state.q[2]), c_th = std::cos(state.q[2]);
   const double s_ph = std::sin(state.q[3]), c_ph = std::cos(state.q[3]);
-  Eigen::Matrix<double, kFrameResiduals, 8>& j = *jacobian;
+  Eigen::Matrix<double, kFrameResiduals, kColumns>& j = *jacobian;
   j.setZero();
   j(0, 0) = j(1, 1) = 1.0 / sigmas.hip;
   j(0, 2) = l * c_th / sigmas.hip;
@@ -22,6 +24,12 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
   j(3, 4) = j(4, 5) = 1.0 / sigmas.velocity;
   j(5, 2) = j(6, 3) = 1.0 / sigmas.angle;
   j(7, 6) = j(8, 7) = 1.0 / sigmas.rate;
+  if constexpr (kColumns == 10) {
+    j(0, 8) = s_th / sigmas.hip;
+    j(1, 8) = -c_th * s_ph / sigmas.hip;
+    j(2, 8) = (c_th * c_ph - lift) / sigmas.hip;
+    j(2, 9) = -state.rod / sigmas.hip;
+  }
   if (sigmas.robust <= 0.0) {
     j *= measured.weight;
     return measured.weight * r;
@@ -32,9 +40,25 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
   const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
   const double w = std::sqrt(2.0 / (1.0 + c));
   const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
-  const Eigen::Matrix<double, 1, 8> along = r.transpose() * j;
+  const Eigen::Matrix<double, 1, kColumns> along = r.transpose() * j;
   j = measured.weight * (w * j + (2.0 * slope) * r * along);
   return measured.weight * w * r;
+}
+
+}  // namespace
+
+FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
+                                              const MeasuredFrame& measured,
+                                              const ResidualSigmas& sigmas,
+                                              Eigen::Matrix<double, kFrameResiduals, 8>* jacobian) {
+  return WithJacobian(body, 0.0, state, measured, sigmas, jacobian);
+}
+
+FrameVector<double> MovingRodResidualWithJacobian(
+    const Body& body, double lift, const PendulumState<double>& state,
+    const MeasuredFrame& measured, const ResidualSigmas& sigmas,
+    Eigen::Matrix<double, kFrameResiduals, 10>* jacobian) {
+  return WithJacobian(BodyNow(body, state.rod, lift), lift, state, measured, sigmas, jacobian);
 }
 
 }  // namespace pushid

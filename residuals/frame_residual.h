@@ -38,8 +38,9 @@ template <typename T>
 using FrameVector = Eigen::Matrix<T, kFrameResiduals, 1>;
 
 // r before the robust weight.
-template <typename T>
-FrameVector<T> RawFrameResidual(const Body& body, const PendulumState<T>& state,
+// body: with the lengths of that frame (BodyNow, where the rod moves).
+template <typename T, typename L>
+FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                                 const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
   FrameVector<T> r;
   r.template head<3>() = (HipPosition(body, state.q) - measured.hip) / T(sigmas.hip);
@@ -59,8 +60,8 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
-template <typename T>
-FrameVector<T> FrameResidual(const Body& body, const PendulumState<T>& state,
+template <typename T, typename L>
+FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                              const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
   const FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
   return T(measured.weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
@@ -71,5 +72,11 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
                                               const MeasuredFrame& measured,
                                               const ResidualSigmas& sigmas,
                                               Eigen::Matrix<double, kFrameResiduals, 8>* jacobian);
+
+// The same where the rod moves, with BodyNow(body, state.rod, lift): by [q, qd, rod, lift].
+FrameVector<double> MovingRodResidualWithJacobian(
+    const Body& body, double lift, const PendulumState<double>& state,
+    const MeasuredFrame& measured, const ResidualSigmas& sigmas,
+    Eigen::Matrix<double, kFrameResiduals, 10>* jacobian);
 
 }  // namespace pushid

@@ -33,17 +33,16 @@ void NetworkSensitivities::AddOwn(int first, int width, int offset,
 }
 
 void NetworkSensitivities::AdvanceFeatures(const NetworkState<double>& state,
-                                           const States& by_state) {
-  static const Eigen::Matrix<double, 6, 1> kScales =
-      (Eigen::Matrix<double, 6, 1>() << kNetworkAngle, kNetworkAngle, kNetworkSpeed, kNetworkSpeed,
-       kNetworkRate, kNetworkRate)
-          .finished()
-          .cwiseInverse();
+                                           const States& by_state, const Row& rod) {
+  static const auto kScales = MotionInputScales();
+  const bool sees_rod = shape_.rod_input && rod.size() > 0;
   if (shape_.embedding == 0) {
     z_.topRows(6).noalias() = kScales.asDiagonal() * by_state.middleRows<6>(2);
+    if (sees_rod) z_.row(6) = rod / kNetworkRod;
     return;
   }
   Columns features = weights_.embed.leftCols(6) * kScales.asDiagonal() * by_state.middleRows<6>(2);
+  if (sees_rod) features.noalias() += (weights_.embed.col(6) / kNetworkRod) * rod;
   AddOwn(0, shape_.num_inputs(), 0, state.inputs, &features);
   z_.topRows(shape_.num_features()) = TanhSlope(state.features).asDiagonal() * features;
 }
@@ -101,8 +100,9 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state) {
   z_.bottomRows(h) += state.cell_tanh.asDiagonal() * gates_.bottomRows(h);
 }
 
-void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state) {
-  AdvanceFeatures(state, by_state);
+void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state,
+                                   const Row& rod) {
+  AdvanceFeatures(state, by_state, rod);
   switch (shape_.kind) {
     case NetworkKind::kNone:
       return;
@@ -122,6 +122,11 @@ void NetworkSensitivities::Advance(const NetworkState<double>& state, const Stat
 
 void NetworkSensitivities::AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const {
   *by_column += scale_ * output_;
+}
+
+void NetworkSensitivities::AddTo(const Eigen::RowVector4d& by_force,
+                                 Eigen::RowVectorXd* by_column) const {
+  by_column->noalias() += (scale_ * by_force) * output_;
 }
 
 }  // namespace pushid

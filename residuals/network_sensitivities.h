@@ -17,19 +17,23 @@ class NetworkSensitivities {
  public:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
   using States = Eigen::Ref<const Eigen::Matrix<double, 8, Eigen::Dynamic>>;
+  using Row = Eigen::Ref<const Eigen::RowVectorXd>;
 
   // weight_column: of the first weight; negative when the weights are not fitted.
   NetworkSensitivities(const NetworkShape& shape, const double* weights, double mass,
                        int num_columns, int weight_column);
 
-  // state: after the step; by_state: d[q, qd]/d(columns) of the person at the step's frame.
-  void Advance(const NetworkState<double>& state, const States& by_state);
+  // state: after the step; by_state: d[q, qd]/d(columns) of the person at the step's frame; rod:
+  // d(l)/d(columns) there, empty where the rod is constant.
+  void Advance(const NetworkState<double>& state, const States& by_state, const Row& rod);
 
   // Adds d(force)/d(columns) of the last step.
   void AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const;
+  // Adds by_force times it.
+  void AddTo(const Eigen::RowVector4d& by_force, Eigen::RowVectorXd* by_column) const;
 
  private:
-  void AdvanceFeatures(const NetworkState<double>& state, const States& by_state);
+  void AdvanceFeatures(const NetworkState<double>& state, const States& by_state, const Row& rod);
   // Adds, for each row of a matrix of weights that starts at `first`, the numbers its weights
   // multiply.
   void AddOwn(int first, int width, int offset, const Eigen::VectorXd& multiplied,

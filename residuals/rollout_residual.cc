@@ -84,7 +84,9 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
   }
 
   const std::vector<int> sizes = p.layout.BlockSizes();
+  const bool rod_moves = RodMoves(p.options);
   Eigen::Matrix<double, kFrameResiduals, 8> by_state;
+  Eigen::Matrix<double, kFrameResiduals, 10> by_rod;  // by_state, by the rod, by the cart's lift
   Eigen::Matrix<double, kFrameResiduals, Eigen::Dynamic> by_column(kFrameResiduals,
                                                                    inputs.num_columns);
   int row = 0;
@@ -92,13 +94,29 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
     for (int n = 0; n < scene.num_people(); ++n, row += kFrameResiduals) {
       Eigen::Map<FrameVector<double>> r(residuals + row);
       const Body& body = scene.people[n].body;
+      const PendulumState<double>& state = path.At(t, n);
+      const double lift = inputs.parameters[n][kRodLift];
       if (jacobians == nullptr) {
-        r = p.weight * FrameResidual<double>(body, path.At(t, n), p.Measured(t, n), p.sigmas);
+        r = p.weight * FrameResidual<double>(BodyNow(body, state.rod, lift), state,
+                                             p.Measured(t, n), p.sigmas);
         continue;
       }
-      r = p.weight *
-          FrameResidualWithJacobian(body, path.At(t, n), p.Measured(t, n), p.sigmas, &by_state);
+      if (rod_moves) {
+        r = p.weight *
+            MovingRodResidualWithJacobian(body, lift, state, p.Measured(t, n), p.sigmas, &by_rod);
+        by_state = by_rod.leftCols<8>();
+      } else {
+        r = p.weight *
+            FrameResidualWithJacobian(body, state, p.Measured(t, n), p.sigmas, &by_state);
+      }
       by_column.noalias() = (p.weight * by_state) * sensitivities.At(t, n);
+      if (rod_moves) {
+        by_column.noalias() += (p.weight * by_rod.col(8)) * sensitivities.Rod(t, n);
+        for (const ColumnEntry& entry : inputs.entries[n]) {
+          if (entry.parameter != kRodLift) continue;
+          by_column.col(entry.column) += (p.weight * entry.derivative) * by_rod.col(9);
+        }
+      }
       ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
     }
   }

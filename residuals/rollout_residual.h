@@ -83,16 +83,21 @@ struct RolloutResidualFunctor {
       }
     }
     RolloutPath<T> path;
-    if (!Rollout<T>(scene, p.options, p.layout.Parameters<T>(p.map, blocks), velocities, p.horizon,
-                    &path, nullptr, p.layout.WeightBlock(blocks))
+    const std::vector<ParameterSet<T>> parameters = p.layout.Parameters<T>(p.map, blocks);
+    if (!Rollout<T>(scene, p.options, parameters, velocities, p.horizon, &path, nullptr,
+                    p.layout.WeightBlock(blocks))
              .ok) {
       return false;
     }
     for (int t = 1; t < p.horizon; ++t) {
       for (int n = 0; n < scene.num_people(); ++n, residuals += kFrameResiduals) {
         Eigen::Map<FrameVector<T>> r(residuals);
-        r = T(p.weight) *
-            FrameResidual<T>(scene.people[n].body, path.At(t, n), p.Measured(t, n), p.sigmas);
+        const PendulumState<T>& state = path.At(t, n);
+        const Body& body = scene.people[n].body;
+        r = T(p.weight) * (RodMoves(p.options)
+                               ? FrameResidual<T>(BodyNow(body, state.rod, parameters[n][kRodLift]),
+                                                  state, p.Measured(t, n), p.sigmas)
+                               : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
       }
     }
     return true;

@@ -3,7 +3,10 @@
 
 #include <ceres/jet.h>
 
+#include <optional>
+
 #include "residuals/network_sensitivities.h"
+#include "residuals/rod_sensitivities.h"
 
 namespace pushid {
 namespace {
@@ -21,6 +24,16 @@ Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<do
   Matrix4<double> jacobian;
   for (int row = 0; row < 4; ++row) jacobian.row(row) = value[row].v.transpose();
   return jacobian;
+}
+
+// d(M a + C + G)/dl at fixed acceleration a.
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a) {
+  using Jet = ceres::Jet<double, 1>;
+  const BodyOf<Jet> jets{body.mass, Jet(body.rod_length, 0), Jet(0.0)};
+  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
+  const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
+  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
 }
 
 }  // namespace
@@ -131,14 +144,18 @@ class ReceivedSensitivities {
   std::vector<Columns> now_, lately_;
 };
 
+const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
+  return inputs.network_weights != nullptr ? inputs.network_weights
+                                           : options.self_network->weights.data();
+}
+
 // One for each person, or none.
 std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelOptions& options,
                                                 const SensitivityInputs& inputs) {
   std::vector<NetworkSensitivities> networks;
-  if (options.self_network == nullptr) return networks;
+  if (options.self_network == nullptr || !options.self_network->shape.any()) return networks;
   const SelfNetwork& network = *options.self_network;
-  const double* weights =
-      inputs.network_weights != nullptr ? inputs.network_weights : network.weights.data();
+  const double* weights = Weights(options, inputs);
   for (const ScenePerson& person : scene.people) {
     networks.emplace_back(network.shape, weights, person.body.mass, inputs.num_columns,
                           inputs.weight_column);
@@ -155,13 +172,20 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   const int people = scene.num_people();
   SceneForces<double> forces(scene, options, inputs.parameters, inputs.network_weights);
   std::vector<NetworkSensitivities> networks = StartNetworks(scene, options, inputs);
+  const bool rod_moves = RodMoves(options);
+  std::optional<RodSensitivities> rod;
+  if (rod_moves) {
+    rod.emplace(*options.self_network, Weights(options, inputs), inputs.num_columns,
+                inputs.weight_column);
+  }
   ReceivedSensitivities received(scene, options, inputs);
   *path = RolloutPath<double>(num_frames, people);
-  sensitivities->Resize(num_frames, people, inputs.num_columns);
+  sensitivities->Resize(num_frames, people, inputs.num_columns, rod_moves);
   for (int n = 0; n < people; ++n) {
     path->At(0, n) = {scene.people[n].start.q, inputs.initial_velocity[n]};
     auto start = sensitivities->At(0, n);
     start.setZero();
+    sensitivities->Rod(0, n).setZero();
     if (inputs.velocity_column >= 0) {
       start.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
     }
@@ -181,13 +205,14 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       const ParameterSet<double>& p = inputs.parameters[n];
       const PendulumState<double>& state = path->At(t, n);
       const Vector4<double>& previous = path->At(before, n).qd;
-      const Vector4<double> a = Acceleration(body, state, forces.On(n, t, previous).Total());
-      path->At(t + 1, n) = Step(state, a, scene.dt);
-      const std::string_view outside = OutsideDomain(path->At(t + 1, n));
+      const Vector4<double> a = forces.AccelerationOf(n, forces.On(n, t, previous).Total());
+      path->At(t + 1, n) = forces.Next(n, a, previous);
+      const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
 
       NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
-      const Matrix4<double> rigid = InverseDynamicsJacobian(body, state, a);
+      const Body now_body = BodyNow(body, state.rod, 0.0);
+      const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, state, a);
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
       const auto now = sensitivities->At(t, n);
@@ -200,15 +225,23 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         by_column.col(entry.column) +=
             entry.derivative * jacobian.by_parameter.col(entry.parameter);
       }
-      if (!networks.empty()) networks[n].Advance(forces.network(n), now);
+      const auto rod_now = sensitivities->Rod(t, n);
+      if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, a) * rod_now;
+      if (!networks.empty()) networks[n].Advance(forces.network(n), now, rod_now);
       if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
         received.AddTo(n, forces, &by_column);
         if (!networks.empty()) networks[n].AddTo(&by_column);
       }
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>().noalias() =
-          now.bottomRows<4>() + scene.dt * (InverseMassMatrix(body, state.q) * by_column);
+          now.bottomRows<4>() + scene.dt * (InverseMassMatrix(now_body, state.q) * by_column);
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
+      if (!rod_moves) continue;
+      self.TotalJacobian(p, state, previous, &jacobian);
+      const RodStep step{forces.rod(n), body.mass, jacobian,
+                         networks.empty() ? nullptr : &networks[n], inputs.entries[n]};
+      sensitivities->Rod(t + 1, n) =
+          rod_now + scene.dt * rod->Velocity(step, now, sensitivities->At(before, n), rod_now);
     }
     received.Advance(forces);
   }

@@ -6,7 +6,7 @@
 // Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
 // columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too
-// (so is a network's memory: network_sensitivities.h):
+// (so is a network's memory: network_sensitivities.h, and a rod that moves: rod_sensitivities.h):
 //   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da.
 #pragma once
 
@@ -26,18 +26,20 @@ struct SensitivityInputs {
   std::vector<std::vector<ColumnEntry>> entries;
   int num_columns = 0;
   int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
-  const double* network_weights = nullptr;  // of options.self_network, instead of its own
+  const double* network_weights = nullptr;  // all of options.self_network, instead of its own
   int weight_column = -1;                   // of the first of them; negative when not fitted
 };
 
-// d [q, qd] / d columns at every frame and person.
+// d [q, qd] / d columns at every frame and person; of the rod beside it, where it moves.
 class RolloutSensitivities {
  public:
   using Block = Eigen::Matrix<double, 8, Eigen::Dynamic>;
-  void Resize(int num_frames, int num_people, int num_columns) {
+  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves) {
     num_people_ = num_people;
     num_columns_ = num_columns;
-    storage_.resize(8, static_cast<Eigen::Index>(num_frames) * num_people * num_columns);
+    const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
+    storage_.resize(8, all);
+    rod_.resize(rod_moves ? all : 0);
   }
   auto At(int frame, int person) {
     return storage_.middleCols(Offset(frame, person), num_columns_);
@@ -45,13 +47,24 @@ class RolloutSensitivities {
   auto At(int frame, int person) const {
     return storage_.middleCols(Offset(frame, person), num_columns_);
   }
+  // d l / d columns; empty where the rod is constant.
+  auto Rod(int frame, int person) {
+    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  }
+  auto Rod(int frame, int person) const {
+    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  }
 
  private:
+  Eigen::Index RodOffset(int frame, int person) const {
+    return rod_.size() > 0 ? Offset(frame, person) : 0;
+  }
   Eigen::Index Offset(int frame, int person) const {
     return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
   }
   int num_people_ = 0, num_columns_ = 0;
   Block storage_;
+  Eigen::RowVectorXd rod_;
 };
 
 // Derivatives of NetForceAt: the analytic twin.

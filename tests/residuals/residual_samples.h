@@ -30,6 +30,7 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
   p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.25;
+  p[kRodLift] = 0.8;
   return p;
 }
 
@@ -135,11 +136,15 @@ inline PendulumRecording RecordRollout(const Scene& scene, const ModelOptions& o
     recording.subject_ids.push_back("S" + std::to_string(n));
     recording.states.emplace_back();
     recording.hip.emplace_back();
+    recording.rod_length.emplace_back();
+    const double lift = truth[truth.size() == 1 ? 0 : n][kRodLift];
     for (int t = 0; t < num_frames; ++t) {
-      recording.states[n].push_back(path.At(t, n));
-      recording.hip[n].push_back(HipPosition(body, path.At(t, n).q));
+      const PendulumState<double>& state = path.At(t, n);
+      const Body now = BodyNow(body, state.rod, lift);
+      recording.states[n].push_back(state);
+      recording.hip[n].push_back(HipPosition(now, state.q));
+      recording.rod_length[n].push_back(now.rod_length);
     }
-    recording.rod_length.emplace_back(num_frames, body.rod_length);
   }
   return recording;
 }
@@ -178,8 +183,8 @@ inline std::vector<ModelOptions> EveryModelOptions() {
           for (PushTail tail : {PushTail::kNone, PushTail::kExponential})
             for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
               for (const InteractionTerms& interaction : SomeInteractions())
-                all.push_back(
-                    {posture, scaling, friction, use, tail, derivative, interaction, nullptr, nullptr});
+                all.push_back({posture, scaling, friction, use, tail, derivative, interaction,
+                               nullptr, nullptr});
   return all;
 }
 

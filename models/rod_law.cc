@@ -1,0 +1,57 @@
+// models: sizes, names and derivatives of rod laws.
+#include "models/rod_law.h"
+
+namespace pushid {
+
+int RodShape::num_weights() const {
+  if (!moves()) return 0;
+  int weights = 0, below = kInputs;
+  for (int rows : hidden) {
+    weights += rows * (below + 1);
+    below = rows;
+  }
+  return weights + below;
+}
+
+std::string RodName(const RodShape& shape) {
+  if (shape.kind == RodKind::kConstant) return "constant";
+  if (shape.kind == RodKind::kLinear) return "linear";
+  std::string name = "mlp";
+  for (size_t i = 0; i < shape.hidden.size(); ++i) {
+    name += (i == 0 ? ":" : "-") + std::to_string(shape.hidden[i]);
+  }
+  return name;
+}
+
+RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weights,
+                                     const RodLayers<double>& layers, double* by_weight) {
+  const int num_layers = static_cast<int>(shape.hidden.size());
+  const auto below = [&](int i) -> const VectorX<double>& {
+    return i == 0 ? layers.inputs : layers.hidden[i - 1];
+  };
+  int at = shape.num_weights();  // of the matrix in hand
+  const VectorX<double>& top = below(num_layers);
+  at -= static_cast<int>(top.size());
+  if (by_weight != nullptr) {
+    Eigen::Map<VectorX<double>>(by_weight + at, top.size()) = kRodSpeed * top;
+  }
+  VectorX<double> slope = kRodSpeed * Eigen::Map<const VectorX<double>>(weights + at, top.size());
+  for (int i = num_layers - 1; i >= 0; --i) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const VectorX<double>& x = below(i);
+    const int rows = shape.hidden[i], width = static_cast<int>(x.size());
+    at -= rows * (width + 1);
+    const auto active = layers.active[i].array(), rest = layers.rest[i].array();
+    const VectorX<double> by_sum = slope.array() * (1.0 - active.square());
+    if (by_weight != nullptr) {
+      Eigen::Map<Rows> own(by_weight + at, rows, width + 1);
+      own.leftCols(width).noalias() = by_sum * x.transpose();
+      own.col(width) = slope.array() * ((1.0 - active.square()) - (1.0 - rest.square()));
+    }
+    const ConstRows<double> w(weights + at, rows, width, Eigen::OuterStride<>(width + 1));
+    slope = w.transpose() * by_sum;
+  }
+  return slope.transpose();
+}
+
+}  // namespace pushid

@@ -1,0 +1,216 @@
+// The rod as a state: its law's derivatives by hand against Jets, silence at rest, the constant rod
+// as the limit of zero weights, and what a rod that moved does to the pendulum.
+#include "models/rod_law.h"
+
+#include <ceres/jet.h>
+
+#include "models/crowd.h"
+#include "models/rollout.h"
+#include "tests/models/model_samples.h"
+
+namespace pushid {
+namespace {
+
+std::vector<RodShape> EveryLaw() {
+  return {{RodKind::kLinear, {}},
+          {RodKind::kMlp, {4}},
+          {RodKind::kMlp, {3, 2}},
+          {RodKind::kMlp, {2, 4, 3}}};
+}
+
+std::vector<double> RandomWeights(int count, double size, Random* random) {
+  std::vector<double> weights;
+  for (int i = 0; i < count; ++i) weights.push_back(random->Uniform(-size, size));
+  return weights;
+}
+
+TEST(RodLaw, GradientByHandEqualsJets) {
+  using Jet = ceres::Jet<double, 100>;
+  Random random(71);
+  for (const RodShape& shape : EveryLaw()) {
+    const int weights = shape.num_weights();
+    ASSERT_LE(RodShape::kInputs + weights, 100);
+    for (double size : {0.0, 1e-8, 1.0}) {
+      SCOPED_TRACE(RodName(shape));
+      const std::vector<double> w = RandomWeights(weights, 1.5, &random);
+      RodLayers<double> layers(shape);
+      RodLayers<Jet> jets(shape);
+      for (int i = 0; i < RodShape::kInputs; ++i) {
+        layers.inputs[i] = random.Uniform(-size, size);
+        jets.inputs[i] = Jet(layers.inputs[i], i);
+      }
+      std::vector<Jet> wj;
+      for (int i = 0; i < weights; ++i) wj.emplace_back(w[i], RodShape::kInputs + i);
+      const double velocity = RodVelocity(shape, w.data(), &layers);
+      const Jet expected = RodVelocity(shape, wj.data(), &jets);
+      Eigen::VectorXd by_weight = Eigen::VectorXd::Constant(weights, NAN);
+      const RodInputGradient by_input =
+          RodVelocityGradient(shape, w.data(), layers, by_weight.data());
+      EXPECT_NEAR(velocity, expected.a, 1e-16);
+      ExpectClose(by_input, expected.v.head<RodShape::kInputs>().transpose(), 1e-14, 1e-2);
+      // Those by b are differences of numbers of order 1.
+      ExpectClose(by_weight, expected.v.segment(RodShape::kInputs, weights), 1e-14, 1e-2);
+      EXPECT_EQ(RodVelocityGradient(shape, w.data(), layers, nullptr), by_input);
+    }
+  }
+}
+
+TEST(RodLaw, SizesAndNames) {
+  const RodShape constant, linear{RodKind::kLinear, {}}, ldp{RodKind::kMlp, {256, 128, 256}};
+  EXPECT_EQ(constant.num_weights(), 0);
+  EXPECT_EQ(linear.num_weights(), 11);
+  EXPECT_EQ(ldp.num_weights(), 256 * 12 + 128 * 257 + 256 * 129 + 256);
+  EXPECT_EQ(RodName(constant), "constant");
+  EXPECT_EQ(RodName(linear), "linear");
+  EXPECT_EQ(RodName({RodKind::kMlp, {4}}), "mlp:4");
+  EXPECT_EQ(RodName(ldp), "mlp:256-128-256");
+}
+
+ParameterSet<double> StandingParameters() {
+  ParameterSet<double> p{};
+  p[kMu] = 40.0, p[kKpTheta] = p[kKpPhi] = 1700.0, p[kKdTheta] = p[kKdPhi] = 90.0;
+  p[kAx] = p[kAy] = -9.0, p[kTailGain] = 1.0, p[kTailTorque] = 0.3, p[kTailTime] = 0.2;
+  p[kTailExponent] = 1.5, p[kRodLift] = 0.7;
+  return p;
+}
+
+// Two people who lean a little, the first of them pushed.
+Scene TwoPeople(double push) {
+  Scene scene = DemonstrationScene(70.0, push, 2);
+  scene.people[0].start.q[2] = 0.03, scene.people[1].start.q[3] = -0.02;
+  return scene;
+}
+
+// size: of the rod's weights; the self force, where there is one, has its own.
+ModelOptions WithRod(const RodShape& rod, const NetworkShape& self, double size, Random* random) {
+  auto network = std::make_shared<SelfNetwork>();
+  network->shape = self;
+  network->rod = rod;
+  network->weights = RandomWeights(self.num_weights(), 0.3, random);
+  for (double w : RandomWeights(rod.num_weights(), size, random)) network->weights.push_back(w);
+  ModelOptions options;
+  options.self_network = network;
+  return options;
+}
+
+RolloutPath<double> Roll(const Scene& scene, const ModelOptions& options, int frames) {
+  RolloutPath<double> path;
+  const RolloutStatus status = Rollout<double>(scene, options, {StandingParameters()},
+                                               InitialVelocities(scene), frames, &path);
+  EXPECT_TRUE(status.ok) << status.quantity;
+  return path;
+}
+
+const NetworkShape kNoNetwork, kBlind{NetworkKind::kGru, 3}, kSeeing{NetworkKind::kMlp, 3, 0, true};
+
+TEST(RodLaw, IsSilentAtRest) {
+  Random random(72);
+  const Scene scene = TwoPeople(0.0);
+  for (const RodShape& shape : EveryLaw()) {
+    for (const NetworkShape& self : {kNoNetwork, kSeeing}) {
+      const auto path = Roll(scene, WithRod(shape, self, 3.0, &random), 100);
+      for (int n = 0; n < 2; ++n) {
+        EXPECT_LT(std::abs(path.At(99, n).rod), 1e-12) << RodName(shape);
+        EXPECT_EQ(path.At(1, n).rod, 0.0) << RodName(shape);
+      }
+    }
+  }
+}
+
+TEST(RodLaw, ZeroWeightsAreAConstantRodToTheLastBit) {
+  Random random(73);
+  const Scene scene = TwoPeople(40.0);
+  for (const NetworkShape& self : {kNoNetwork, kBlind, kSeeing}) {
+    for (const RodShape& shape : EveryLaw()) {
+      const ModelOptions moving = WithRod(shape, self, 0.0, &random);
+      auto network = std::make_shared<SelfNetwork>(*moving.self_network);
+      network->rod = {};
+      ModelOptions constant;
+      if (self.any()) constant.self_network = network;
+      const auto path = Roll(scene, moving, 120), expected = Roll(scene, constant, 120);
+      for (int t = 0; t < 120; ++t) {
+        for (int n = 0; n < 2; ++n) {
+          ASSERT_EQ(path.At(t, n).q, expected.At(t, n).q) << RodName(shape) << " frame " << t;
+          ASSERT_EQ(path.At(t, n).qd, expected.At(t, n).qd);
+          ASSERT_EQ(path.At(t, n).rod, 0.0);
+        }
+      }
+    }
+  }
+}
+
+TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
+  Random random(74);
+  const Scene scene = TwoPeople(40.0);
+  for (const RodShape& shape : EveryLaw()) {
+    const auto path = Roll(scene, WithRod(shape, kNoNetwork, 0.6, &random), 40);
+    const auto constant = Roll(scene, {}, 40);
+    EXPECT_GT(std::abs(path.At(39, 0).rod), 1e-6) << RodName(shape);
+    EXPECT_GT((path.At(39, 0).q - constant.At(39, 0).q).norm(), 1e-6) << RodName(shape);
+  }
+}
+
+TEST(RodLaw, LdpsSizeRunsInARollout) {
+  Random random(75);
+  const RodShape ldp{RodKind::kMlp, {256, 128, 256}};
+  const auto path = Roll(TwoPeople(40.0), WithRod(ldp, kSeeing, 0.05, &random), 60);
+  EXPECT_NE(path.At(59, 0).rod, 0.0);
+}
+
+// Rollout and crowd take the same steps.
+TEST(RodLaw, CrowdsHaveRodsToo) {
+  Random random(76);
+  const Scene scene = TwoPeople(40.0);
+  const ModelOptions options = WithRod({RodKind::kMlp, {4}}, kSeeing, 0.8, &random);
+  const auto path = Roll(scene, options, 50);
+  Crowd crowd(scene, options, {StandingParameters()}, 2);
+  for (int t = 1; t < 50; ++t) {
+    ASSERT_TRUE(crowd.Advance().ok);
+    for (int n = 0; n < 2; ++n) {
+      ASSERT_EQ(crowd.states()[n].q, path.At(t, n).q);
+      ASSERT_EQ(crowd.states()[n].rod, path.At(t, n).rod);
+    }
+  }
+}
+
+// Weights on l - l_0 alone make it grow without end, from a push on the angles.
+TEST(RodLaw, AFailureNamesTheRod) {
+  SelfNetwork network;
+  network.rod.kind = RodKind::kLinear;
+  network.weights.assign(11, 0.0);
+  network.weights[2] = 1.0;
+  network.weights[RodShape::kRodInput] = 5.0;
+  ModelOptions options;
+  options.self_network = std::make_shared<SelfNetwork>(network);
+  const Scene scene = TwoPeople(40.0);
+  RolloutPath<double> path;
+  const RolloutStatus status =
+      Rollout<double>(scene, options, {StandingParameters()}, InitialVelocities(scene), 200, &path);
+  ASSERT_FALSE(status.ok);
+  EXPECT_EQ(status.quantity, "rod");
+  EXPECT_EQ(status.person, 0);
+  const double length = scene.people[0].body.rod_length + path.At(status.frame, 0).rod;
+  EXPECT_TRUE(length < kShortestRod || length > kLongestRod);
+  // One that does not move may have any length.
+  EXPECT_EQ(OutsideDomain(Body{70.0, 0.2, 0.0}, PendulumState<double>{}), "");
+}
+
+TEST(RodLaw, AMovedRodIsARodOfThatLength) {
+  Random random(77);
+  for (int i = 0; i < 20; ++i) {
+    const Body body = RandomBody(&random);
+    PendulumState<double> state = RandomState(&random, 0.3);
+    state.rod = random.Uniform(-0.2, 0.2);
+    const double lift = random.Uniform(-1, 2);
+    const Body now = BodyNow(body, state.rod, lift);
+    EXPECT_EQ(now.rod_length, body.rod_length + state.rod);
+    EXPECT_EQ(now.mass, body.mass);
+    // Upright, the hip sinks by what the rod loses less what the cart rises.
+    const double height = HipPosition<double>(now, {0, 0, 0, 0}).z();
+    EXPECT_NEAR(height, body.cart_height + body.rod_length + (1.0 - lift) * state.rod, 1e-14);
+    EXPECT_EQ(Step(state, RandomVector(&random, 1.0), 0.01).rod, state.rod);
+  }
+}
+
+}  // namespace
+}  // namespace pushid
