@@ -163,6 +163,18 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   return warnings;
 }
 
+// What is known of a network's weights says nothing to anybody and fills files: from here on the
+// covariance is that of everything else, whatever the weights are.
+void ForgetWeights(Eigen::Index weights, FitResult* result) {
+  if (weights == 0) return;
+  Uncertainty& u = result->uncertainty;
+  const Eigen::Index size = u.covariance.rows() - weights;
+  u.covariance = u.covariance.topLeftCorner(size, size).eval();
+  u.correlation = u.correlation.topLeftCorner(size, size).eval();
+  u.estimates.resize(size);
+  result->nuisance.resize(result->nuisance.size() - weights);
+}
+
 }  // namespace
 
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
@@ -182,6 +194,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.converged = best.converged;
   result.cost = best.cost;
   result.message = best.message;
+  result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
   result.uncertainty = ComputeUncertainty(problem, best.to);
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
@@ -193,6 +206,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
+  ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
   return result;
 }
 

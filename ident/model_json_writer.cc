@@ -4,6 +4,7 @@
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
+#include "ident/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -46,7 +47,7 @@ Json TableJson(const ParameterTable& table) {
 
 Json OptionsJson(const FitOptions& o) {
   return {{"preset", o.preset},
-          {"self_force", NameOf(o.self_force)},
+          {"self_force", SelfForceText(o.self_force, o.model.self_network.get())},
           {"mapping", NameOf(o.mapping)},
           {"posture", NameOf(o.model.posture)},
           {"gain_scaling", NameOf(o.model.gain_scaling)},
@@ -214,6 +215,9 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                  {"solve_seconds", result.solve_seconds},
                  {"total_seconds", run.total_seconds},
                  {"num_threads", run.num_threads}}}};
+  if (const auto& network = result.options.model.self_network) {
+    json["self_network"] = ToJson(*network);
+  }
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }

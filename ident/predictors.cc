@@ -25,6 +25,7 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
   model.options = options_.model;
   model.pool_by = options_.pool_by;
   if (solution.best >= 0) {
+    model.options = problem.ModelAt(solution.Best().to);
     model.parameters = problem.Parameters(solution.Best().to, "");
     prediction.behaviour = problem.BehaviourAt(solution.Best().to);
   }

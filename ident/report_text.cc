@@ -8,6 +8,7 @@
 #include "ident/option_names.h"
 #include "ident/preparation_text.h"
 #include "ident/report_tables.h"
+#include "ident/self_network_io.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
 
@@ -56,8 +57,9 @@ std::string ReportText(const FitResult& result) {
                      Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
                      result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
-                     ", self force " + NameOf(o.self_force) + ", interaction " +
-                     NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(result) + "\n\n";
+                     ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
+                     ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
+                     SelfFromText(result) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {

@@ -42,9 +42,9 @@ constexpr double kQrWork = 2e7;
 // sparse normal equations cost a tenth then, and every unit's column has its prior.
 constexpr int kDenseColumns = 50;
 
-ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
+ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem, bool has_network) {
   const double columns = problem.NumParameters(), rows = problem.NumResiduals();
-  if (columns > kDenseColumns) return ceres::SPARSE_NORMAL_CHOLESKY;
+  if (columns > kDenseColumns && !has_network) return ceres::SPARSE_NORMAL_CHOLESKY;
   return rows * columns * columns > kQrWork ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
 }
 
@@ -52,7 +52,7 @@ ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = LinearSolverFor(problem);
+  solver.linear_solver_type = LinearSolverFor(problem, options.model.self_network != nullptr);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -108,17 +108,22 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
   std::vector<int> horizons = options.horizons;
   if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
 
+  // A network learns from a physical model that has converged without it.
+  const bool network = !from.weights.empty();
+  if (network) horizons.push_back(0);
   for (size_t i = 0; i < horizons.size(); ++i) {
     const bool last = i + 1 == horizons.size();
+    const bool hold_network = !last;
     size_t left_out_before = std::numeric_limits<size_t>::max();
     // A recording that could not be rolled out to its end at the stage's start may well be after
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
-      FitProblem::Built built = problem.Build(&start.to, horizons[i]);
+      FitProblem::Built built = problem.Build(&start.to, horizons[i], hold_network);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
       // Stages on the way need not be exact.
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
-      ProgressCallback callback(progress, label + HorizonName(horizons[i]));
+      const std::string phase = HorizonName(horizons[i]) + (network && last ? ", network" : "");
+      ProgressCallback callback(progress, label + phase);
       if (progress) solver.callbacks.push_back(&callback);
       const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
       start.stages.push_back(stage);
