@@ -192,6 +192,25 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   return std::nullopt;
 }
 
+bool AnyPooled(const ParameterTable& table) {
+  return std::any_of(table.specs.begin(), table.specs.end(),
+                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
+}
+
+// What asks for a network where there is none, or for more than it can do.
+MaybeError CheckNetworkFlags(const FitOptions& o) {
+  for (const char* flag : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+    if (o.model.self_network != nullptr) break;
+    if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) continue;
+    return Error{std::string("--") + flag +
+                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (o.ensemble > 1 && AnyPooled(o.table)) {
+    return Error{"--ensemble does not go together with --pool: its members share all parameters"};
+  }
+  return std::nullopt;
+}
+
 Result<FitOptions> OptionsOfFlags() {
   Result<Preset> preset = MakePreset(FLAGS_preset);
   if (!preset.ok()) return preset.error();
@@ -227,6 +246,7 @@ Result<FitOptions> OptionsOfFlags() {
   edits.pool = FLAGS_pool.empty() ? preset.value().pool : FLAGS_pool;
   edits.pool_by = o.pool_by;
   if (MaybeError error = EditTable(edits, &o.table)) return *error;
+  if (MaybeError error = CheckNetworkFlags(o)) return *error;
   if (o.table.Free().empty()) return Error{"every parameter is fixed: nothing is left to fit"};
 
   o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
@@ -242,11 +262,6 @@ Result<FitOptions> OptionsOfFlags() {
   o.gradient_tolerance = FLAGS_gradient_tolerance;
   o.parameter_tolerance = FLAGS_parameter_tolerance;
   return o;
-}
-
-bool AnyPooled(const ParameterTable& table) {
-  return std::any_of(table.specs.begin(), table.specs.end(),
-                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
 }
 
 }  // namespace

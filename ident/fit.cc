@@ -196,6 +196,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.message = best.message;
   result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
+  if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to);
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
@@ -216,6 +217,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.mapping = result.options.mapping;
   model.table = result.options.table;
   model.parameters = result.parameters;
+  model.others = result.others;
   model.pool_by = result.options.pool_by;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
@@ -237,6 +239,7 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
     const Parameter id = model->table.Find(named.name)->id;
     model->parameters[id] = named.value;
     for (auto& [unit, own] : model->by_unit) own[id] = named.value;
+    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
   }
   return std::nullopt;
 }

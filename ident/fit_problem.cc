@@ -17,8 +17,6 @@ namespace {
 constexpr double kDemonstrationMass = 80.0;                     // kg
 constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
 constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};           // N s, on the first in a line
-constexpr int kFramesPastTheEnd = 40;
-constexpr double kStrongerPush = 1.4;
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 }  // namespace
@@ -329,6 +327,7 @@ FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
         {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
   }
   AddPriors(point, &built);
+  if (map_.num_weights > 0) built.problem->SetParameterBlockConstant(point->weights.data());
   return built;
 }
 

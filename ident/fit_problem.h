@@ -46,6 +46,9 @@ class FitProblem {
   const ParameterMap& map() const { return map_; }
   const std::vector<PendulumRecording>& recordings() const { return recordings_; }
   const FitOptions& options() const { return options_; }
+  const std::vector<int>& counts() const { return counts_; }  // empty: each once
+  // How often a recording counts.
+  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
   // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them,
   // weights as the options' network holds them.
@@ -95,7 +98,6 @@ class FitProblem {
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
-  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
   double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;

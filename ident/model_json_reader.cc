@@ -108,6 +108,15 @@ FitOptions OptionsFrom(const Json& json) {
   return o;
 }
 
+EnsembleMember MemberFrom(const Json& json, const ParameterTable& table) {
+  EnsembleMember member;
+  for (const ParameterSpec& spec : table.specs) {
+    member.parameters[spec.id] = json.at("values").at(spec.name);
+  }
+  member.network = SelfNetworkFromJson(json.at("self_network"));
+  return member;
+}
+
 Behaviour BehaviourFrom(const Json& json) {
   Behaviour b;
   b.settles = json.at("settles");
@@ -257,6 +266,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
       const Json& values = at("values");
       part = "values/" + spec.name;
       result.parameters[spec.id] = values.at(spec.name);
+    }
+    if (json.contains("ensemble")) {
+      for (const Json& one : at("ensemble")) {
+        result.others.push_back(MemberFrom(one, result.options.table));
+      }
     }
     result.behaviour = BehaviourFrom(at("behaviour"));
     result.uncertainty = UncertaintyFrom(at("uncertainty"));

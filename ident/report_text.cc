@@ -138,6 +138,25 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   return text + "\n" + PropagationText(columns);
 }
 
+namespace {
+
+// One honest sentence on two configurations.
+std::string ConclusionText(const PairedDifference& d) {
+  if (d.recordings == 0) return d.b + " cannot be compared with " + d.a + ".";
+  const std::string by = Significant(std::abs(d.hip_ade), 2) + " +- " +
+                         Significant(d.hip_ade_error, 2) + " m of hipADE";
+  if (std::abs(d.hip_ade) <= d.hip_ade_error) {
+    return d.b + " is not distinguishable from " + d.a + " (" + by + ").";
+  }
+  const std::string surely = std::abs(d.hip_ade) > 2.0 * d.hip_ade_error
+                                 ? ""
+                                 : ", more than one standard error but less than two";
+  return d.b + " predicts " + (d.hip_ade < 0.0 ? "better" : "worse") + " than " + d.a + " by " +
+         by + surely + ".";
+}
+
+}  // namespace
+
 std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   std::string text;
   if (rivals.empty()) return text;
@@ -163,8 +182,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   text += folds.ToString() + "\n";
   TextTable table(
       {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + rivals[0].predictor,
-       "failed", "fell", "settle", groups ? "harder, farther" : ""},
-      {true, true, true, true, true, false, false, false, false});
+       "failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""},
+      {true, true, true, true, true, false, false, false, false, false});
   const auto folds_that = [](int number, const CrossValidation& rival) {
     return rival.fits > 0 ? std::to_string(number) + " of " + std::to_string(rival.fits) : "";
   };
@@ -180,10 +199,15 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
                               Significant(difference.hip_ade_error, 2)
                         : "",
                std::to_string(rival.failures), std::to_string(rival.falls),
+               rival.fits > 0 ? std::to_string(rival.falls_harder) : "",
                folds_that(rival.settling, rival),
                groups ? folds_that(rival.harder_farther, rival) : ""});
   }
-  text += table.ToString();
+  text += table.ToString() +
+          "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
+  for (size_t i = 1; i < rivals.size(); ++i) {
+    text += ConclusionText(Compare(rivals[0], rivals[i])) + "\n";
+  }
   if (!groups) return text;
   std::vector<PropagationColumn> columns;
   for (const CrossValidation& rival : rivals) {
