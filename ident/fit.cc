@@ -196,6 +196,9 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.message = best.message;
   result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
+  if (!best.to.weights.empty()) {
+    result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(best.to.weights);
+  }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to);
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);

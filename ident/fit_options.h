@@ -53,7 +53,7 @@ struct FitOptions {
   // Share of the recordings held out to stop a network's training before it learns the rest by
   // heart; 0: none, the prior alone holds it.
   double early_stopping = 0.0;
-  // Weight of what the network takes over from friction and balance (ident/network_takeover.h).
+  // Weight of what the network takes over from friction and balance (residuals/network_takeover.h).
   double takeover_weight = 0.0;
   int ensemble = 1;  // networks from so many seeds; predictions are their median
 

@@ -8,6 +8,7 @@
 
 #include "residuals/equation_error_residual.h"
 #include "residuals/mode_residual.h"
+#include "residuals/network_takeover.h"
 #include "residuals/prior_residual.h"
 #include "residuals/rest_residual.h"
 
@@ -215,6 +216,12 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     auto* prior = new RidgeResidual(map_.num_weights, options_.network_prior);
     built->blocks.push_back(
         {built->problem->AddResidualBlock(prior, nullptr, point->weights.data()), kPoolingCluster});
+  }
+  if (map_.num_weights > 0 && options_.takeover_weight > 0.0) {
+    auto* takeover = new TakeoverResidual(recordings_, options_.model, options_.takeover_weight);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(takeover, nullptr, point->weights.data()),
+         kPriorCluster});
   }
 }
 

@@ -15,6 +15,7 @@
 #include "ident/profile.h"
 #include "ident/solver.h"
 #include "ident/uncertainty.h"
+#include "residuals/network_takeover.h"
 
 namespace pushid {
 
@@ -36,6 +37,7 @@ struct FitResult {
   FitOptions options;
   // As they act: fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
+  std::optional<Takeover> takeover;    // by the network, where there is one
   std::vector<EnsembleMember> others;  // of an ensemble, besides the one reported
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities

@@ -243,6 +243,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
     }
+    if (json.contains("network_takeover")) {
+      const Json& t = at("network_takeover");
+      result.takeover = Takeover{t.at("mu_N_s_m"), t.at("Kp_theta_N_m_rad"),
+                                 t.at("Kd_theta_N_m_s_rad"), t.at("rms_force_m_s2")};
+    }
     if (json.contains("interaction_network")) {
       const Json& network = at("interaction_network");
       result.options.model.interaction_network = InteractionNetworkFromJson(network);

@@ -225,6 +225,12 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                  {"num_threads", run.num_threads}}}};
   if (const auto& network = result.options.model.self_network) {
     json["self_network"] = ToJson(*network);
+    if (const auto& t = result.takeover) {
+      json["network_takeover"] = {{"mu_N_s_m", t->mu},
+                                  {"Kp_theta_N_m_rad", t->kp_theta},
+                                  {"Kd_theta_N_m_s_rad", t->kd_theta},
+                                  {"rms_force_m_s2", t->rms_force}};
+    }
     for (const EnsembleMember& member : result.others) {
       json["ensemble"].push_back({{"values", ValuesJson(result.options.table, member.parameters)},
                                   {"self_network", ToJson(*member.network)}});

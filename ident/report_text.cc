@@ -51,6 +51,30 @@ std::string Significant(double value, int digits) {
   return text;
 }
 
+namespace {
+
+std::string NetworkText(const FitResult& result) {
+  const auto& network = result.options.model.self_network;
+  if (network == nullptr || !result.takeover) return "";
+  const Takeover& t = *result.takeover;
+  const auto signed_number = [](double value) {
+    return (value < 0.0 ? "" : "+") + Significant(value, 3);
+  };
+  std::string text = "network " + NetworkName(network->shape) + " (" +
+                     Count(network->shape.num_weights(), "weight") + ", prior " +
+                     Significant(result.options.network_prior) + ")";
+  if (!result.others.empty()) {
+    text += ", the first of " + std::to_string(result.others.size() + 1) +
+            " seeds; predictions are their median";
+  }
+  return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
+         signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
+         " N m s/rad beside those above;\n  its force on the cart is " +
+         Significant(t.rms_force, 2) + " m/s^2 times the mass (root mean square)\n";
+}
+
+}  // namespace
+
 std::string ReportText(const FitResult& result) {
   const FitOptions& o = result.options;
   std::string text = "pushid " + result.version + ", preset " + o.preset + ": " +
@@ -69,6 +93,7 @@ std::string ReportText(const FitResult& result) {
   if (agreement.rows().size() > 1) {
     text += agreement.ToString() + AgreementNote(result) + "\n";
   }
+  text += NetworkText(result);
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
