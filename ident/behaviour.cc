@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "models/rollout.h"
+#include "models/self_network.h"
 
 namespace pushid {
 namespace {
@@ -46,10 +47,35 @@ Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double
   return result;
 }
 
-using Matrix8 = Eigen::Matrix<double, 8, 8>;
+// One step of a network about rest, by central differences (it is smooth, and its values are of
+// order one): d[force; memory]/d[theta, phi, qd; memory].
+Eigen::MatrixXd NetworkStep(const SelfNetwork& network, const Body& body) {
+  constexpr double kDifference = 1e-5;
+  const NetworkShape& shape = network.shape;
+  const int hidden = shape.recurrent() ? shape.hidden : 0;
+  const int cells = shape.kind == NetworkKind::kLstm ? shape.hidden : 0;
+  const auto step = [&](const Eigen::VectorXd& from) {
+    NetworkState<double> state(shape, body);
+    if (hidden > 0) state.hidden = from.segment(6, hidden);
+    if (cells > 0) state.cell = from.tail(cells);
+    SetNetworkInputs<double>(from[0], from[1], from.segment<4>(2), 0.0, &state);
+    Eigen::VectorXd to(4 + hidden + cells);
+    to.head<4>() = StepNetwork(shape, network.weights.data(), body.mass, &state);
+    if (hidden > 0) to.segment(4, hidden) = state.hidden;
+    if (cells > 0) to.tail(cells) = state.cell;
+    return to;
+  };
+  Eigen::MatrixXd jacobian(4 + hidden + cells, 6 + hidden + cells);
+  for (int i = 0; i < jacobian.cols(); ++i) {
+    const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(jacobian.cols(), i);
+    jacobian.col(i) = (step(move) - step(-move)) / (2.0 * kDifference);
+  }
+  return jacobian;
+}
 
-// Eigenvalues of one free step about rest, as growth rates. The state is [theta, phi, qd] and, for
-// the backward difference of the cart's velocity, that velocity one step earlier.
+// Eigenvalues of one free step about rest, as growth rates. The state is [theta, phi, qd], for the
+// backward difference of the cart's velocity that velocity one step earlier, and a network's
+// memory.
 double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
   const Scene scene = DemonstrationScene(80.0, 0.0);
   const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
@@ -63,17 +89,28 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
       InverseMassMatrix<double>(scene.people[0].body, Vector4<double>::Zero());
   const Eigen::Matrix<double, 4, 8> acceleration = inverse * force;
   // Free modes do not depend on where the cart stands: drop x and y.
-  Matrix8 step = Matrix8::Zero();
+  Eigen::MatrixXd network(4, 6);
+  network.setZero();
+  if (options.self_network != nullptr) {
+    network = NetworkStep(*options.self_network, scene.people[0].body);
+  }
+  const Eigen::Index memory = network.rows() - 4;
+  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(8 + memory, 8 + memory);
   auto velocity = step.middleRows<4>(2);
   velocity.middleCols<4>(2).setIdentity();
   velocity.leftCols<6>() += scene.dt * acceleration.rightCols<6>();
-  velocity.rightCols<2>() = scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+  velocity.leftCols<6>() += scene.dt * inverse * network.topLeftCorner<4, 6>();
+  velocity.rightCols(memory) = scene.dt * inverse * network.topRightCorner(4, memory);
+  velocity.middleCols<2>(6) = scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
-  step.bottomRows<2>().middleCols<2>(2).setIdentity();
-  const Eigen::EigenSolver<Matrix8> solver(step);
+  step.block<2, 2>(6, 2).setIdentity();
+  step.bottomLeftCorner(memory, 6) = network.bottomLeftCorner(memory, 6);
+  step.bottomRightCorner(memory, memory) = network.bottomRightCorner(memory, memory);
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(step);
   double largest = 0.0;
-  for (int i = 0; i < 8; ++i) largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
+  for (int i = 0; i < step.rows(); ++i)
+    largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
   return std::log(largest) / scene.dt;
 }
 

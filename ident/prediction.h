@@ -16,12 +16,13 @@ struct Prediction {
   ForceTrace forces;                              // what drove it, part by part
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
-  std::vector<double> rod_lift;  // of each person
+  std::vector<double> rod_lift;  // of each person, or one for everybody
 
+  double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
   // A person with the rod and the cart's height of one frame.
   Body BodyAt(const Scene& scene, int frame, int person) const {
     const Body& body = scene.people[person].body;
-    return rod_moves ? BodyNow(body, path.At(frame, person).rod, rod_lift[person]) : body;
+    return rod_moves ? BodyNow(body, path.At(frame, person).rod, Lift(person)) : body;
   }
 };
 

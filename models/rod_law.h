@@ -28,7 +28,7 @@ enum class RodKind { kConstant, kLinear, kMlp };
 
 struct RodShape {
   RodKind kind = RodKind::kConstant;
-  std::vector<int> hidden;  // layers of an MLP, at least one
+  std::vector<int> hidden = {};  // layers of an MLP, at least one
 
   static constexpr int kInputs = 11;
   static constexpr int kForceInputs = kMotionInputs;  // where the four of the self force start

@@ -56,8 +56,8 @@ std::string NetworkName(const NetworkShape& shape);
 // What a model has learned about a person: a self force, a rod law (rod_law.h), or both.
 struct SelfNetwork {
   NetworkShape shape;           // of the self force
-  RodShape rod;                 // of the rod's law
   std::vector<double> weights;  // of the self force, then of the rod's law
+  RodShape rod = {};            // of the rod's law
 
   int num_weights() const { return shape.num_weights() + rod.num_weights(); }
   int rod_at() const { return shape.num_weights(); }  // the first weight of the rod's law
@@ -118,6 +118,7 @@ template <typename T>
 Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
                        NetworkState<T>* state) {
   using std::exp, std::tanh;
+  if (!shape.any()) return Vector4<T>::Zero();
   const auto logistic = [](const T& a) { return T(1.0) / (T(1.0) + exp(-a)); };
   const auto squash = [](const T& a) { return tanh(a); };
   const NetworkWeights<T> w(shape, weights);

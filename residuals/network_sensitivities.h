@@ -25,7 +25,8 @@ class NetworkSensitivities {
 
   // state: after the step; by_state: d[q, qd]/d(columns) of the person at the step's frame; rod:
   // d(l)/d(columns) there, empty where the rod is constant.
-  void Advance(const NetworkState<double>& state, const States& by_state, const Row& rod);
+  void Advance(const NetworkState<double>& state, const States& by_state,
+               const Row& rod = Eigen::RowVectorXd());
 
   // Adds d(force)/d(columns) of the last step.
   void AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const;

@@ -34,7 +34,7 @@ struct SensitivityInputs {
 class RolloutSensitivities {
  public:
   using Block = Eigen::Matrix<double, 8, Eigen::Dynamic>;
-  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves) {
+  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false) {
     num_people_ = num_people;
     num_columns_ = num_columns;
     const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;

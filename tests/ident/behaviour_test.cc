@@ -51,6 +51,40 @@ TEST(Behaviour, IdentifiedGainsBarelySettle) {
   }
 }
 
+// A network that plays a gain moves the free modes as that gain does.
+TEST(Behaviour, FreeModesKnowTheNetwork) {
+  constexpr double kSmall = 1e-6;
+  SelfNetwork network{{NetworkKind::kMlp, 1}, {}};
+  network.weights.assign(network.shape.num_weights(), 0.0);
+  network.weights[0] = kSmall;                                     // e_theta
+  network.weights[network.shape.output_at() + 2] = -0.1 / kSmall;  // torque
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.self_network = std::make_shared<const SelfNetwork>(network);
+  const ParameterSet<double> p = FirmParameters();
+  ParameterSet<double> stiffer = p;
+  const GainScale scale(options.gain_scaling, {80.0, kReferenceRod, 0.0});
+  stiffer[kKpTheta] += 0.1 * kNetworkAcceleration * 80.0 / kNetworkAngle / scale.stiffness;
+  const double played = ComputeBehaviour(options, p).fastest_growth;
+  EXPECT_NEAR(played, Of(stiffer).fastest_growth, 1e-6);
+  EXPECT_GT(std::abs(played - Of(p).fastest_growth), 1e-3);
+}
+
+// A memory is part of the modes: with a GRU whose gates stay half open, what dies out slowest may
+// be the memory itself.
+TEST(Behaviour, FreeModesKnowTheMemory) {
+  SelfNetwork network{{NetworkKind::kGru, 2}, {}};
+  network.weights.assign(network.shape.num_weights(), 0.0);
+  const NetworkShape& s = network.shape;
+  // z = logistic(8): the memory decays by 1 - z = 3.4e-4 a step.
+  for (int row = 0; row < 2; ++row) {
+    network.weights[s.gates_at() + (row + 1) * s.gate_width() - 1] = 8.0;
+  }
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.self_network = std::make_shared<const SelfNetwork>(network);
+  const double z = 1.0 / (1.0 + std::exp(-8.0));
+  EXPECT_NEAR(ComputeBehaviour(options, FirmParameters()).fastest_growth, 60.0 * std::log(z), 1e-6);
+}
+
 TEST(Behaviour, HarderPushesGoFarther) {
   const Behaviour b = Of(FirmParameters());
   for (int mass = 0; mass < 3; ++mass) {

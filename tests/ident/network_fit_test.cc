@@ -1,0 +1,242 @@
+// Fits with a self-force network: a planted one is found again (its predictions, not its weights),
+// what guards a training, and what a result keeps of it.
+#include <gtest/gtest.h>
+
+#include "datasets/json_file.h"
+#include "ident/early_stopping.h"
+#include "ident/evaluation.h"
+#include "ident/report_text.h"
+#include "ident/result_json.h"
+#include "ident/self_network_io.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+// People who do something that no gain can: a push is answered by a force of a network's own.
+std::shared_ptr<const SelfNetwork> PlantedNetwork(const NetworkShape& shape) {
+  SelfNetwork network{shape, InitialWeights(shape, 99)};
+  Random random(98);
+  for (int i = shape.output_at(); i < shape.num_weights(); ++i) {
+    network.weights[i] = random.Uniform(-0.4, 0.4);
+  }
+  return std::make_shared<const SelfNetwork>(network);
+}
+
+struct Study {
+  std::vector<PendulumRecording> training, held_out;
+  FitOptions options;
+};
+
+Study PlantedStudy(const NetworkShape& planted, double noise) {
+  SyntheticOptions synthetic;
+  synthetic.frames = 60;
+  synthetic.joint_noise_m = noise;
+  synthetic.model.self_network = PlantedNetwork(planted);
+  Study study;
+  const std::vector<PendulumRecording> all = MakePendulums(synthetic);
+  for (size_t i = 0; i < all.size(); ++i) {
+    (i % 4 == 0 ? study.held_out : study.training).push_back(all[i]);
+  }
+  study.options = UnbiasedFit(synthetic);
+  study.options.model.self_network = nullptr;
+  study.options.network_prior = 30.0;
+  return study;
+}
+
+FitResult FitWith(const Study& study, const NetworkShape& shape, uint64_t seed = 1) {
+  FitOptions options = study.options;
+  options.seed = seed;
+  if (shape.any()) options.model.self_network = InitialNetwork(shape, seed);
+  return Fit(study.training, options);
+}
+
+double HeldOutAde(const Study& study, const FitResult& result) {
+  return Evaluate(ModelOf(result), study.held_out).model.mean.hip_ade;
+}
+
+class PlantedNetworks : public testing::TestWithParam<NetworkShape> {};
+
+TEST_P(PlantedNetworks, PredictUnseenPushesAsTheTruthDoes) {
+  const Study study = PlantedStudy(GetParam(), 0.0);
+  const double without = HeldOutAde(study, FitWith(study, {}));
+  const double with = HeldOutAde(study, FitWith(study, GetParam()));
+  EXPECT_GT(without, 0.002);
+  EXPECT_LT(with, 0.2 * without);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PlantedNetworks,
+                         testing::Values(NetworkShape{NetworkKind::kMlp, 3},
+                                         NetworkShape{NetworkKind::kGru, 2}),
+                         [](const auto& test) {
+                           return test.param.kind == NetworkKind::kMlp ? "mlp" : "gru";
+                         });
+
+// Where there is nothing to learn, a weak network learns nothing that shows.
+TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
+  SyntheticOptions synthetic = SmallStudy();
+  synthetic.joint_noise_m = 0.002;
+  FitOptions options = UnbiasedFit(synthetic);
+  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 4}, 1);
+  options.network_prior = 0.3;
+  const FitResult result = Fit(MakePendulums(synthetic), options);
+  ASSERT_TRUE(result.takeover.has_value());
+  EXPECT_LT(std::abs(result.takeover->mu), 2.0);
+  EXPECT_LT(std::abs(result.takeover->kp_theta), 70.0);
+  EXPECT_NEAR(result.parameters[kKpTheta], synthetic.parameters[kKpTheta],
+              0.1 * synthetic.parameters[kKpTheta]);
+}
+
+TEST(NetworkFit, ThePenaltyGivesTheGainsTheirMeaningBack) {
+  Study study = PlantedStudy({NetworkKind::kMlp, 3}, 0.0);
+  const FitResult free = FitWith(study, {NetworkKind::kMlp, 3});
+  study.options.takeover_weight = 30.0;
+  const FitResult held = FitWith(study, {NetworkKind::kMlp, 3});
+  const auto taken = [](const FitResult& r) {
+    return std::abs(r.takeover->mu) / 40.0 + std::abs(r.takeover->kp_theta) / 1400.0 +
+           std::abs(r.takeover->kd_theta) / 70.0;
+  };
+  EXPECT_GT(taken(free), 0.05);
+  EXPECT_LT(taken(held), 0.2 * taken(free));
+}
+
+TEST(NetworkFit, ThreadsDoNotMatter) {
+  Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  study.options.network_prior = 1.0;
+  const FitResult one = FitWith(study, {NetworkKind::kMlp, 2});
+  const FitResult again = FitWith(study, {NetworkKind::kMlp, 2});
+  study.options.num_threads = 2;
+  const FitResult two = FitWith(study, {NetworkKind::kMlp, 2});
+  EXPECT_EQ(one.parameters, again.parameters);
+  EXPECT_EQ(one.options.model.self_network->weights, again.options.model.self_network->weights);
+  EXPECT_NEAR(two.cost, one.cost, 1e-9 * one.cost);
+  for (Parameter id : one.options.table.Free()) {
+    EXPECT_NEAR(two.parameters[id], one.parameters[id], 1e-9 * std::abs(one.parameters[id]));
+  }
+}
+
+TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
+  const Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  FitOptions options = study.options;
+  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  const FitProblem problem(study.training, options);
+  FitPoint point = problem.NominalPoint();
+  EarlyStopping stopping(problem, &point);
+  ceres::IterationSummary step;
+  step.step_is_successful = true;
+  const auto at = [&](double mu) {  // the truth of the study is the best
+    point.shared[0] = ToFitted(problem.map().fitted[0].transform, mu);
+    return stopping(step);
+  };
+  const double nominal = point.shared[0];
+  EXPECT_EQ(at(25.0), ceres::SOLVER_CONTINUE);
+  const double best = stopping.best().shared[0];
+  EXPECT_NE(best, nominal);
+  ceres::CallbackReturnType last = ceres::SOLVER_CONTINUE;
+  for (int i = 0; i < 10; ++i) last = at(300.0 + i);
+  EXPECT_EQ(last, ceres::SOLVER_TERMINATE_SUCCESSFULLY);
+  EXPECT_TRUE(stopping.stopped());
+  EXPECT_EQ(stopping.best().shared[0], best);
+}
+
+TEST(EarlyStopping, HoldsOutAStratifiedShare) {
+  const Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  const FitProblem problem(study.training, study.options);
+  const auto split = SplitForEarlyStopping(problem, 0.25, 1);
+  ASSERT_TRUE(split.ok());
+  int held_out = 0;
+  for (size_t i = 0; i < study.training.size(); ++i) {
+    EXPECT_EQ(split.value().training[i] + split.value().held_out[i], 1);
+    held_out += split.value().held_out[i];
+  }
+  EXPECT_NEAR(held_out, 0.25 * static_cast<double>(study.training.size()), 1.0);
+  EXPECT_FALSE(SplitForEarlyStopping(problem, 0.01, 1).ok());
+}
+
+TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
+  Study study = PlantedStudy({NetworkKind::kGru, 2}, 0.002);
+  study.options.ensemble = 3;
+  study.options.network_prior = 1.0;
+  FitResult result = FitWith(study, {NetworkKind::kGru, 2});
+  ASSERT_EQ(result.others.size(), 2u);
+  result.setting = "single";
+  const nlohmann::ordered_json json = ToJson(result, RunInfo{});
+  const Result<FitResult> read = FitResultFromJson(json, "model.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
+  EXPECT_EQ(read.value().options.model.self_network->weights,
+            result.options.model.self_network->weights);
+  EXPECT_EQ(HeldOutAde(study, read.value()), HeldOutAde(study, result));
+  EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
+  EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);
+  // Weights are nobody's table.
+  for (const Estimate& e : read.value().nuisance) {
+    EXPECT_EQ(e.name.find("weight"), std::string::npos);
+  }
+}
+
+// The prediction of an ensemble lies between those of its members.
+TEST(Ensemble, PredictsTheMedian) {
+  Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  study.options.ensemble = 3;
+  study.options.network_prior = 3.0;
+  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
+  const IdentifiedModel model = ModelOf(result);
+  const PendulumRecording& recording = study.held_out.front();
+  const Prediction median = Predict(model, recording);
+  std::vector<IdentifiedModel> members(3, model);
+  for (IdentifiedModel& member : members) member.others.clear();
+  for (int k : {0, 1}) {
+    members[k + 1].parameters = result.others[k].parameters;
+    members[k + 1].options.self_network = result.others[k].network;
+  }
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    std::vector<double> x;
+    for (const IdentifiedModel& m : members) x.push_back(Predict(m, recording).path.At(t, 0).q[0]);
+    std::sort(x.begin(), x.end());
+    EXPECT_EQ(median.path.At(t, 0).q[0], x[1]);
+  }
+}
+
+TEST(SelfNetworkIo, NamesAreReadAndWritten) {
+  for (const char* text : {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "linear,gru:4"}) {
+    const auto choice = ParseSelfForce("--self_force", text);
+    ASSERT_TRUE(choice.ok()) << text;
+    const SelfNetwork network{choice.value().network, {}};
+    EXPECT_EQ(SelfForceText(choice.value().kind, choice.value().network.any() ? &network : nullptr),
+              text);
+  }
+  EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
+  for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
+                           "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
+    const auto choice = ParseSelfForce("--self_force", text);
+    ASSERT_FALSE(choice.ok()) << text;
+    EXPECT_NE(choice.error().ToString().find("--self_force"), std::string::npos);
+  }
+}
+
+TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
+  const NetworkShape shape{NetworkKind::kLstm, 3, 2};
+  const std::vector<double> weights = InitialWeights(shape, 5);
+  ASSERT_EQ(static_cast<int>(weights.size()), shape.num_weights());
+  for (int i = shape.output_at(); i < shape.num_weights(); ++i) EXPECT_EQ(weights[i], 0.0);
+  EXPECT_EQ(weights, InitialWeights(shape, 5));
+  EXPECT_NE(weights, InitialWeights(shape, 6));
+}
+
+TEST(SelfNetworkIo, DamageIsNamed) {
+  const nlohmann::ordered_json good = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
+  EXPECT_NO_THROW(SelfNetworkFromJson(good));
+  const auto broken = [&](const char* key, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = good;
+    json[key] = value;
+    return json;
+  };
+  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "rnn")), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 0)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 3)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("weights", {1.0})), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace pushid
