@@ -101,10 +101,10 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
   std::string line;
   std::getline(file, line);
   const std::vector<std::string> header = Split(line);
-  ASSERT_EQ(header.size(), 43u);
+  ASSERT_EQ(header.size(), 47u);
   EXPECT_EQ(line.find("frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s"), 0u);
   EXPECT_EQ(header[15], "friction_x_N");
-  EXPECT_EQ(header.back(), "drive_phi_Nm");
+  EXPECT_EQ(header.back(), "network_phi_Nm");
   int t = 0;
   for (; std::getline(file, line); ++t) {
     const std::vector<std::string> row = Split(line);
@@ -127,6 +127,39 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
     EXPECT_LT((next.q - p.path.At(t + 1, 0).q).norm(), 1e-7) << t;
   }
   EXPECT_EQ(t, 45);
+}
+
+// The hip hangs on the predicted rod and on the cart's height, which the file holds too.
+TEST_F(TrajectoryCsv, ARodThatMoves) {
+  const SyntheticOptions study = TinyStudy();
+  const PendulumRecording recording = MakePendulums(study)[0];
+  IdentifiedModel model = TruthOf(study);
+  SelfNetwork network;
+  network.rod.kind = RodKind::kLinear;
+  network.weights = {0, 0, -0.5, 0, 0, 0, 0, 0, 0, 0, -1};
+  model.options.self_network = std::make_shared<SelfNetwork>(network);
+  model.parameters[kRodLift] = 0.6;
+  const Prediction p = Predict(model, recording);
+  ASSERT_TRUE(p.status.ok);
+  ASSERT_FALSE(WriteTrajectoryCsv(Path("t.csv"), recording, p));
+  std::istringstream file(ReadText(Path("t.csv")));
+  std::string line;
+  std::getline(file, line);
+  EXPECT_TRUE(Contains(line, ",network_phi_Nm,rod_length_m,cart_height_m"));
+  const Body& body = recording.scene.people[0].body;
+  double shortest = body.rod_length;
+  for (int t = 0; std::getline(file, line); ++t) {
+    const std::vector<std::string> row = Split(line);
+    ASSERT_EQ(row.size(), 49u);
+    const double rod = std::stod(row[47]), height = std::stod(row[48]);
+    const Vector4<double>& q = p.path.At(t, 0).q;
+    EXPECT_NEAR(rod, body.rod_length + p.path.At(t, 0).rod, 1e-8);
+    EXPECT_NEAR(height, body.cart_height + 0.6 * (body.rod_length - rod), 1e-8);
+    EXPECT_NEAR(p.hip[0][t][2], height + rod * std::cos(q[2]) * std::cos(q[3]), 1e-8);
+    EXPECT_NEAR(std::stod(row[14]), p.hip[0][t][2], 1e-8);
+    shortest = std::min(shortest, rod);
+  }
+  EXPECT_LT(shortest, body.rod_length - 1e-3);
 }
 
 TEST_F(TrajectoryCsv, UnwritablePathIsAnError) {
