@@ -2,10 +2,11 @@
 // vectors that processors have, and the choice of the widest at run time.
 //
 // Releases are built for any x86-64, where Eigen's own products have 128-bit vectors and no fused
-// multiply-add; its tanh of doubles has no vectors at all. Rejected: a BLAS, since which one a
-// machine has is chance (Debian's Ceres is content with the reference one, slower than Eigen), and
-// -march=native, whose Eigen must not meet the packaged Ceres'.
-// Another width rounds otherwise: results repeat bit by bit on one machine, and to rounding across.
+// multiply-add, and its tanh of doubles no vectors at all. For 1024 x 290 times 290 x 32 on one
+// core with AVX-512: Eigen 20 Gflop/s, these loops about 100. Rejected: a BLAS, since which one a
+// machine has is chance (there, Debian's reference BLAS 8, its ATLAS 22), and -march=native, whose
+// Eigen must not meet the packaged Ceres'. Another width rounds otherwise: results repeat bit by
+// bit on one machine, and to rounding across.
 #pragma once
 
 #include <cstddef>

@@ -159,5 +159,109 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, AdjointTwins,
                                          Regime{"large", 0.1, 100.0, 0.05, 0.8, 1e-10}),
                          [](const auto& test) { return test.param.name; });
 
+// Somebody falls: the frames before count, for everybody in the recording, and others go on.
+TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
+  Random random(62);
+  for (const NetworkShape& shape : EveryNetwork()) {
+    SCOPED_TRACE(NetworkName(shape));
+    const ModelOptions options = WithNetwork(shape, 0.8, &random);
+    ParameterMap map = EveryParameterMap({});
+    map.num_weights = shape.num_weights();
+    std::vector<PendulumRecording> made =
+        SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
+    made[1].scene.pushes.push_back(
+        MakeScenePush(1, 8, PushKind::kExternal, {20, Vector4<double>(0.0, 0.0, 3000.0, 0.0)}));
+    made[2].scene = ScalePushes(made[2].scene, 1e9);  // at once, and beyond any number
+    const std::vector<double> shared = SharedBlock(map, RecoveringParameters());
+    const std::vector<double>& weights = options.self_network->weights;
+
+    std::vector<AdjointRecording> recordings, shortened;
+    std::vector<RolloutStatus> expected;
+    for (const PendulumRecording& recording : made) {
+      recordings.push_back({&recording});
+      RolloutPath<double> path;
+      expected.push_back(Rollout<double>(recording.scene, options, {RecoveringParameters()},
+                                         InitialVelocities(recording.scene), recording.num_frames(),
+                                         &path));
+      shortened.push_back({&recording, 1.0, expected.back().ok ? 0 : expected.back().frame});
+    }
+    ASSERT_FALSE(expected[1].ok || expected[2].ok);
+    ASSERT_TRUE(expected[0].ok && expected[3].ok);
+    ASSERT_GT(expected[1].frame, 9);
+    auto adjoint = AdjointGradient::Create(recordings, options, map, {});
+    ASSERT_TRUE(adjoint.ok());
+    Gradient actual{0.0, std::vector<double>(shared.size()), std::vector<double>(weights.size())};
+    const AdjointCost cost = adjoint.value().Evaluate(shared.data(), weights.data(),
+                                                      actual.shared.data(), actual.weights.data());
+    EXPECT_FALSE(cost.ok());
+    for (size_t i = 0; i < made.size(); ++i) {
+      EXPECT_EQ(cost.status[i].ok, expected[i].ok) << i;
+      if (expected[i].ok) continue;
+      EXPECT_EQ(cost.status[i].frame, expected[i].frame) << i;
+      EXPECT_EQ(cost.status[i].person, expected[i].person) << i;
+      EXPECT_EQ(cost.status[i].quantity, expected[i].quantity) << i;
+    }
+    if (expected[2].frame == 1) shortened.erase(shortened.begin() + 2);  // nothing to compare
+    const Gradient right = ByForwardSensitivities(shortened, options, map, shared, weights);
+    EXPECT_NEAR(cost.cost, right.cost, 1e-12 * right.cost);
+    ExpectSameVector(actual.shared, right.shared, 1e-10, "parameter");
+    ExpectSameVector(actual.weights, right.weights, 1e-10, "weight");
+  }
+}
+
+// More people than go side by side, and each gradient alone.
+TEST(AdjointGradient, AddsUpManyRecordings) {
+  Random random(63);
+  const ModelOptions options = WithNetwork({NetworkKind::kLstm, 5, 3}, 0.8, &random);
+  const std::vector<PendulumRecording> made =
+      SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
+  ParameterMap map = EveryParameterMap({});
+  map.num_weights = options.self_network->shape.num_weights();
+  std::vector<AdjointRecording> once, often;
+  for (const PendulumRecording& recording : made) once.push_back({&recording});
+  for (int i = 0; i < 40; ++i) often.insert(often.end(), once.begin(), once.end());
+  auto one = AdjointGradient::Create(once, options, map, {});
+  auto forty = AdjointGradient::Create(often, options, map, {});
+  ASSERT_TRUE(one.ok() && forty.ok());
+  const std::vector<double> shared = SharedBlock(map, RecoveringParameters());
+  Gradient small = ByAdjoint(&one.value(), shared, options.self_network->weights);
+  const Gradient large = ByAdjoint(&forty.value(), shared, options.self_network->weights);
+  for (double& value : small.shared) value *= 40.0;
+  for (double& value : small.weights) value *= 40.0;
+  EXPECT_NEAR(large.cost, 40.0 * small.cost, 1e-12 * large.cost);
+  ExpectSameVector(large.shared, small.shared, 1e-12, "parameter");
+  ExpectSameVector(large.weights, small.weights, 1e-12, "weight");
+
+  std::vector<double> shared_alone(shared.size(), NAN), weights_alone(map.num_weights, NAN);
+  const double* weights = options.self_network->weights.data();
+  EXPECT_EQ(forty.value().Evaluate(shared.data(), weights, nullptr, nullptr).cost, large.cost);
+  forty.value().Evaluate(shared.data(), weights, shared_alone.data(), nullptr);
+  forty.value().Evaluate(shared.data(), weights, nullptr, weights_alone.data());
+  EXPECT_EQ(shared_alone, large.shared);
+  EXPECT_EQ(weights_alone, large.weights);
+}
+
+TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
+  Random random(64);
+  ModelOptions options = WithNetwork({NetworkKind::kGru, 2}, 0.5, &random);
+  std::vector<PendulumRecording> made =
+      SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.5, 0.0}, &random);
+  made[0].id = "freely";
+  const ParameterMap map = EveryParameterMap({});
+  const auto complaint = [&](const ModelOptions& o, const ParameterMap& m) {
+    const auto created = AdjointGradient::Create({{&made[0]}, {&made[1]}}, o, m, {});
+    return created.ok() ? "" : created.error().ToString();
+  };
+  EXPECT_EQ(complaint(options, map), "");
+  EXPECT_NE(complaint({}, map).find("needs a self-force network"), std::string::npos);
+  ModelOptions touching = options;
+  touching.interaction.spring = true;
+  EXPECT_NE(complaint(touching, map).find("forces between people"), std::string::npos);
+  EXPECT_NE(complaint(options, EveryParameterMap({kMu})).find("deviations"), std::string::npos);
+  made[0].initial_velocity = InitialVelocity::kFree;
+  EXPECT_NE(complaint(options, map).find("'freely' has a free initial velocity"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace pushid
