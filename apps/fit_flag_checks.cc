@@ -6,12 +6,15 @@
 #include <cmath>
 #include <sstream>
 
+DECLARE_double(early_stopping);
+DECLARE_int32(ensemble);
 DECLARE_string(fix);
 DECLARE_double(function_tolerance);
 DECLARE_double(gradient_tolerance);
 DECLARE_int32(max_iterations);
 DECLARE_double(mode_margin);
 DECLARE_double(mode_weight);
+DECLARE_double(network_prior);
 DECLARE_int32(num_threads);
 DECLARE_double(parameter_tolerance);
 DECLARE_double(pooling_sigma);
@@ -24,6 +27,7 @@ DECLARE_double(sigma_velocity);
 DECLARE_double(stability_weight);
 DECLARE_double(start_spread);
 DECLARE_int32(starts);
+DECLARE_double(takeover_weight);
 
 namespace pushid {
 namespace {
@@ -48,18 +52,24 @@ MaybeError CheckNotNegativeIfGiven(const char* flag, double value) {
 }  // namespace
 
 MaybeError CheckFitNumbers() {
-  for (MaybeError error : {CheckPositive("sigma_hip", FLAGS_sigma_hip),
-                           CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
-                           CheckPositive("sigma_angle", FLAGS_sigma_angle),
-                           CheckPositive("sigma_rate", FLAGS_sigma_rate),
-                           CheckPositive("num_threads", FLAGS_num_threads),
-                           CheckPositive("max_iterations", FLAGS_max_iterations),
-                           CheckNotNegative("robust", FLAGS_robust),
-                           CheckNotNegative("stability_weight", FLAGS_stability_weight),
-                           CheckPositive("starts", FLAGS_starts),
-                           CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
-                           CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
+  for (MaybeError error :
+       {CheckPositive("sigma_hip", FLAGS_sigma_hip),
+        CheckPositive("sigma_velocity", FLAGS_sigma_velocity),
+        CheckPositive("sigma_angle", FLAGS_sigma_angle),
+        CheckPositive("sigma_rate", FLAGS_sigma_rate),
+        CheckPositive("num_threads", FLAGS_num_threads),
+        CheckPositive("max_iterations", FLAGS_max_iterations),
+        CheckNotNegative("robust", FLAGS_robust),
+        CheckNotNegative("stability_weight", FLAGS_stability_weight),
+        CheckPositive("starts", FLAGS_starts), CheckPositive("ensemble", FLAGS_ensemble),
+        CheckNotNegative("network_prior", FLAGS_network_prior),
+        CheckNotNegative("takeover_weight", FLAGS_takeover_weight),
+        CheckNotNegative("gradient_tolerance", FLAGS_gradient_tolerance),
+        CheckNotNegative("parameter_tolerance", FLAGS_parameter_tolerance)}) {
     if (error) return error;
+  }
+  if (!(FLAGS_early_stopping >= 0.0 && FLAGS_early_stopping <= 0.5)) {
+    return Error{"--early_stopping must lie between 0 and 0.5"};
   }
   // Below zero stands for the preset's value.
   if (!std::isfinite(FLAGS_pooling_sigma) || FLAGS_pooling_sigma == 0.0) {

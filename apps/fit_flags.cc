@@ -11,14 +11,24 @@
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
+#include "ident/self_network_io.h"
 
 DEFINE_string(
     preset, "tail",
     "the model: tail (push tail, posture-relative recovery), ldp (plain PD and friction from "
     "upright), or group (tail with linear self forces and contact, pooled by setting)");
 DEFINE_string(self_force, "",
-              "what is fitted on top: none, or linear (cross terms, quadratic) (default: the "
-              "preset's)");
+              "what is fitted on top: none, linear (cross terms, quadratic), a network by kind and "
+              "hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a "
+              "network, comma-separated (default: the preset's)");
+DEFINE_double(network_prior, 1.0,
+              "standard deviation of the prior that ties a network's weights to zero; 0: none");
+DEFINE_double(early_stopping, 0.0,
+              "share of the recordings held out to stop a network's training in time; 0: none");
+DEFINE_double(takeover_weight, 0.0,
+              "weight of the penalty on what a network takes over from friction and balance");
+DEFINE_int32(ensemble, 1,
+             "networks trained from so many seeds; the model predicts the median of them");
 DEFINE_string(posture, "",
               "balance error measured from: upright or initial (default: the preset's)");
 DEFINE_string(gain_scaling, "",
@@ -98,8 +108,7 @@ MaybeError Override(const char* flag, const std::string& text, E* value) {
 MaybeError ReadModel(FitOptions* o) {
   ModelOptions& m = o->model;
   for (MaybeError error :
-       {Override("self_force", FLAGS_self_force, &o->self_force),
-        Override("mapping", FLAGS_mapping, &o->mapping),
+       {Override("mapping", FLAGS_mapping, &o->mapping),
         Override("posture", FLAGS_posture, &m.posture),
         Override("gain_scaling", FLAGS_gain_scaling, &m.gain_scaling),
         Override("friction", FLAGS_friction, &m.friction), Override("push", FLAGS_push, &m.push),
@@ -116,6 +125,22 @@ MaybeError ReadModel(FitOptions* o) {
 
 // A linear self force can feed a mode that the demonstrations do not excite.
 constexpr double kLinearModeWeight = 30.0;
+MaybeError ReadSelfForce(FitOptions* o) {
+  if (!FLAGS_self_force.empty()) {
+    const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", FLAGS_self_force);
+    if (!choice.ok()) return choice.error();
+    o->self_force = choice.value().kind;
+    if (choice.value().network.any()) {
+      o->model.self_network = InitialNetwork(choice.value().network, FLAGS_seed);
+    }
+  }
+  o->network_prior = FLAGS_network_prior;
+  o->early_stopping = FLAGS_early_stopping;
+  o->takeover_weight = FLAGS_takeover_weight;
+  o->ensemble = FLAGS_ensemble;
+  return std::nullopt;
+}
+
 constexpr long kLongestHorizon = 1000000;  // frames
 
 MaybeError ReadHorizons(FitOptions* o) {
@@ -167,6 +192,25 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   return std::nullopt;
 }
 
+bool AnyPooled(const ParameterTable& table) {
+  return std::any_of(table.specs.begin(), table.specs.end(),
+                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
+}
+
+// What asks for a network where there is none, or for more than it can do.
+MaybeError CheckNetworkFlags(const FitOptions& o) {
+  for (const char* flag : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+    if (o.model.self_network != nullptr) break;
+    if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) continue;
+    return Error{std::string("--") + flag +
+                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (o.ensemble > 1 && AnyPooled(o.table)) {
+    return Error{"--ensemble does not go together with --pool: its members share all parameters"};
+  }
+  return std::nullopt;
+}
+
 Result<FitOptions> OptionsOfFlags() {
   Result<Preset> preset = MakePreset(FLAGS_preset);
   if (!preset.ok()) return preset.error();
@@ -180,6 +224,7 @@ Result<FitOptions> OptionsOfFlags() {
       FLAGS_settling_weight >= 0.0 ? FLAGS_settling_weight : preset.value().settling_weight;
   o.stability_weight = FLAGS_stability_weight;
   if (MaybeError error = ReadModel(&o)) return *error;
+  if (MaybeError error = ReadSelfForce(&o)) return *error;
   if (MaybeError error = ReadHorizons(&o)) return *error;
   if (MaybeError error = CheckFitNumbers()) return *error;
 
@@ -201,6 +246,7 @@ Result<FitOptions> OptionsOfFlags() {
   edits.pool = FLAGS_pool.empty() ? preset.value().pool : FLAGS_pool;
   edits.pool_by = o.pool_by;
   if (MaybeError error = EditTable(edits, &o.table)) return *error;
+  if (MaybeError error = CheckNetworkFlags(o)) return *error;
   if (o.table.Free().empty()) return Error{"every parameter is fixed: nothing is left to fit"};
 
   o.sigmas = {FLAGS_sigma_hip, FLAGS_sigma_velocity, FLAGS_sigma_angle, FLAGS_sigma_rate,
@@ -216,11 +262,6 @@ Result<FitOptions> OptionsOfFlags() {
   o.gradient_tolerance = FLAGS_gradient_tolerance;
   o.parameter_tolerance = FLAGS_parameter_tolerance;
   return o;
-}
-
-bool AnyPooled(const ParameterTable& table) {
-  return std::any_of(table.specs.begin(), table.specs.end(),
-                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
 }
 
 }  // namespace

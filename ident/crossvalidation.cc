@@ -124,6 +124,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       sum.frames = score.frames;
       sum.fell = sum.fell || score.fell;
       fold.falls += score.fell;
+      fold.falls_harder += score.fell_harder;
       if (!score.failure.empty()) {
         ++fold.failures;
         sum.failure = score.failure;
@@ -154,6 +155,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     }
     result.failures += fold.failures;
     result.falls += fold.falls;
+    result.falls_harder += fold.falls_harder;
     result.folds.push_back(fold);
   }
 

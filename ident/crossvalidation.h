@@ -50,6 +50,7 @@ struct FoldScore {
   int held_out = 0;
   double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
   int failures = 0, falls = 0;
+  int falls_harder = 0;  // FallsWhenPushedHarder (evaluation.h)
   std::optional<Behaviour> behaviour;
   PropagationSummary propagation;
 };
@@ -59,7 +60,7 @@ struct CrossValidation {
   std::vector<FoldScore> folds;
   // Each recording's score averaged over the repeats that held it out.
   ScoreSummary summary;
-  int failures = 0, falls = 0;  // over all folds
+  int failures = 0, falls = 0, falls_harder = 0;  // over all folds
   // Over all folds whose model was fitted: how many, how many of them settle in every
   // demonstration, how many move a line on the farther the harder it is pushed, and the fastest
   // anybody still is two seconds after a push.

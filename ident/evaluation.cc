@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "residuals/rest_residual.h"
+
 namespace pushid {
 namespace {
 
@@ -75,6 +77,19 @@ HipPaths ConstantVelocityBaseline(const PendulumRecording& recording) {
   return paths;
 }
 
+namespace {
+
+bool AnybodyFalls(const Prediction& prediction) {
+  for (int t = 0; t < prediction.path.num_frames(); ++t) {
+    for (int n = 0; n < prediction.path.num_people(); ++n) {
+      if (prediction.path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording) {
   const Prediction prediction = Predict(model, recording);
   if (!prediction.status.ok) {
@@ -90,13 +105,15 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
   }
   RecordingScore score = ScoreHip(recording, prediction.hip);
   AddContactFigures(model, recording, prediction, &score.propagation);
-  for (int t = 0; t < prediction.path.num_frames(); ++t) {
-    for (int n = 0; n < recording.num_people(); ++n) {
-      const double lean = prediction.path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();
-      score.fell = score.fell || lean > kFallAngle;
-    }
-  }
+  score.fell = AnybodyFalls(prediction);
   return score;
+}
+
+bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording) {
+  PendulumRecording harder = recording;
+  harder.scene = ScalePushes(recording.scene, kStrongerPush);
+  const Prediction prediction = Predict(model, harder, recording.num_frames() + kFramesPastTheEnd);
+  return !prediction.status.ok || AnybodyFalls(prediction);
 }
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,

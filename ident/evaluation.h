@@ -21,6 +21,7 @@ struct RecordingScore {
   double hip_ade = 0.0, hip_fde = 0.0;  // m
   std::string failure;                  // why there is no score; such a recording is in no mean
   bool fell = false;                    // somebody leaned beyond 1.0 rad
+  bool fell_harder = false;             // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};    // empty for a single person and after a failure
 };
 
@@ -47,6 +48,9 @@ HipPaths ConstantVelocityBaseline(const PendulumRecording& recording);
 
 // Scores in the order of recordings; a failed rollout is a named failure.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording);
+
+// Whether anybody falls with every push times 1.4, until 40 frames past the recording's end.
+bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
 
 // `by subject` uses the pushed person.
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,

@@ -163,6 +163,18 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   return warnings;
 }
 
+// What is known of a network's weights says nothing to anybody and fills files: from here on the
+// covariance is that of everything else, whatever the weights are.
+void ForgetWeights(Eigen::Index weights, FitResult* result) {
+  if (weights == 0) return;
+  Uncertainty& u = result->uncertainty;
+  const Eigen::Index size = u.covariance.rows() - weights;
+  u.covariance = u.covariance.topLeftCorner(size, size).eval();
+  u.correlation = u.correlation.topLeftCorner(size, size).eval();
+  u.estimates.resize(size);
+  result->nuisance.resize(result->nuisance.size() - weights);
+}
+
 }  // namespace
 
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
@@ -182,7 +194,9 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.converged = best.converged;
   result.cost = best.cost;
   result.message = best.message;
+  result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
+  if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to);
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
@@ -193,6 +207,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
+  ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
   return result;
 }
 
@@ -202,6 +217,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.mapping = result.options.mapping;
   model.table = result.options.table;
   model.parameters = result.parameters;
+  model.others = result.others;
   model.pool_by = result.options.pool_by;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
@@ -223,6 +239,7 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
     const Parameter id = model->table.Find(named.name)->id;
     model->parameters[id] = named.value;
     for (auto& [unit, own] : model->by_unit) own[id] = named.value;
+    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
   }
   return std::nullopt;
 }

@@ -46,6 +46,17 @@ struct FitOptions {
   // a log scale is about 20 %). Acts on the parameters that --pool names.
   double pooling_sigma = 0.2;
 
+  // The self-force network of `model` (whose weights are the start): standard deviation of the
+  // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
+  // none.
+  double network_prior = 1.0;
+  // Share of the recordings held out to stop a network's training before it learns the rest by
+  // heart; 0: none, the prior alone holds it.
+  double early_stopping = 0.0;
+  // Weight of what the network takes over from friction and balance (ident/network_takeover.h).
+  double takeover_weight = 0.0;
+  int ensemble = 1;  // networks from so many seeds; predictions are their median
+
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.
   std::vector<int> horizons = {8, 16, 32, 64, 0};

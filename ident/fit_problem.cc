@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "residuals/equation_error_residual.h"
@@ -16,8 +17,6 @@ namespace {
 constexpr double kDemonstrationMass = 80.0;                     // kg
 constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
 constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};           // N s, on the first in a line
-constexpr int kFramesPastTheEnd = 40;
-constexpr double kStrongerPush = 1.4;
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 }  // namespace
@@ -27,6 +26,7 @@ std::vector<double> FitPoint::Flat() const {
   for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
   for (const auto& [index, values] : velocity)
     flat.insert(flat.end(), values.begin(), values.end());
+  flat.insert(flat.end(), weights.begin(), weights.end());
   return flat;
 }
 
@@ -39,6 +39,7 @@ void FitPoint::SetFlat(const std::vector<double>& flat) {
   take(&shared);
   for (auto& [name, values] : unit) take(&values);
   for (auto& [index, values] : velocity) take(&values);
+  take(&weights);
 }
 
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
@@ -48,6 +49,9 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const F
       counts_(std::move(counts)),
       map_(options.table.Map()) {
   map_.pool_by = options.pool_by;
+  if (options.model.self_network != nullptr) {
+    map_.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  }
 }
 
 FitPoint FitProblem::NominalPoint() const {
@@ -68,6 +72,7 @@ FitPoint FitProblem::NominalPoint() const {
       velocity.insert(velocity.end(), person.start.qd.data(), person.start.qd.data() + 4);
     }
   }
+  if (map_.num_weights > 0) point.weights = options_.model.self_network->weights;
   return point;
 }
 
@@ -77,13 +82,39 @@ ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::st
                             found == point.unit.end() ? nullptr : found->second.data());
 }
 
+ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
+  ModelOptions model = options_.model;
+  if (model.self_network == nullptr) return model;
+  model.self_network = std::make_shared<const SelfNetwork>(
+      SelfNetwork{options_.model.self_network->shape, point.weights});
+  return model;
+}
+
 Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
-  Behaviour all = ComputeBehaviour(options_.model, Parameters(point, ""));
+  const ModelOptions model = ModelAt(point);
+  Behaviour all = ComputeBehaviour(model, Parameters(point, ""));
   if (map_.pool_by != PoolBy::kSetting) return all;
   for (const auto& [unit, deviations] : point.unit) {
-    all.Add(ComputeBehaviour(options_.model, Parameters(point, unit)), unit);
+    all.Add(ComputeBehaviour(model, Parameters(point, unit)), unit);
   }
   return all;
+}
+
+double FitProblem::DataCost(const FitPoint& point) const {
+  FitPoint copy = point;
+  double cost = 0.0;
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
+    const RolloutResidual residual(
+        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0));
+    Eigen::VectorXd values(residual.num_residuals());
+    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
+    if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    cost += 0.5 * values.squaredNorm();
+  }
+  return cost;
 }
 
 std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
@@ -97,8 +128,9 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
     const SensitivityInputs inputs =
         RolloutInputs(recordings_[i].scene, map_, problem->layout, blocks.data());
     RolloutPath<double> path;
-    const RolloutStatus status = Rollout(recordings_[i].scene, options_.model, inputs.parameters,
-                                         inputs.initial_velocity, problem->horizon, &path);
+    const RolloutStatus status = Rollout<double>(
+        recordings_[i].scene, options_.model, inputs.parameters, inputs.initial_velocity,
+        problem->horizon, &path, nullptr, inputs.network_weights);
     if (!status.ok) failures.push_back({i, status});
   }
   return failures;
@@ -124,6 +156,7 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
   }
   const auto velocity = point->velocity.find(recording);
   if (velocity != point->velocity.end()) blocks.push_back(velocity->second.data());
+  if (map_.num_weights > 0) blocks.push_back(point->weights.data());
   return blocks;
 }
 
@@ -145,6 +178,7 @@ void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
   add(&point->shared);
   for (auto& [name, values] : point->unit) add(&values);
   for (auto& [index, values] : point->velocity) add(&values);
+  if (map_.num_weights > 0) add(&point->weights);
   for (size_t i = 0; i < map_.fitted.size(); ++i) {
     const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
     const int index = static_cast<int>(i);
@@ -176,6 +210,11 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
       built->blocks.push_back(
           {built->problem->AddResidualBlock(prior, nullptr, values.data()), kPoolingCluster});
     }
+  }
+  if (map_.num_weights > 0 && options_.network_prior > 0.0) {
+    auto* prior = new RidgeResidual(map_.num_weights, options_.network_prior);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->weights.data()), kPoolingCluster});
   }
 }
 
@@ -214,11 +253,13 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
   for (const std::string& unit : units) {
     std::vector<double*> blocks = {point->shared.data()};
     if (!unit.empty()) blocks.push_back(point->unit[unit].data());
+    std::vector<double*> rollout_blocks = blocks;
+    if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
     const auto settle = [&](double impulse, int people) {
       const Scene scene = DemonstrationScene(kDemonstrationMass, impulse, people);
       add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight,
                           unit),
-          blocks);
+          rollout_blocks);
     };
     if (options_.settling_weight > 0.0) {
       for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
@@ -247,7 +288,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
   }
 }
 
-FitProblem::Built FitProblem::Build(FitPoint* point, int horizon) const {
+FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network) const {
   Built built;
   AddParameterBlocks(point, &built);
   built.shortened = Failures(*point, horizon);
@@ -270,6 +311,9 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon) const {
   } else {
     AddStagePriors(point, &built);
   }
+  if (hold_network && map_.num_weights > 0) {
+    built.problem->SetParameterBlockConstant(point->weights.data());
+  }
   return built;
 }
 
@@ -283,6 +327,7 @@ FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
         {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
   }
   AddPriors(point, &built);
+  if (map_.num_weights > 0) built.problem->SetParameterBlockConstant(point->weights.data());
   return built;
 }
 

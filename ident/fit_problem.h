@@ -22,8 +22,10 @@ struct FitPoint {
   std::map<std::string, std::vector<double>>
       unit;  // deviations by subject or setting, fitted scale; empty if not pooled
   std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
+  std::vector<double> weights;                  // of the self-force network; empty without one
 
-  // All entries in one row: shared, units in order of name, velocities in order of recording.
+  // All entries in one row: shared, units in order of name, velocities in order of recording,
+  // weights.
   std::vector<double> Flat() const;
   void SetFlat(const std::vector<double>& flat);
 };
@@ -44,15 +46,26 @@ class FitProblem {
   const ParameterMap& map() const { return map_; }
   const std::vector<PendulumRecording>& recordings() const { return recordings_; }
   const FitOptions& options() const { return options_; }
+  const std::vector<int>& counts() const { return counts_; }  // empty: each once
+  // How often a recording counts.
+  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
-  // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them.
+  // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them,
+  // weights as the options' network holds them.
   FitPoint NominalPoint() const;
 
   // The parameters of a unit (any name, even one that was not fitted) at a point.
   ParameterSet<double> Parameters(const FitPoint& point, const std::string& unit) const;
 
+  // The options with the network of a point.
+  ModelOptions ModelAt(const FitPoint& point) const;
+
   // What people do after a push at a point; where settings differ, in each setting.
   Behaviour BehaviourAt(const FitPoint& point) const;
+
+  // Half the squared residuals of the recordings alone, as they count; infinite where a rollout
+  // leaves the domain.
+  double DataCost(const FitPoint& point) const;
 
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
@@ -62,8 +75,9 @@ class FitProblem {
   std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
 
   // Clusters of what is not data.
-  static constexpr int kPriorCluster = -1;    // priors on parameters, settling, stability
-  static constexpr int kPoolingCluster = -2;  // what ties the units' deviations to zero
+  static constexpr int kPriorCluster = -1;  // priors on parameters, settling, stability
+  // What ties the units' deviations, or a network's weights, to zero.
+  static constexpr int kPoolingCluster = -2;
 
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
@@ -76,14 +90,14 @@ class FitProblem {
     int rests_left_out = 0;  // demonstrations that could not be rolled out to their end here
   };
 
-  Built Build(FitPoint* point, int horizon) const;
+  // hold_network: its weights are constant.
+  Built Build(FitPoint* point, int horizon, bool hold_network = false) const;
 
   // The same blocks with equation-error residuals instead of rollouts.
   Built BuildEquationError(FitPoint* point) const;
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
-  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
   double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;

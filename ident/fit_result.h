@@ -10,6 +10,7 @@
 #include "ident/behaviour.h"
 #include "ident/bootstrap.h"
 #include "ident/diagnostics.h"
+#include "ident/ensemble.h"
 #include "ident/fit_options.h"
 #include "ident/profile.h"
 #include "ident/solver.h"
@@ -35,6 +36,7 @@ struct FitResult {
   FitOptions options;
   // As they act: fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
+  std::vector<EnsembleMember> others;  // of an ensemble, besides the one reported
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains
@@ -72,6 +74,7 @@ struct IdentifiedModel {
   SkeletonMapping mapping = SkeletonMapping::kExact;
   ParameterTable table;  // names, units and bounds, for --set
   ParameterSet<double> parameters{};
+  std::vector<EnsembleMember> others;  // of an ensemble
   PoolBy pool_by = PoolBy::kSubject;
   std::map<std::string, ParameterSet<double>> by_unit;  // subject or setting; only where pooled
 
@@ -88,7 +91,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 
 IdentifiedModel ModelOf(const FitResult& result);
 
-// A model with some values replaced, for what-ifs (--set).
+// A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
 
 }  // namespace pushid

@@ -26,7 +26,8 @@ std::string PartColour(std::string_view part) {
       {"balance", "#56b4e9"},
       {"linear", "#009e73"},
       {"interaction", "#9333ea"},
-      {"drive", "#b45309;stroke-dasharray:4 2"}};
+      {"drive", "#b45309;stroke-dasharray:4 2"},
+      {"network", "#6b7280;stroke-dasharray:7 2"}};
   const auto found = colours.find(part);
   return found == colours.end() ? "#999999" : found->second;
 }

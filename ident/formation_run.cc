@@ -90,7 +90,7 @@ const std::vector<ForcePart>& ForceParts() {
       {"push", &NetForce<double>::push},         {"tail", &NetForce<double>::tail},
       {"friction", &NetForce<double>::friction}, {"balance", &NetForce<double>::balance},
       {"linear", &NetForce<double>::linear},     {"interaction", &NetForce<double>::interaction},
-      {"drive", &NetForce<double>::drive}};
+      {"drive", &NetForce<double>::drive},       {"network", &NetForce<double>::network}};
   return parts;
 }
 

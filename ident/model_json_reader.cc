@@ -5,6 +5,7 @@
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
+#include "ident/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -68,7 +69,9 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
 FitOptions OptionsFrom(const Json& json) {
   FitOptions o;
   o.preset = json.at("preset");
-  o.self_force = EnumFrom<SelfForceKind>(json, "self_force");
+  const auto self = ParseSelfForce("self_force", json.at("self_force").get<std::string>());
+  if (!self.ok()) throw std::runtime_error(self.error().ToString());
+  o.self_force = self.value().kind;
   o.mapping = EnumFrom<SkeletonMapping>(json, "mapping");
   o.model.posture = EnumFrom<Posture>(json, "posture");
   o.model.gain_scaling = EnumFrom<GainScaling>(json, "gain_scaling");
@@ -90,6 +93,9 @@ FitOptions OptionsFrom(const Json& json) {
   o.stability_weight = json.at("stability_weight");
   o.pool_by = EnumFrom<PoolBy>(json, "pool_by");
   o.pooling_sigma = json.at("pooling_sigma");
+  o.network_prior = json.value("network_prior", o.network_prior);
+  o.early_stopping = json.value("early_stopping", o.early_stopping);
+  o.ensemble = json.value("ensemble", o.ensemble);
   o.horizons = json.at("horizons").get<std::vector<int>>();
   o.start = EnumFrom<FitStart>(json, "start");
   o.num_starts = json.at("num_starts");
@@ -100,6 +106,15 @@ FitOptions OptionsFrom(const Json& json) {
   o.gradient_tolerance = json.at("gradient_tolerance");
   o.parameter_tolerance = json.at("parameter_tolerance");
   return o;
+}
+
+EnsembleMember MemberFrom(const Json& json, const ParameterTable& table) {
+  EnsembleMember member;
+  for (const ParameterSpec& spec : table.specs) {
+    member.parameters[spec.id] = json.at("values").at(spec.name);
+  }
+  member.network = SelfNetworkFromJson(json.at("self_network"));
+  return member;
 }
 
 Behaviour BehaviourFrom(const Json& json) {
@@ -225,6 +240,9 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     const Preset known = MakePreset("tail").value();
     result.options = OptionsFrom(at("model"));
     result.options.table = TableFrom(at("table"), known.table);
+    if (json.contains("self_network")) {
+      result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
+    }
     if (json.contains("interaction_network")) {
       const Json& network = at("interaction_network");
       result.options.model.interaction_network = InteractionNetworkFromJson(network);
@@ -248,6 +266,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
       const Json& values = at("values");
       part = "values/" + spec.name;
       result.parameters[spec.id] = values.at(spec.name);
+    }
+    if (json.contains("ensemble")) {
+      for (const Json& one : at("ensemble")) {
+        result.others.push_back(MemberFrom(one, result.options.table));
+      }
     }
     result.behaviour = BehaviourFrom(at("behaviour"));
     result.uncertainty = UncertaintyFrom(at("uncertainty"));

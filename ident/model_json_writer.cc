@@ -4,6 +4,7 @@
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
+#include "ident/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -46,7 +47,7 @@ Json TableJson(const ParameterTable& table) {
 
 Json OptionsJson(const FitOptions& o) {
   return {{"preset", o.preset},
-          {"self_force", NameOf(o.self_force)},
+          {"self_force", SelfForceText(o.self_force, o.model.self_network.get())},
           {"mapping", NameOf(o.mapping)},
           {"posture", NameOf(o.model.posture)},
           {"gain_scaling", NameOf(o.model.gain_scaling)},
@@ -156,13 +157,21 @@ nlohmann::ordered_json SettingsJson(const FitOptions& options) {
   return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
 }
 
+namespace {
+
+Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
+  Json values = Json::object();
+  for (const ParameterSpec& spec : table.specs) values[spec.name] = set[spec.id];
+  return values;
+}
+
+}  // namespace
+
 nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   Json derived = Json::array(), recordings = Json::array();
-  Json subjects = Json::object(), settings = Json::object(), values = Json::object();
+  Json subjects = Json::object(), settings = Json::object();
+  const Json values = ValuesJson(result.options.table, result.parameters);
   for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
-  for (const ParameterSpec& spec : result.options.table.specs) {
-    values[spec.name] = result.parameters[spec.id];
-  }
   for (const auto& [setting, pooled] : result.settings) {
     for (const auto& [name, estimate] : pooled) settings[setting][name] = EstimateJson(estimate);
   }
@@ -214,6 +223,13 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                  {"solve_seconds", result.solve_seconds},
                  {"total_seconds", run.total_seconds},
                  {"num_threads", run.num_threads}}}};
+  if (const auto& network = result.options.model.self_network) {
+    json["self_network"] = ToJson(*network);
+    for (const EnsembleMember& member : result.others) {
+      json["ensemble"].push_back({{"values", ValuesJson(result.options.table, member.parameters)},
+                                  {"self_network", ToJson(*member.network)}});
+    }
+  }
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }

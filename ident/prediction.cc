@@ -18,15 +18,13 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   return sets;
 }
 
-}  // namespace
-
-Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
-                   int num_frames) {
+Prediction PredictOne(const ModelOptions& options,
+                      const std::vector<ParameterSet<double>>& parameters,
+                      const PendulumRecording& recording, int frames) {
   Prediction prediction;
-  const int frames = num_frames > 0 ? num_frames : recording.num_frames();
   prediction.status =
-      Rollout(recording.scene, model.options, PeoplesParameters(model, recording),
-              InitialVelocities(recording.scene), frames, &prediction.path, &prediction.forces);
+      Rollout(recording.scene, options, parameters, InitialVelocities(recording.scene), frames,
+              &prediction.path, &prediction.forces);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<Vector3<double>> hip;
@@ -38,13 +36,32 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
   return prediction;
 }
 
+}  // namespace
+
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
+                   int num_frames) {
+  const int frames = num_frames > 0 ? num_frames : recording.num_frames();
+  std::vector<Prediction> predictions = {
+      PredictOne(model.options, PeoplesParameters(model, recording), recording, frames)};
+  for (const EnsembleMember& member : model.others) {
+    ModelOptions options = model.options;
+    options.self_network = member.network;
+    predictions.push_back(PredictOne(options, {member.parameters}, recording, frames));
+  }
+  // An ensemble is as good as its worst member where one of them leaves the model's domain.
+  for (const Prediction& prediction : predictions) {
+    if (!prediction.status.ok) return prediction;
+  }
+  return predictions.size() == 1 ? predictions.front() : MedianPrediction(recording, predictions);
+}
+
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction) {
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
   for (const char* part :
-       {"friction", "balance", "linear", "push", "tail", "interaction", "drive"}) {
+       {"friction", "balance", "linear", "push", "tail", "interaction", "drive", "network"}) {
     for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
       text += std::string(",") + part + "_" + row;
     }
@@ -68,7 +85,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double>& force = prediction.forces.At(t, n);
       for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
-                               &force.tail, &force.interaction, &force.drive}) {
+                               &force.tail, &force.interaction, &force.drive, &force.network}) {
         for (int i = 0; i < 4; ++i) add((*part)[i]);
       }
       text += "\n";

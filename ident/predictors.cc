@@ -25,8 +25,10 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
   model.options = options_.model;
   model.pool_by = options_.pool_by;
   if (solution.best >= 0) {
+    model.options = problem.ModelAt(solution.Best().to);
     model.parameters = problem.Parameters(solution.Best().to, "");
     prediction.behaviour = problem.BehaviourAt(solution.Best().to);
+    if (options_.ensemble > 1) model.others = FitOtherSeeds(training, options_);
   }
   for (int i : test) {
     if (solution.best < 0) {
@@ -41,6 +43,7 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
       model.by_unit[unit] = problem.Parameters(solution.Best().to, unit);
     }
     prediction.scores.push_back(ScoreModel(model, recordings[i]));
+    prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
   }
   return prediction;
 }

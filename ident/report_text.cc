@@ -8,6 +8,7 @@
 #include "ident/option_names.h"
 #include "ident/preparation_text.h"
 #include "ident/report_tables.h"
+#include "ident/self_network_io.h"
 #include "ident/starts_text.h"
 #include "ident/text_table.h"
 
@@ -56,8 +57,9 @@ std::string ReportText(const FitResult& result) {
                      Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
                      result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
-                     ", self force " + NameOf(o.self_force) + ", interaction " +
-                     NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(result) + "\n\n";
+                     ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
+                     ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
+                     SelfFromText(result) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
@@ -136,6 +138,25 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   return text + "\n" + PropagationText(columns);
 }
 
+namespace {
+
+// One honest sentence on two configurations.
+std::string ConclusionText(const PairedDifference& d) {
+  if (d.recordings == 0) return d.b + " cannot be compared with " + d.a + ".";
+  const std::string by = Significant(std::abs(d.hip_ade), 2) + " +- " +
+                         Significant(d.hip_ade_error, 2) + " m of hipADE";
+  if (std::abs(d.hip_ade) <= d.hip_ade_error) {
+    return d.b + " is not distinguishable from " + d.a + " (" + by + ").";
+  }
+  const std::string surely = std::abs(d.hip_ade) > 2.0 * d.hip_ade_error
+                                 ? ""
+                                 : ", more than one standard error but less than two";
+  return d.b + " predicts " + (d.hip_ade < 0.0 ? "better" : "worse") + " than " + d.a + " by " +
+         by + surely + ".";
+}
+
+}  // namespace
+
 std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   std::string text;
   if (rivals.empty()) return text;
@@ -161,8 +182,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   text += folds.ToString() + "\n";
   TextTable table(
       {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + rivals[0].predictor,
-       "failed", "fell", "settle", groups ? "harder, farther" : ""},
-      {true, true, true, true, true, false, false, false, false});
+       "failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""},
+      {true, true, true, true, true, false, false, false, false, false});
   const auto folds_that = [](int number, const CrossValidation& rival) {
     return rival.fits > 0 ? std::to_string(number) + " of " + std::to_string(rival.fits) : "";
   };
@@ -178,10 +199,15 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
                               Significant(difference.hip_ade_error, 2)
                         : "",
                std::to_string(rival.failures), std::to_string(rival.falls),
+               rival.fits > 0 ? std::to_string(rival.falls_harder) : "",
                folds_that(rival.settling, rival),
                groups ? folds_that(rival.harder_farther, rival) : ""});
   }
-  text += table.ToString();
+  text += table.ToString() +
+          "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
+  for (size_t i = 1; i < rivals.size(); ++i) {
+    text += ConclusionText(Compare(rivals[0], rivals[i])) + "\n";
+  }
   if (!groups) return text;
   std::vector<PropagationColumn> columns;
   for (const CrossValidation& rival : rivals) {

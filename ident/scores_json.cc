@@ -66,6 +66,7 @@ Json ToJson(const CrossValidation& validation) {
   json.update(ToJson(validation.summary, true));
   json["failures"] = validation.failures;
   json["falls"] = validation.falls;
+  json["falls_when_pushed_harder"] = validation.falls_harder;
   if (validation.fits > 0) {
     json["fits"] = validation.fits;
     json["fits_that_settle"] = validation.settling;

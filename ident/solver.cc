@@ -10,12 +10,14 @@
 
 #include "datasets/number_text.h"
 #include "datasets/random.h"
+#include "ident/early_stopping.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kStartBox = 5.0;
 constexpr double kOffBound = 0.1;
+constexpr double kNetworkTolerance = 1e-6;  // of the cost: what more would bring nobody sees
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -42,9 +44,9 @@ constexpr double kQrWork = 2e7;
 // sparse normal equations cost a tenth then, and every unit's column has its prior.
 constexpr int kDenseColumns = 50;
 
-ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
+ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem, bool has_network) {
   const double columns = problem.NumParameters(), rows = problem.NumResiduals();
-  if (columns > kDenseColumns) return ceres::SPARSE_NORMAL_CHOLESKY;
+  if (columns > kDenseColumns && !has_network) return ceres::SPARSE_NORMAL_CHOLESKY;
   return rows * columns * columns > kQrWork ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
 }
 
@@ -52,7 +54,7 @@ ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem) {
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = LinearSolverFor(problem);
+  solver.linear_solver_type = LinearSolverFor(problem, options.model.self_network != nullptr);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -97,6 +99,40 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
   return start;
 }
 
+// A network learns on top of a physical model that has converged without it, together with it.
+void TrainNetwork(const FitProblem& problem, const std::string& label,
+                  const SolveProgress& progress, SolveStart* start) {
+  const FitOptions& options = problem.options();
+  EarlyStoppingSplit split;
+  if (options.early_stopping > 0.0) {
+    // Whoever asks for a share that cannot be held out is told before (CheckFit).
+    const auto made = SplitForEarlyStopping(problem, options.early_stopping, options.seed);
+    if (made.ok()) split = made.value();
+  }
+  const bool stop_early = !split.held_out.empty();
+  const FitProblem training(problem.recordings(), options,
+                            stop_early ? split.training : problem.counts());
+  const FitProblem held_out(problem.recordings(), options, split.held_out);
+  FitProblem::Built built = training.Build(&start->to, 0);
+  ceres::Solver::Options solver = SolverOptions(options, *built.problem);
+  solver.function_tolerance = std::max(kNetworkTolerance, options.function_tolerance);
+  ProgressCallback callback(progress, label + "network");
+  if (progress) solver.callbacks.push_back(&callback);
+  EarlyStopping stopping(held_out, &start->to);
+  if (stop_early) {
+    solver.callbacks.push_back(&stopping);
+    solver.update_state_every_iteration = true;
+  }
+  const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message);
+  if (stop_early) start->to = stopping.best();
+  start->stages.push_back(stage);
+  start->iterations += stage.iterations;
+  start->failed = problem.Failures(start->to, 0);
+  start->cost = stage.final_cost;
+  start->converged = stage.converged || stopping.stopped();
+  start->usable = start->converged || stage.final_cost < stage.initial_cost;
+}
+
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const std::string& label, const SolveProgress& progress) {
   const FitOptions& options = problem.options();
@@ -114,7 +150,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     // A recording that could not be rolled out to its end at the stage's start may well be after
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
-      FitProblem::Built built = problem.Build(&start.to, horizons[i]);
+      FitProblem::Built built = problem.Build(&start.to, horizons[i], true);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
       // Stages on the way need not be exact.
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
@@ -133,6 +169,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       left_out_before = left_out;
     }
   }
+  if (!from.weights.empty()) TrainNetwork(problem, label, progress, &start);
   return start;
 }
 

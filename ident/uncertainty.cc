@@ -63,6 +63,11 @@ std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
       columns.push_back(c);
     }
   }
+  for (size_t i = 0; i < point.weights.size(); ++i) {
+    Column c{"network weight " + std::to_string(i), "1"};
+    c.fitted = c.natural = point.weights[i];
+    columns.push_back(c);
+  }
   return columns;
 }
 

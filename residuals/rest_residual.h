@@ -20,6 +20,10 @@
 
 namespace pushid {
 
+// How much longer and harder than its recording a stability rollout is.
+inline constexpr int kFramesPastTheEnd = 40;
+inline constexpr double kStrongerPush = 1.4;
+
 struct RestProblem {
   Scene scene;
   ModelOptions options;

@@ -3,6 +3,7 @@
 #include "ident/report/sections.h"
 #include "ident/report_tables.h"
 #include "ident/report_text.h"
+#include "ident/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -41,7 +42,7 @@ ReportSection SummarySection(const FitResult& result) {
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
-  facts.Add({"self force", NameOf(o.self_force)});
+  facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
   facts.Add({"interaction", NameOf(o.model.interaction)});
   facts.Add({"cost", Significant(result.cost, 6)});
   if (!result.diagnostics.recordings.empty()) {

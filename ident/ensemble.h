@@ -1,0 +1,32 @@
+// ident: ensembles: networks trained from several seeds, whose predictions are put together by
+// their median, number by number, so that one bad seed does no harm.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "models/parameters.h"
+#include "models/self_network.h"
+
+namespace pushid {
+
+struct FitOptions;
+struct PendulumRecording;
+struct Prediction;
+
+// What one seed found.
+struct EnsembleMember {
+  ParameterSet<double> parameters{};
+  std::shared_ptr<const SelfNetwork> network;
+};
+
+// The fits of all seeds but the first (options.seed), one by one; a seed without a usable optimum
+// is left out.
+std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
+                                          const FitOptions& options);
+
+// Frame by frame, person by person; at least one of them, all of them whole and equally long.
+Prediction MedianPrediction(const PendulumRecording& recording,
+                            const std::vector<Prediction>& predictions);
+
+}  // namespace pushid
