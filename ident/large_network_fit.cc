@@ -119,6 +119,7 @@ class Judge : public ceres::IterationCallback {
     now.cost = summary.cost;
     now.gradient = summary.gradient_max_norm;
     const std::vector<double>& shared = variables_.Shared(x_.data());
+    now.training_cost = now.cost - variables_.AddPriors(x_.data(), nullptr);
     if (held_out_ != nullptr) {
       const AdjointCost judged = held_out_->Evaluate(shared.data(), x_.data(), nullptr, nullptr);
       now.held_out_cost = judged.cost;
@@ -131,6 +132,7 @@ class Judge : public ceres::IterationCallback {
     solution_.trace.push_back(now);
     if (first) {
       solution_.initial_cost = now.cost;
+      solution_.initial_training_cost = now.training_cost;
       solution_.initial_held_out_cost = now.held_out_cost;
     }
     const LargeNetworkIteration& best = solution_.trace[best_];
@@ -264,6 +266,7 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
   solution.gradients = cost->gradients();
   solution.best_iteration = judge.Best().iteration;
   solution.final_cost = judge.Best().cost;
+  solution.final_training_cost = judge.Best().training_cost;
   solution.best_held_out_cost = judge.Best().held_out_cost;
   solution.held_out_failures = judge.Best().held_out_failures;
   solution.seconds = summary.total_time_in_seconds;

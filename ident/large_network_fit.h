@@ -59,6 +59,7 @@ struct LargeNetworkFit {
 struct LargeNetworkIteration {
   int iteration = 0;
   double cost = 0.0;           // all that is minimized
+  double training_cost = 0.0;  // of the training recordings alone
   double held_out_cost = 0.0;  // of the held-out recordings alone
   int held_out_failures = 0;
   double gradient = 0.0;  // largest component
@@ -76,6 +77,7 @@ struct LargeNetworkSolution {
   std::vector<double> shared, weights;  // the best point
   int best_iteration = 0;
   double initial_cost = 0.0, final_cost = 0.0;  // of what is minimized; final: of the best point
+  double initial_training_cost = 0.0, final_training_cost = 0.0;  // without the priors
   double initial_held_out_cost = 0.0, best_held_out_cost = 0.0;
   int held_out_failures = 0;  // at the best point
   bool stopped_early = false;

@@ -10,7 +10,8 @@
 
 #include "datasets/random.h"
 #include "datasets/synthetic_recordings.h"
-#include "residuals/adjoint_gradient.h"
+#include "ident/large_network_fit.h"
+#include "ident/self_network_io.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {
@@ -77,6 +78,33 @@ void Adjoint(benchmark::State& state) {
                  std::to_string(steps) + " person-steps");
 }
 BENCHMARK(Adjoint)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2}, {0, 1}});
+
+// A training as it is used: every fourth recording held out, until these have not come closer for
+// 30 iterations. The label has what became of them, in units of the cost. Arguments: the
+// network, and ten times the prior's standard deviation (0: none).
+void Training(benchmark::State& state) {
+  LargeNetworkFit fit;
+  fit.model.self_network = InitialNetwork(kShapes[state.range(0)], 1);
+  fit.map.values = PublishedTailParameters();
+  const std::vector<PendulumRecording>& all = SinglePeople().recordings;
+  for (size_t i = 0; i < all.size(); ++i) {
+    (i % 4 == 3 ? fit.held_out : fit.training)
+        .push_back({&all[i], 1.0 / std::sqrt(all[i].num_frames() - 1.0)});
+  }
+  fit.options.weight_sigma = 0.1 * state.range(1);
+  LargeNetworkSolution s;
+  for (auto _ : state) s = FitLargeNetwork(fit).value();
+  state.SetLabel(
+      NetworkName(kShapes[state.range(0)]) + ", " + std::to_string(s.trace.size() - 1) +
+      " iterations, " + std::to_string(s.gradients) + " gradients, best after " +
+      std::to_string(s.best_iteration) + "; training " + std::to_string(s.initial_training_cost) +
+      " -> " + std::to_string(s.final_training_cost) + ", held out " +
+      std::to_string(s.initial_held_out_cost) + " -> " + std::to_string(s.best_held_out_cost));
+}
+BENCHMARK(Training)
+    ->Unit(benchmark::kSecond)
+    ->ArgsProduct({{1, 2, 3}, {0, 1, 3, 10, 30}})
+    ->Iterations(1);
 
 }  // namespace
 }  // namespace pushid
