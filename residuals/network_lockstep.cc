@@ -30,7 +30,6 @@ NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels&
                                  const std::vector<double>& masses, const std::vector<int>& steps)
     : shape_(shape),
       kernels_(kernels),
-      weights_(shape, nullptr),
       rows_(StackedRows(shape)),
       scale_(masses.size()),
       context_(2, masses.size()),
@@ -59,22 +58,22 @@ NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels&
 
 void NetworkLockstep::PackWeights() {
   const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
-  RowMajor w = RowMajor::Zero(rows_, width);
-  w.topLeftCorner(shape_.gate_rows(), weights_.gates.cols()) = weights_.gates;
-  w.topRightCorner(shape_.gate_rows(), 2) = weights_.context;
+  const NetworkWeights<double> w = Weights();
+  RowMajor stacked = RowMajor::Zero(rows_, width);
+  stacked.topLeftCorner(shape_.gate_rows(), w.gates.cols()) = w.gates;
+  stacked.topRightCorner(shape_.gate_rows(), 2) = w.context;
   if (shape_.kind == NetworkKind::kLstm) {
-    w.bottomLeftCorner(h, nf + h) = weights_.candidates;
+    stacked.bottomLeftCorner(h, nf + h) = w.candidates;
   } else if (shape_.kind == NetworkKind::kGru) {
-    w.block(2 * h, 0, h, nf) = weights_.candidates.leftCols(nf);
-    w.block(3 * h, nf, h, h) = weights_.candidates.rightCols(h);
+    stacked.block(2 * h, 0, h, nf) = w.candidates.leftCols(nf);
+    stacked.block(3 * h, nf, h, h) = w.candidates.rightCols(h);
   }
-  stacked_.Pack(w.data(), rows_, width, width, 1);
-  transposed_.Pack(w.data(), width, rows_, 1, width);
+  stacked_.Pack(stacked.data(), rows_, width, width, 1);
+  transposed_.Pack(stacked.data(), width, rows_, 1, width);
 }
 
 void NetworkLockstep::Start(const double* weights) {
-  // A map is pointed elsewhere by constructing it anew.
-  new (&weights_) NetworkWeights<double>(shape_, weights);
+  weights_ = weights;
   PackWeights();
   hidden_carry_.setZero();
   cell_carry_.setZero();
@@ -93,7 +92,7 @@ void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) 
   auto z = At(z_, step);
   At(inputs_, step) = inputs;
   if (shape_.embedding > 0) {
-    Columns features = weights_.embed * inputs;
+    Columns features = Weights().embed * inputs;
     kernels_.tanh(features.data(), features.size());
     z.topRows(nf) = features;
   } else {
@@ -112,7 +111,7 @@ void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) 
   right_.Pack(z.data(), n, shape_.gate_width(), shape_.gate_width(), 1);
   AddProduct(stacked_, right_, sums.data(), rows_);
   Activate(step);
-  *forces = weights_.output * At(hidden_, step);
+  *forces = Weights().output * At(hidden_, step);
   *forces *= scale_.head(n).asDiagonal();
 }
 
@@ -217,7 +216,7 @@ void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs)
   const int n = active(step), h = shape_.hidden, nf = shape_.num_features();
   auto outputs = At(outputs_, step);
   outputs = forces * scale_.head(n).asDiagonal();
-  Columns hidden = weights_.output.transpose() * outputs;
+  Columns hidden = Weights().output.transpose() * outputs;
   // Columns that end here have none from later.
   if (shape_.recurrent()) hidden += hidden_carry_.leftCols(n);
   hidden_carry_.leftCols(n).setZero();
@@ -234,7 +233,7 @@ void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs)
   }
   auto embedded = At(embedded_, step);
   embedded = z.topRows(nf).array() * (1.0 - At(z_, step).topRows(nf).array().square());
-  *inputs = weights_.embed.transpose() * embedded;
+  *inputs = Weights().embed.transpose() * embedded;
 }
 
 void NetworkLockstep::AddWeightGradient(double* gradient) {

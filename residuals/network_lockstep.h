@@ -30,7 +30,7 @@ class NetworkLockstep {
   int num_steps() const { return static_cast<int>(first_column_.size()) - 1; }
   int active(int step) const { return first_column_[step + 1] - first_column_[step]; }
 
-  // Everybody's memory back to zero.
+  // Everybody's memory back to zero. weights: there until the last step back.
   void Start(const double* weights);
 
   // inputs: u, one column for each who is active. forces: 4 x active.
@@ -47,6 +47,7 @@ class NetworkLockstep {
 
  private:
   auto At(Columns& of, int step) { return of.middleCols(first_column_[step], active(step)); }
+  NetworkWeights<double> Weights() const { return {shape_, weights_}; }
   void PackWeights();
   void Activate(int step);
   // From d(cost)/dh of a step to D in activations_, and to the carried adjoint's direct part.
@@ -54,11 +55,11 @@ class NetworkLockstep {
 
   NetworkShape shape_;
   const VectorKernels& kernels_;
-  NetworkWeights<double> weights_;
-  int rows_;                       // of W
-  Eigen::VectorXd scale_;          // newtons per output, by column
-  Columns context_;                // k, by column
-  std::vector<int> first_column_;  // of each step, and the total
+  const double* weights_ = nullptr;  // of the last Start
+  int rows_;                         // of W
+  Eigen::VectorXd scale_;            // newtons per output, by column
+  Columns context_;                  // k, by column
+  std::vector<int> first_column_;    // of each step, and the total
   PackedMatrix stacked_, transposed_, right_;
 
   Columns inputs_, z_, activations_, hidden_, cells_, cell_tanh_;  // of all steps
