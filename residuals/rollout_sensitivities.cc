@@ -6,9 +6,7 @@
 #include "residuals/network_sensitivities.h"
 
 namespace pushid {
-namespace {
 
-// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
 Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
                                         const Vector4<double>& a) {
   using Jet = ceres::Jet<double, 4>;
@@ -22,8 +20,6 @@ Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<do
   for (int row = 0; row < 4; ++row) jacobian.row(row) = value[row].v.transpose();
   return jacobian;
 }
-
-}  // namespace
 
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,
