@@ -184,6 +184,9 @@ TEST_F(BatchTest, BadPlansAreToldWhereAndWhy) {
   const std::string rest = "[[variant]]\nname = \"a\"\nflags = []\n[output]\ndir = \"out\"\n";
   const std::vector<BadPlan> plans = {
       {"[data\n", "plan.toml:1"},
+      {std::string("[\0", 2), "plan.toml:1"},
+      {data + "setting = \u00e4\n" + rest, "plan.toml:3"},
+      {data + "\u0401 = 1\n" + rest, "plan.toml:3"},
       {rest, "no [data]"},
       {data + "[jobs]\ngroup_by = \"city\"\n" + rest, "plan.toml:4: group_by is 'city'"},
       {data + "[jobs]\nfolds = 1\n" + rest, "plan.toml:4: folds is 1"},
