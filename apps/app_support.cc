@@ -5,8 +5,10 @@
 #include <glog/logging.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <set>
@@ -86,6 +88,13 @@ MaybeError CheckFlagNames(int argc, char** argv) {
   return std::nullopt;
 }
 
+// A result that a full disk or a closed pipe swallowed must not look done.
+int CheckPrinted(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  const int failed = Fail(std::string("stdout cannot be written: ") + std::strerror(errno));
+  return exit_code == kDone ? failed : exit_code;
+}
+
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -119,7 +128,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + g_program + " --help");
   }
   try {
-    return run();
+    return CheckPrinted(run());
   } catch (const std::exception& exception) {
     return Fail(std::string("unexpected: ") + exception.what());
   }

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "apps/fit_flag_checks.h"
+#include "ident/large_network_stage.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
@@ -204,6 +205,14 @@ MaybeError CheckNetworkFlags(const FitOptions& o) {
     if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) continue;
     return Error{std::string("--") + flag +
                  " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (o.ensemble > 1 && NeedsGradientTraining(o)) {
+    return Error{"--ensemble is for small networks; this one is trained by its gradient"};
+  }
+  if (NeedsGradientTraining(o) && (o.model.interaction.Any() || AnyPooled(o.table))) {
+    return Error{"--self_force=" + FLAGS_self_force +
+                 " is trained by its gradient, which knows no people who touch and no pooled "
+                 "parameters; choose a smaller network, or --interaction=none --pool=none"};
   }
   if (o.ensemble > 1 && AnyPooled(o.table)) {
     return Error{"--ensemble does not go together with --pool: its members share all parameters"};

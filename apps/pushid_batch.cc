@@ -7,9 +7,14 @@
 #include "apps/app_support.h"
 #include "apps/batch_summary.h"
 #include "datasets/manifest.h"
+#include "ident/report/document_files.h"
+#include "ident/text_table.h"
 
 DEFINE_string(plan, "", "the plan (TOML); batch_plan.h and the README give its keys");
-DEFINE_bool(list, false, "only list the jobs: id, variant, group, replica, recordings");
+DEFINE_bool(
+    list, false,
+    "only list the jobs (CSV): id, variant, group, replica, numbers of recordings fitted and "
+    "held out, folder");
 DEFINE_bool(dry_run, false, "only print the commands of every job that is not done yet");
 DEFINE_int32(jobs, 1, "jobs at a time");
 DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
@@ -19,6 +24,7 @@ DEFINE_bool(keep_going, true, "go on after a job that failed");
 DEFINE_bool(summary, true,
             "write summary.csv, summary.json and summary.html; false with shards "
             "that run at the same time");
+DEFINE_bool(gather, false, "run nothing; only write the summary of what is there");
 DEFINE_double(time_limit, -1.0, "seconds for one job, instead of the plan's; 0: none");
 DEFINE_int32(memory_limit, -1, "MB of one job's address space, instead of the plan's; 0: none");
 
@@ -54,14 +60,15 @@ Result<std::vector<BatchJob>> ChosenJobs(const std::vector<BatchJob>& all) {
   return named;
 }
 
-int List(const std::vector<BatchJob>& jobs) {
-  std::string text = "id,variant,group,replica,recordings,held_out\n";
+int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
+  TextTable table({"id", "variant", "group", "replica", "recordings", "held_out", "folder"},
+                  {true, true, true, false, false, false, true});
   for (const BatchJob& job : jobs) {
-    text += job.id + "," + job.variant + "," + job.group + "," + std::to_string(job.replica) + "," +
-            std::to_string(job.recordings.size()) + "," + std::to_string(job.held_out.size()) +
-            "\n";
+    table.Add({job.id, job.variant, job.group, std::to_string(job.replica),
+               std::to_string(job.recordings.size()), std::to_string(job.held_out.size()),
+               JobFolder(plan, job)});
   }
-  std::fputs(text.c_str(), stdout);
+  std::fputs(CsvOf(table).c_str(), stdout);
   return kDone;
 }
 
@@ -86,6 +93,20 @@ std::string TimeText(double seconds) {
   return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
 }
 
+// Of all jobs of the plan, whichever of them ran now.
+MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
+  const std::vector<SummaryRow> rows = CollectRows(plan, all);
+  if (MaybeError error = WriteSummary(plan, rows)) return error;
+  std::printf("%s", SummaryText(rows).c_str());
+  return std::nullopt;
+}
+
+int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
+  if (MaybeError error = Summarize(plan, all)) return Fail(*error);
+  std::printf("results in %s\n", plan.dir.c_str());
+  return kDone;
+}
+
 int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
             const std::vector<BatchJob>& jobs) {
   BatchRunOptions options;
@@ -106,10 +127,7 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   if (!outcome.ok()) return Fail(outcome.error());
   const BatchOutcome& o = outcome.value();
   if (FLAGS_summary) {
-    // Of all jobs of the plan, whichever of them ran now.
-    const std::vector<SummaryRow> rows = CollectRows(plan, all);
-    if (MaybeError error = WriteSummary(plan, rows)) return Fail(*error);
-    std::printf("%s", SummaryText(rows).c_str());
+    if (MaybeError error = Summarize(plan, all)) return Fail(*error);
   }
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
@@ -133,8 +151,9 @@ int Run() {
   if (!all.ok()) return Fail(all.error());
   const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
   if (!jobs.ok()) return Fail(jobs.error());
-  if (FLAGS_list) return List(jobs.value());
+  if (FLAGS_list) return List(plan.value(), jobs.value());
   if (FLAGS_dry_run) return DryRun(plan.value(), jobs.value());
+  if (FLAGS_gather) return Gather(plan.value(), all.value());
   return RunJobs(plan.value(), all.value(), jobs.value());
 }
 

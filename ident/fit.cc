@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ident/fit_result.h"
+#include "ident/large_network_stage.h"
 #include "ident/report_tables.h"
 #include "ident/report_text.h"
 
@@ -179,10 +180,16 @@ void ForgetWeights(Eigen::Index weights, FitResult* result) {
 
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress) {
-  const FitProblem problem(recordings, options);
-  const Solution solution = Solve(problem, progress);
   FitResult result;
   result.options = options;
+  if (NeedsGradientTraining(options)) {
+    const Result<FitOptions> trained = TrainLargeNetwork(recordings, options, progress);
+    if (trained.ok()) return Fit(recordings, trained.value(), progress);
+    result.message = trained.error().ToString();
+    return result;
+  }
+  const FitProblem problem(recordings, options);
+  const Solution solution = Solve(problem, progress);
   result.starts = solution.starts;
   result.best_start = solution.best;
   result.solve_seconds = solution.seconds;
@@ -196,8 +203,8 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.message = best.message;
   result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
-  if (!best.to.weights.empty()) {
-    result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(best.to.weights);
+  if (const auto& network = result.options.model.self_network) {
+    result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to);

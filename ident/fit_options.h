@@ -55,7 +55,8 @@ struct FitOptions {
   double early_stopping = 0.0;
   // Weight of what the network takes over from friction and balance (residuals/network_takeover.h).
   double takeover_weight = 0.0;
-  int ensemble = 1;  // networks from so many seeds; predictions are their median
+  bool hold_network = false;  // its weights are taken as they are
+  int ensemble = 1;           // networks from so many seeds; predictions are their median
 
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.

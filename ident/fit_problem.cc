@@ -50,7 +50,7 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const F
       counts_(std::move(counts)),
       map_(options.table.Map()) {
   map_.pool_by = options.pool_by;
-  if (options.model.self_network != nullptr) {
+  if (options.model.self_network != nullptr && !options.hold_network) {
     map_.num_weights = static_cast<int>(options.model.self_network->weights.size());
   }
 }
@@ -85,7 +85,7 @@ ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::st
 
 ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
   ModelOptions model = options_.model;
-  if (model.self_network == nullptr) return model;
+  if (map_.num_weights == 0) return model;
   SelfNetwork network = *model.self_network;
   network.weights = point.weights;
   model.self_network = std::make_shared<const SelfNetwork>(std::move(network));

@@ -46,6 +46,8 @@ class FitProblem {
   const ParameterMap& map() const { return map_; }
   const std::vector<PendulumRecording>& recordings() const { return recordings_; }
   const FitOptions& options() const { return options_; }
+  // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
+  double Weight(int recording, int horizon) const;
   const std::vector<int>& counts() const { return counts_; }  // empty: each once
   // How often a recording counts.
   int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
@@ -98,7 +100,6 @@ class FitProblem {
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
-  double Weight(int recording, int horizon) const;
   void AddParameterBlocks(FitPoint* point, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
   void AddStagePriors(FitPoint* point, Built* built) const;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/large_network_stage.h"
+
 namespace pushid {
 
 ModelPredictor::ModelPredictor(std::string label, FitOptions options)
@@ -18,8 +20,15 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
                                            const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
-  const FitProblem problem(training, options_);
-  const Solution solution = Solve(problem);
+  FitOptions options = options_;
+  bool usable = true;
+  if (NeedsGradientTraining(options)) {
+    const Result<FitOptions> trained = TrainLargeNetwork(training, options_, nullptr);
+    usable = trained.ok();
+    if (usable) options = trained.value();
+  }
+  const FitProblem problem(training, options);
+  const Solution solution = usable ? Solve(problem) : Solution();
   FoldPrediction prediction;
   IdentifiedModel model;
   model.options = options_.model;

@@ -4,9 +4,11 @@
 namespace pushid {
 namespace {
 
+using Eigen::VectorXd;
+
 // d tanh and d logistic, from the activations.
-Eigen::VectorXd TanhSlope(const Eigen::VectorXd& a) { return 1.0 - a.array().square(); }
-Eigen::VectorXd LogisticSlope(const Eigen::VectorXd& a) { return a.array() * (1.0 - a.array()); }
+VectorXd TanhSlope(const VectorXd& a) { return 1.0 - a.array().square(); }
+VectorXd LogisticSlope(const VectorXd& a) { return a.array() * (1.0 - a.array()); }
 
 }  // namespace
 
@@ -17,19 +19,30 @@ NetworkSensitivities::NetworkSensitivities(const NetworkShape& shape, const doub
       scale_(kNetworkAcceleration * mass),
       weight_column_(weight_column),
       z_(Columns::Zero(shape.num_features() + shape.hidden, num_columns)),
-      gates_(shape.gate_rows(), num_columns),
-      candidates_(shape.candidate_rows(), num_columns),
-      output_(Columns::Zero(4, num_columns)) {
+      next_(shape.hidden, num_columns),
+      hidden_(VectorXd::Zero(shape.hidden)) {
   if (shape.kind == NetworkKind::kLstm) cell_ = Columns::Zero(shape.hidden, num_columns);
 }
 
-void NetworkSensitivities::AddOwn(int first, int width, int offset,
-                                  const Eigen::VectorXd& multiplied, Columns* rows) const {
+template <typename Rows>
+void NetworkSensitivities::AddOwn(int first, int width, int offset, const VectorXd& gain,
+                                  const VectorXd& multiplied, Rows rows) const {
   if (weight_column_ < 0) return;
-  for (int row = 0; row < rows->rows(); ++row) {
-    rows->row(row).segment(weight_column_ + first + row * width + offset, multiplied.size()) +=
-        multiplied.transpose();
+  for (int row = 0; row < rows.rows(); ++row) {
+    const int column = weight_column_ + first + row * width + offset;
+    rows.row(row).segment(column, multiplied.size()) += gain[row] * multiplied.transpose();
   }
+}
+
+template <typename Rows>
+void NetworkSensitivities::AddOwnGates(const NetworkState<double>& state, int block,
+                                       const VectorXd& gain, Rows rows) const {
+  const int width = shape_.gate_width();
+  const int first = shape_.gates_at() + block * shape_.hidden * width;
+  AddOwn(first, width, 0, gain, state.features, rows);
+  if (shape_.recurrent())
+    AddOwn(first, width, shape_.num_features(), gain, state.hidden_before, rows);
+  AddOwn(first, width, shape_.candidate_width(), gain, state.context, rows);
 }
 
 void NetworkSensitivities::AdvanceFeatures(const NetworkState<double>& state,
@@ -41,63 +54,75 @@ void NetworkSensitivities::AdvanceFeatures(const NetworkState<double>& state,
     if (sees_rod) z_.row(6) = rod / kNetworkRod;
     return;
   }
-  Columns features = weights_.embed.leftCols(6) * kScales.asDiagonal() * by_state.middleRows<6>(2);
-  if (sees_rod) features.noalias() += (weights_.embed.col(6) / kNetworkRod) * rod;
-  AddOwn(0, shape_.num_inputs(), 0, state.inputs, &features);
-  z_.topRows(shape_.num_features()) = TanhSlope(state.features).asDiagonal() * features;
-}
-
-void NetworkSensitivities::SumGates(const NetworkState<double>& state) {
-  const int nf = shape_.num_features(), width = shape_.gate_width();
-  const int used = shape_.candidate_width();  // an MLP does not see its own past
-  gates_.noalias() = weights_.gates * z_.topRows(used);
-  AddOwn(shape_.gates_at(), width, 0, state.features, &gates_);
-  if (used > nf) AddOwn(shape_.gates_at(), width, nf, state.hidden_before, &gates_);
-  AddOwn(shape_.gates_at(), width, used, state.context, &gates_);
+  const VectorXd slope = TanhSlope(state.features);
+  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(6) * kScales.asDiagonal();
+  auto features = z_.topRows(shape_.embedding);
+  features.noalias() = embed * by_state.middleRows<6>(2);
+  if (sees_rod) {
+    const VectorXd by_rod = slope.cwiseProduct(weights_.embed.col(6)) / kNetworkRod;
+    features.noalias() += by_rod * rod;
+  }
+  AddOwn(0, shape_.num_inputs(), 0, slope, state.inputs, features);
 }
 
 void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state) {
-  SumGates(state);
-  auto hidden = z_.bottomRows(shape_.hidden);
-  hidden.noalias() = TanhSlope(state.gates).asDiagonal() * gates_;
-  gates_.setZero();
-  AddOwn(shape_.gates_at(), shape_.gate_width(), shape_.num_features(), state.context, &gates_);
-  hidden -= TanhSlope(state.rest).asDiagonal() * gates_;
+  const VectorXd slope = TanhSlope(state.gates);
+  const int nf = shape_.num_features();
+  const Columns step = slope.asDiagonal() * weights_.gates;
+  next_.noalias() = step * z_.topRows(nf);
+  auto rows = next_.topRows(shape_.hidden);
+  const int first = shape_.gates_at(), width = shape_.gate_width();
+  AddOwn(first, width, 0, slope, state.features, rows);
+  // The slopes' difference, tanh' (W x + C k) - tanh' (C k), without what cancels.
+  AddOwn(first, width, nf, -state.hidden.cwiseProduct(state.gates + state.rest), state.context,
+         rows);
 }
 
 void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state) {
   const int nf = shape_.num_features(), h = shape_.hidden;
-  SumGates(state);
-  gates_ = LogisticSlope(state.gates).asDiagonal() * gates_;
-  auto hidden = z_.bottomRows(h);
-  const auto forget = state.gates.tail(h);
-  recurrent_.noalias() = weights_.candidates.rightCols(h) * hidden;
-  AddOwn(shape_.candidates_at(), shape_.candidate_width(), nf, state.hidden_before, &recurrent_);
-  candidates_.noalias() = weights_.candidates.leftCols(nf) * z_.topRows(nf);
-  AddOwn(shape_.candidates_at(), shape_.candidate_width(), 0, state.features, &candidates_);
-  candidates_ += forget.asDiagonal() * recurrent_;
-  candidates_ += state.recurrent.asDiagonal() * gates_.bottomRows(h);
-  candidates_ = TanhSlope(state.candidates).asDiagonal() * candidates_;
-  const auto keep = state.gates.head(h);
-  hidden = keep.asDiagonal() * (hidden - candidates_) + candidates_;
-  hidden += (state.hidden_before - state.candidates).asDiagonal() * gates_.topRows(h);
+  const VectorXd slope = LogisticSlope(state.gates);
+  const VectorXd keep = state.gates.head(h), recall = state.gates.tail(h);
+  // How far the sums of n, r and z move h'.
+  const VectorXd by_n = (1.0 - keep.array()).matrix().cwiseProduct(TanhSlope(state.candidates));
+  const VectorXd by_r = by_n.cwiseProduct(state.recurrent).cwiseProduct(slope.tail(h));
+  const VectorXd by_z = (state.hidden_before - state.candidates).cwiseProduct(slope.head(h));
+  Columns step = by_z.asDiagonal() * weights_.gates.topRows(h);
+  step += by_r.asDiagonal() * weights_.gates.bottomRows(h);
+  step.leftCols(nf) += by_n.asDiagonal() * weights_.candidates.leftCols(nf);
+  step.rightCols(h) += by_n.cwiseProduct(recall).asDiagonal() * weights_.candidates.rightCols(h);
+  step.rightCols(h) += keep.asDiagonal();
+  next_.noalias() = step * z_;
+  AddOwnGates(state, 0, by_z, next_.topRows(h));
+  AddOwnGates(state, 1, by_r, next_.topRows(h));
+  const int first = shape_.candidates_at(), width = shape_.candidate_width();
+  AddOwn(first, width, 0, by_n, state.features, next_.topRows(h));
+  AddOwn(first, width, nf, by_n.cwiseProduct(recall), state.hidden_before, next_.topRows(h));
 }
 
 void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state) {
   const int nf = shape_.num_features(), h = shape_.hidden;
-  SumGates(state);
-  gates_ = LogisticSlope(state.gates).asDiagonal() * gates_;
-  candidates_.noalias() = weights_.candidates * z_;
-  AddOwn(shape_.candidates_at(), shape_.candidate_width(), 0, state.features, &candidates_);
-  AddOwn(shape_.candidates_at(), shape_.candidate_width(), nf, state.hidden_before, &candidates_);
-  candidates_ = TanhSlope(state.candidates).asDiagonal() * candidates_;
+  const VectorXd slope = LogisticSlope(state.gates);
+  const VectorXd input = state.gates.head(h), output = state.gates.tail(h);
+  // How far the sums of i, f and g move c', and that of o moves h'.
+  const VectorXd by_i = state.candidates.cwiseProduct(slope.head(h));
+  const VectorXd by_f = state.cell_before.cwiseProduct(slope.segment(h, h));
+  const VectorXd by_g = input.cwiseProduct(TanhSlope(state.candidates));
+  const VectorXd by_o = state.cell_tanh.cwiseProduct(slope.tail(h));
+  Columns step = by_i.asDiagonal() * weights_.gates.topRows(h);
+  step += by_f.asDiagonal() * weights_.gates.middleRows(h, h);
+  step += by_g.asDiagonal() * weights_.candidates;
   cell_ = state.gates.segment(h, h).asDiagonal() * cell_;
-  cell_ += state.cell_before.asDiagonal() * gates_.middleRows(h, h);
-  cell_ += state.gates.head(h).asDiagonal() * candidates_;
-  cell_ += state.candidates.asDiagonal() * gates_.topRows(h);
-  const Eigen::VectorXd through = state.gates.tail(h).cwiseProduct(TanhSlope(state.cell_tanh));
-  z_.bottomRows(h) = through.asDiagonal() * cell_;
-  z_.bottomRows(h) += state.cell_tanh.asDiagonal() * gates_.bottomRows(h);
+  cell_.noalias() += step * z_;
+  AddOwnGates(state, 0, by_i, cell_.topRows(h));
+  AddOwnGates(state, 1, by_f, cell_.topRows(h));
+  const int first = shape_.candidates_at(), width = shape_.candidate_width();
+  AddOwn(first, width, 0, by_g, state.features, cell_.topRows(h));
+  AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
+
+  step = by_o.asDiagonal() * weights_.gates.bottomRows(h);
+  next_.noalias() = step * z_;
+  next_ += output.cwiseProduct(TanhSlope(state.cell_tanh)).asDiagonal() * cell_;
+  AddOwnGates(state, 2, by_o, next_.topRows(h));
 }
 
 void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state,
@@ -116,17 +141,25 @@ void NetworkSensitivities::Advance(const NetworkState<double>& state, const Stat
       AdvanceLstm(state);
       break;
   }
-  output_.noalias() = weights_.output * z_.bottomRows(shape_.hidden);
-  AddOwn(shape_.output_at(), shape_.hidden, 0, state.hidden, &output_);
+  z_.bottomRows(shape_.hidden) = next_;
+  hidden_ = state.hidden;
 }
 
 void NetworkSensitivities::AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const {
-  *by_column += scale_ * output_;
+  const Columns output = scale_ * weights_.output;
+  by_column->noalias() += output * next_;
+  AddOwn(shape_.output_at(), shape_.hidden, 0, VectorXd::Constant(4, scale_), hidden_,
+         by_column->topRows(4));
 }
 
 void NetworkSensitivities::AddTo(const Eigen::RowVector4d& by_force,
                                  Eigen::RowVectorXd* by_column) const {
-  by_column->noalias() += (scale_ * by_force) * output_;
+  const Eigen::RowVectorXd by_hidden = (scale_ * by_force) * weights_.output;
+  by_column->noalias() += by_hidden * next_;
+  for (int row = 0; row < 4; ++row) {
+    AddOwn(shape_.output_at() + row * shape_.hidden, shape_.hidden, 0,
+           VectorXd::Constant(1, scale_ * by_force[row]), hidden_, by_column->topRows(1));
+  }
 }
 
 }  // namespace pushid

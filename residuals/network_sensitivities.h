@@ -1,10 +1,11 @@
 // residuals: derivatives of a self-force network, carried from step to step beside those of the
 // rollout (rollout_sensitivities.h), by hand.
 //
-// With Z = d[x; h]/d(columns) of the network's features and memory before a step, each row of
-// weights w adds w Z to its sum, and the column of each of its own weights the number that weight
-// multiplies; activations scale rows. One product of (rows of weights) x (columns) a step, whatever
-// the number of weights. Equations: models/self_network.h.
+// With Z = d[x; h]/d(columns) of the network's features and memory before a step, the memory after
+// it has d h'/d(columns) = T Z + D: T (hidden x [x; h]) is the step linearized, all gates and
+// activations multiplied out before anything touches the columns; D holds, for each weight, what
+// the number it multiplies does to its own row. So a step costs one product of (hidden) rows with
+// the columns, whatever the number of weights. Equations: models/self_network.h.
 #pragma once
 
 #include <Eigen/Core>
@@ -35,22 +36,25 @@ class NetworkSensitivities {
 
  private:
   void AdvanceFeatures(const NetworkState<double>& state, const States& by_state, const Row& rod);
-  // Adds, for each row of a matrix of weights that starts at `first`, the numbers its weights
-  // multiply.
-  void AddOwn(int first, int width, int offset, const Eigen::VectorXd& multiplied,
-              Columns* rows) const;
+  // Rows of weights, `width` apart from `first` on, whose sums move their rows by `gain`: adds gain
+  // times what each weight multiplies, from the row's weight `offset` on.
+  template <typename Rows>
+  void AddOwn(int first, int width, int offset, const Eigen::VectorXd& gain,
+              const Eigen::VectorXd& multiplied, Rows rows) const;
+  // The same for the block of gates that starts at row `block`; all they multiply.
+  template <typename Rows>
+  void AddOwnGates(const NetworkState<double>& state, int block, const Eigen::VectorXd& gain,
+                   Rows rows) const;
   void AdvanceMlp(const NetworkState<double>& state);
   void AdvanceGru(const NetworkState<double>& state);
   void AdvanceLstm(const NetworkState<double>& state);
-  void SumGates(const NetworkState<double>& state);
 
   NetworkShape shape_;
   NetworkWeights<double> weights_;
   double scale_;
   int weight_column_;
-  Columns z_;  // of [features; hidden]
-  Columns gates_, candidates_, recurrent_, cell_;
-  Columns output_;  // of the outputs
+  Columns z_, next_, cell_;  // of [features; hidden], of the hidden units next, of the cells
+  Eigen::VectorXd hidden_;   // the last step's
 };
 
 }  // namespace pushid

@@ -9,9 +9,7 @@
 #include "residuals/rod_sensitivities.h"
 
 namespace pushid {
-namespace {
 
-// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
 Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
                                         const Vector4<double>& a) {
   using Jet = ceres::Jet<double, 4>;
@@ -25,6 +23,8 @@ Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<do
   for (int row = 0; row < 4; ++row) jacobian.row(row) = value[row].v.transpose();
   return jacobian;
 }
+
+namespace {
 
 // d(M a + C + G)/dl at fixed acceleration a.
 Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,

@@ -67,6 +67,10 @@ class RolloutSensitivities {
   Eigen::RowVectorXd rod_;
 };
 
+// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
+Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
+                                        const Vector4<double>& a);
+
 // Derivatives of NetForceAt: the analytic twin.
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,

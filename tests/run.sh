@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything and runs every test; ctest's summary stands last.
 # Tests that need the published recordings look in PUSHID_RECORDINGS (default ../shared/fzj_push) and
-# count as skipped where there are none.
+# count as skipped where there are none. PUSHID_FUZZ_SECONDS=30 runs every fuzz target for so long before.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tests/install_packages.sh
@@ -14,4 +14,5 @@ generator=()
 if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset release "${generator[@]}"
 cmake --build --preset release --parallel "$(nproc)"
+if [ "${PUSHID_FUZZ_SECONDS:-0}" -gt 0 ]; then bash tests/fuzz/run.sh "$PUSHID_FUZZ_SECONDS"; fi
 ctest --preset release --parallel "$(nproc)"

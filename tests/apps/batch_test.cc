@@ -5,53 +5,18 @@
 #include <filesystem>
 #include <random>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "tests/apps/app_fixture.h"
+#include "tests/apps/batch_fixture.h"
 
 namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> Lines(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-class BatchTest : public AppTest {
+class BatchTest : public BatchFixture {
  protected:
-  // jobs: lines of [jobs]; variants: name and flags.
-  std::string Plan(const std::string& jobs,
-                   const std::vector<std::pair<std::string, std::string>>& variants,
-                   const std::string& dir = "out", const std::string& name = "plan.toml") const {
-    std::string text = "[data]\nrecordings = \"manifest.json\"\n[jobs]\n" + jobs + "\n";
-    for (const auto& [variant, flags] : variants) {
-      text += "[[variant]]\nname = \"" + variant + "\"\nflags = [" + flags + "]\n";
-    }
-    return "--plan=" + WriteText(name, text + "[output]\ndir = \"" + dir + "\"\n");
-  }
-
-  AppRun Batch(const std::string& plan, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), plan);
-    more.push_back("--quiet");
-    return RunApp("pushid-batch", more);
-  }
-
-  // summary.csv without what changes from run to run: the last two columns.
-  std::vector<std::string> Table(const std::string& dir) const {
-    std::vector<std::string> rows;
-    for (std::string row : Lines(ReadText(Path(dir + "/summary.csv")))) {
-      for (int i = 0; i < 2; ++i) row.erase(row.rfind(','));
-      rows.push_back(row);
-    }
-    return rows;
-  }
-
   static std::set<std::string> Ids(const std::string& listing) {
     std::set<std::string> ids;
     for (const std::string& line : Lines(listing)) ids.insert(line.substr(0, line.find(',')));
@@ -146,6 +111,27 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   EXPECT_EQ(kept, 22u);
 }
 
+// What the workflow of apps/workflow asks for: where each job's files go, and the table alone.
+TEST_F(BatchTest, ListedFoldersAreTheJobsAndGatheringRunsNothing) {
+  const std::string plan = Plan("group_by = \"subject\"", {{"a, b", ""}});
+  const std::vector<std::string> list = Lines(Batch(plan, {"--list"}).out);
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_EQ(list[0], "id,variant,group,replica,recordings,held_out,folder");
+  const std::string id = list[1].substr(0, 32);
+  EXPECT_EQ(list[1], id + ",\"a, b\",S01,0,6,0," + Path("out/jobs/" + id));
+  EXPECT_TRUE(Refused(Batch(plan, {"--gather"}), {"out"}));  // nothing there yet
+  const AppRun one = Batch(plan, {"--job=" + id, "--summary=false"});
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_TRUE(fs::exists(Path("out/jobs/" + id + "/status.json")));
+  EXPECT_FALSE(fs::exists(Path("out/summary.csv")));
+  const AppRun gathered = Batch(plan, {"--gather"});
+  EXPECT_EQ(gathered.exit_code, 0) << gathered.err;
+  const std::vector<std::string> rows = Table("out");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_TRUE(Contains(rows[1], ",done,"));
+  EXPECT_TRUE(Contains(rows[2], ",open,"));
+}
+
 TEST_F(BatchTest, LimitsEndAJobAndSaySo) {
   const std::string endless = "\"--bootstrap=100000\"";
   const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
@@ -198,6 +184,9 @@ TEST_F(BatchTest, BadPlansAreToldWhereAndWhy) {
   const std::string rest = "[[variant]]\nname = \"a\"\nflags = []\n[output]\ndir = \"out\"\n";
   const std::vector<BadPlan> plans = {
       {"[data\n", "plan.toml:1"},
+      {std::string("[\0", 2), "plan.toml:1"},
+      {data + "setting = \u00e4\n" + rest, "plan.toml:3"},
+      {data + "\u0401 = 1\n" + rest, "plan.toml:3"},
       {rest, "no [data]"},
       {data + "[jobs]\ngroup_by = \"city\"\n" + rest, "plan.toml:4: group_by is 'city'"},
       {data + "[jobs]\nfolds = 1\n" + rest, "plan.toml:4: folds is 1"},

@@ -90,6 +90,36 @@ void TextSeeds(const std::string& out) {
                             "\"height_m\": 1.1, \"start\": 0.2, \"idle_force\": 3}]\n"));
 }
 
+void PlanSeeds(const std::string& out) {
+  Check(WriteFileAtomically(In(out, "plan", "whole.toml"), R"(# a comment
+[data]
+recordings = "M/manifest.json"
+setting = "single"
+ids = ["a", 'b']
+[jobs]
+group_by = "subject"
+folds = 4
+bootstrap = 1_000
+seed = 0x7f
+time_limit_s = 6e1
+memory_limit_mb = 512
+[[variant]]
+name = "physics"
+flags = ["--self_force=none"]
+[[variant]]
+name = "linear"
+flags = ["--self_force=linear", "--mode_weight=10"]
+[output]
+dir = "out"
+)"));
+  Check(WriteFileAtomically(In(out, "plan", "inline.toml"), R"(data.recordings = """m\u00e4.json"""
+jobs = {seed = 3, folds = 2, time_limit_s = inf}
+variant = [{name = "a"}]
+output = {dir = '''o'''}
+spare = [1979-05-27T07:32:00Z, nan, -0.5, true]
+)"));
+}
+
 // A BVH, a manifest and a model of a very small study.
 void StudySeeds(const std::string& out) {
   SyntheticOptions study;
@@ -138,6 +168,7 @@ int main(int argc, char** argv) {
   }
   C3dSeeds(argv[1]);
   TextSeeds(argv[1]);
+  PlanSeeds(argv[1]);
   StudySeeds(argv[1]);
   return 0;
 }

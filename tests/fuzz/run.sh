@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the fuzz targets and runs each for some seconds from seeds of the project's own writers:
 #   bash tests/fuzz/run.sh [seconds per target, 30] [target ...]
+# as many at a time as there are cores, or PUSHID_FUZZ_JOBS of them.
 # A crash, a leak, an input that takes over a second of processor time or a gigabyte ends the run with exit code 1; the
 # input is kept in build/fuzz/findings. What was covered stays in build/fuzz/corpus for the next run.
 set -euo pipefail
@@ -23,10 +24,9 @@ targets=("$@")
 if [ ${#targets[@]} -eq 0 ]; then
   for source in tests/fuzz/*_fuzz.cc; do targets+=("$(basename "$source" _fuzz.cc)"); done
 fi
-failed=0
-for target in "${targets[@]}"; do
+fuzz() {
+  local target="$1" log="build/fuzz/$1.log"
   mkdir -p "build/fuzz/corpus/$target"
-  log="build/fuzz/$target.log"
   if "build/fuzz/bin/$target-fuzz" "build/fuzz/corpus/$target" "build/fuzz/seeds/$target" \
     -max_total_time="$seconds" -timeout=10 -report_slow_units=10 -rss_limit_mb=1024 -malloc_limit_mb=1024 \
     -max_len=65536 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" >"$log" 2>&1; then
@@ -34,7 +34,10 @@ for target in "${targets[@]}"; do
 $(sed -n 's/^stat::peak_rss_mb: *//p' "$log") MB at most, nothing found"
   else
     echo "$target: FOUND SOMETHING, see $log and build/fuzz/findings" >&2
-    failed=1
+    return 1
   fi
-done
-exit "$failed"
+}
+export -f fuzz
+export seconds
+# xargs goes on after a finding, and then fails.
+printf '%s\n' "${targets[@]}" | xargs -P "${PUSHID_FUZZ_JOBS:-$(nproc)}" -I{} bash -c 'fuzz {}'

@@ -1,0 +1,174 @@
+// What a self-force network costs over the 32 recordings of single people: a person-step, the full
+// Jacobian by hand-derived sensitivities and by Jets, an iteration of Levenberg-Marquardt with each
+// of Ceres' solvers, and a whole solve. P counts all columns: seven physical ones and the weights.
+#include <benchmark/benchmark.h>
+#include <ceres/dynamic_autodiff_cost_function.h>
+
+#include <memory>
+
+#include "datasets/random.h"
+#include "ident/self_network_io.h"
+#include "ident/solver.h"
+#include "tests/benchmarks/benchmark_recordings.h"
+
+namespace pushid {
+namespace {
+
+FitOptions OptionsOf(const char* self_force) {
+  const Preset preset = MakePreset("tail").value();
+  FitOptions options;
+  options.preset = preset.name;
+  options.model = preset.model;
+  options.table = preset.table;
+  options.settling_weight = preset.settling_weight;
+  const NetworkShape shape = ParseSelfForce("self_force", self_force).value().network;
+  if (shape.any()) options.model.self_network = InitialNetwork(shape, 1);
+  return options;
+}
+
+// Weights as a fit ends with, so that no product has zeros to skip.
+FitPoint SomePoint(const FitProblem& problem) {
+  FitPoint point = problem.NominalPoint();
+  Random random(3);
+  for (double& w : point.weights) w += random.Uniform(-0.1, 0.1);
+  return point;
+}
+
+void PersonStep(benchmark::State& state, const char* self_force) {
+  const FitOptions options = OptionsOf(self_force);
+  const Scene& scene = SinglePeople().recordings[0].scene;
+  const std::vector<ParameterSet<double>> p = {options.table.Values()};
+  const auto velocities = InitialVelocities(scene);
+  constexpr int kFrames = 72;
+  RolloutPath<double> path;
+  for (auto _ : state) {
+    if (!Rollout(scene, options.model, p, velocities, kFrames, &path).ok) {
+      state.SkipWithError("the rollout fails");
+    }
+    benchmark::DoNotOptimize(path);
+  }
+  state.counters["s_per_step"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * (kFrames - 1),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+// All recordings: residuals and Jacobian; cost: makes the cost function of a recording's problem.
+template <typename MakeCost>
+void MeasureJacobian(benchmark::State& state, const char* self_force, const MakeCost& make_cost) {
+  const FitOptions options = OptionsOf(self_force);
+  const std::vector<PendulumRecording>& recordings = SinglePeople().recordings;
+  const FitProblem problem(recordings, options);
+  const FitPoint point = SomePoint(problem);
+  std::vector<std::unique_ptr<ceres::CostFunction>> costs;
+  std::vector<std::vector<double>> residuals;
+  std::vector<std::vector<std::vector<double>>> jacobians;
+  for (const PendulumRecording& recording : recordings) {
+    const auto rollout =
+        MakeRolloutProblem(recording, options.model, problem.map(), options.sigmas, 1.0, 0);
+    costs.push_back(make_cost(rollout));
+    residuals.emplace_back(rollout->num_residuals());
+    jacobians.emplace_back();
+    for (int size : rollout->layout.BlockSizes()) {
+      jacobians.back().emplace_back(static_cast<size_t>(size) * rollout->num_residuals());
+    }
+  }
+  std::vector<const double*> blocks = {point.shared.data()};
+  if (!point.weights.empty()) blocks.push_back(point.weights.data());
+  for (auto _ : state) {
+    for (size_t i = 0; i < costs.size(); ++i) {
+      std::vector<double*> pointers;
+      for (auto& jacobian : jacobians[i]) pointers.push_back(jacobian.data());
+      if (!costs[i]->Evaluate(blocks.data(), residuals[i].data(), pointers.data())) {
+        state.SkipWithError("a rollout fails");
+      }
+    }
+  }
+  state.counters["P"] = static_cast<double>(point.shared.size() + point.weights.size());
+}
+
+void NetworkJacobian(benchmark::State& state, const char* self_force) {
+  MeasureJacobian(state, self_force,
+                  [](const auto& rollout) { return std::make_unique<RolloutResidual>(rollout); });
+}
+
+template <int kStride>
+void NetworkJacobianByJets(benchmark::State& state, const char* self_force) {
+  MeasureJacobian(state, self_force, [](const auto& rollout) {
+    auto cost =
+        std::make_unique<ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, kStride>>(
+            new RolloutResidualFunctor{rollout});
+    for (int size : rollout->layout.BlockSizes()) cost->AddParameterBlock(size);
+    cost->SetNumResiduals(rollout->num_residuals());
+    return cost;
+  });
+}
+
+// Five iterations from where the physical parameters stand, the network just begun.
+void Iteration(benchmark::State& state, const char* self_force, ceres::LinearSolverType type) {
+  constexpr int kIterations = 5;
+  const FitOptions options = OptionsOf(self_force);
+  const FitProblem problem(SinglePeople().recordings, options);
+  int iterations = 0, columns = 0;
+  for (auto _ : state) {
+    FitPoint point = SomePoint(problem);
+    FitProblem::Built built = problem.Build(&point, 0);
+    ceres::Solver::Options solver = SolverOptions(options, *built.problem);
+    solver.linear_solver_type = type;
+    solver.max_num_iterations = kIterations;
+    solver.function_tolerance = 0.0;
+    std::string message;
+    iterations += SolveBuilt(&built, solver, 0, &message).iterations;
+    columns = built.problem->NumParameters();
+  }
+  state.counters["P"] = columns;
+  state.counters["s_per_iteration"] =
+      benchmark::Counter(iterations, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void NetworkSolve(benchmark::State& state, const char* self_force) {
+  const FitOptions options = OptionsOf(self_force);
+  const FitProblem problem(SinglePeople().recordings, options);
+  Solution solution;
+  for (auto _ : state) solution = Solve(problem);
+  if (solution.best < 0) {
+    state.SkipWithError("no usable start");
+    return;
+  }
+  state.counters["cost"] = solution.Best().cost;
+  state.counters["iterations"] = solution.Best().iterations;
+}
+
+void RegisterAll() {
+  for (const char* self_force : {"none", "mlp:4", "gru:4", "gru:8", "gru:16"}) {
+    const std::string name = self_force;
+    benchmark::RegisterBenchmark(("PersonStep/" + name).c_str(), PersonStep, self_force)
+        ->Unit(benchmark::kMicrosecond);
+    benchmark::RegisterBenchmark(("NetworkJacobian/" + name).c_str(), NetworkJacobian, self_force)
+        ->Unit(benchmark::kMillisecond);
+    const std::pair<const char*, ceres::LinearSolverType> solvers[] = {
+        {"dense_normal", ceres::DENSE_NORMAL_CHOLESKY},
+        {"dense_qr", ceres::DENSE_QR},
+        {"sparse_normal", ceres::SPARSE_NORMAL_CHOLESKY}};
+    for (const auto& [solver, type] : solvers) {
+      benchmark::RegisterBenchmark(("Iteration/" + name + "/" + solver).c_str(), Iteration,
+                                   self_force, type)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/4/gru:8", NetworkJacobianByJets<4>, "gru:8")
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/16/gru:8", NetworkJacobianByJets<16>, "gru:8")
+      ->Unit(benchmark::kMillisecond);
+  benchmark::RegisterBenchmark("NetworkJacobianByJets/64/gru:8", NetworkJacobianByJets<64>, "gru:8")
+      ->Unit(benchmark::kMillisecond);
+  for (const char* self_force : {"mlp:4", "gru:4", "gru:8"}) {
+    benchmark::RegisterBenchmark((std::string("NetworkSolve/") + self_force).c_str(), NetworkSolve,
+                                 self_force)
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+const bool kRegistered = (RegisterAll(), true);
+
+}  // namespace
+}  // namespace pushid

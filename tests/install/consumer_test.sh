@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Installs a build into an empty folder, then configures, builds and runs the consumer project against it.
+#   consumer_test.sh BUILD
+set -euo pipefail
+source_dir="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+build="$1"
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+cmake --install "$build" --prefix "$scratch/usr" >/dev/null
+
+# Nothing of it may point back at where it was built.
+if grep -rlE "$source_dir|$build" "$scratch/usr" --include='*.cmake'; then
+  echo "the installed package names the source or build folder" >&2
+  exit 1
+fi
+mv "$scratch/usr" "$scratch/moved"
+cmake -S "$source_dir/tests/install/consumer" -B "$scratch/consumer" -DCMAKE_BUILD_TYPE=Debug \
+  -DCMAKE_PREFIX_PATH="$scratch/moved" >/dev/null
+cmake --build "$scratch/consumer" >/dev/null
+"$scratch/consumer/consumer"
+
+# Programs run from where they were put, and the batch finds those beside it.
+"$scratch/moved/bin/pushid-simulate" --out="$scratch/recordings" --people=1 --recordings_per_person=3 >/dev/null
+cat >"$scratch/plan.toml" <<END
+[data]
+recordings = "recordings/manifest.json"
+[[variant]]
+name = "tail"
+[output]
+dir = "out"
+END
+"$scratch/moved/bin/pushid-batch" --plan="$scratch/plan.toml" --quiet | tail -n 1
+test -x "$scratch/moved/share/pushid/workflow/profiles/slurm/status.sh"
