@@ -104,7 +104,7 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
   ASSERT_EQ(header.size(), 43u);
   EXPECT_EQ(line.find("frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s"), 0u);
   EXPECT_EQ(header[15], "friction_x_N");
-  EXPECT_EQ(header.back(), "drive_phi_Nm");
+  EXPECT_EQ(header.back(), "network_phi_Nm");
   int t = 0;
   for (; std::getline(file, line); ++t) {
     const std::vector<std::string> row = Split(line);
