@@ -101,7 +101,7 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
   std::string line;
   std::getline(file, line);
   const std::vector<std::string> header = Split(line);
-  ASSERT_EQ(header.size(), 43u);
+  ASSERT_EQ(header.size(), 47u);
   EXPECT_EQ(line.find("frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s"), 0u);
   EXPECT_EQ(header[15], "friction_x_N");
   EXPECT_EQ(header.back(), "network_phi_Nm");
