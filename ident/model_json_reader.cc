@@ -242,6 +242,7 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.options.table = TableFrom(at("table"), known.table);
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
+      result.options.hold_network = true;  // what is read is not fitted on
     }
     if (json.contains("network_takeover")) {
       const Json& t = at("network_takeover");

@@ -98,6 +98,12 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"null_directions", NullDirectionsJson(u.null_directions)}};
 }
 
+// A network's weights stand once, in the network.
+std::vector<double> WithoutWeights(FitPoint point) {
+  point.weights.clear();
+  return point.Flat();
+}
+
 Json StartsJson(const FitResult& result) {
   Json starts = Json::array();
   for (const SolveStart& s : result.starts) {
@@ -115,8 +121,8 @@ Json StartsJson(const FitResult& result) {
                       {"cost", s.cost},
                       {"iterations", s.iterations},
                       {"failed_rollouts", s.failed.size()},
-                      {"from_fitted_scale", s.from.Flat()},
-                      {"to_fitted_scale", s.to.Flat()},
+                      {"from_fitted_scale", WithoutWeights(s.from)},
+                      {"to_fitted_scale", WithoutWeights(s.to)},
                       {"stages", stages},
                       {"message", s.message}});
   }
