@@ -64,7 +64,7 @@ struct ModelOptions {
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
   std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term
-  std::shared_ptr<const SelfNetwork> self_network;  // self_network.h; null: none
+  std::shared_ptr<const SelfNetwork> self_network;                // self_network.h; null: none
 };
 
 }  // namespace pushid
