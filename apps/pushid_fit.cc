@@ -14,6 +14,7 @@
 #include "datasets/json_file.h"
 #include "ident/advice.h"
 #include "ident/bootstrap.h"
+#include "ident/large_network_stage.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
 
@@ -72,7 +73,10 @@ int Run() {
   const int count = static_cast<int>(pendulums.size());
   if (MaybeError error = CheckConfidence(options.value(), count)) return Fail(*error);
   for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
-  if (MaybeError error = CheckEffects(FitProblem(pendulums, options.value()))) return Fail(*error);
+  // A large network has no force yet and no Jacobian at all: the physical model is what is checked.
+  FitOptions checked = options.value();
+  if (NeedsGradientTraining(checked)) checked.model.self_network = nullptr;
+  if (MaybeError error = CheckEffects(FitProblem(pendulums, checked))) return Fail(*error);
 
   ProgressLine line;
   FitResult result = Fit(pendulums, options.value(),

@@ -35,7 +35,7 @@ struct RecordedPerson {
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
   // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles
-  // were not seen and the positions are only placeholders.
+  // were not seen: the positions there mean nothing.
   std::vector<double> weight;
   // All joints, frame-major ([frame][joint]); empty unless asked for.
   std::vector<std::vector<Eigen::Vector3d>> joints;

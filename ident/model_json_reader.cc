@@ -95,6 +95,7 @@ FitOptions OptionsFrom(const Json& json) {
   o.pooling_sigma = json.at("pooling_sigma");
   o.network_prior = json.value("network_prior", o.network_prior);
   o.early_stopping = json.value("early_stopping", o.early_stopping);
+  o.takeover_weight = json.value("takeover_weight", o.takeover_weight);
   o.ensemble = json.value("ensemble", o.ensemble);
   o.horizons = json.at("horizons").get<std::vector<int>>();
   o.start = EnumFrom<FitStart>(json, "start");
@@ -242,6 +243,7 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.options.table = TableFrom(at("table"), known.table);
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
+      result.options.hold_network = true;  // what is read is not fitted on
     }
     if (json.contains("network_takeover")) {
       const Json& t = at("network_takeover");

@@ -69,6 +69,10 @@ Json OptionsJson(const FitOptions& o) {
           {"stability_weight", o.stability_weight},
           {"pool_by", NameOf(o.pool_by)},
           {"pooling_sigma", o.pooling_sigma},
+          {"network_prior", o.network_prior},
+          {"early_stopping", o.early_stopping},
+          {"takeover_weight", o.takeover_weight},
+          {"ensemble", o.ensemble},
           {"horizons", o.horizons},
           {"start", NameOf(o.start)},
           {"num_starts", o.num_starts},
@@ -98,6 +102,12 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"null_directions", NullDirectionsJson(u.null_directions)}};
 }
 
+// A network's weights stand once, in the network.
+std::vector<double> WithoutWeights(FitPoint point) {
+  point.weights.clear();
+  return point.Flat();
+}
+
 Json StartsJson(const FitResult& result) {
   Json starts = Json::array();
   for (const SolveStart& s : result.starts) {
@@ -115,8 +125,8 @@ Json StartsJson(const FitResult& result) {
                       {"cost", s.cost},
                       {"iterations", s.iterations},
                       {"failed_rollouts", s.failed.size()},
-                      {"from_fitted_scale", s.from.Flat()},
-                      {"to_fitted_scale", s.to.Flat()},
+                      {"from_fitted_scale", WithoutWeights(s.from)},
+                      {"to_fitted_scale", WithoutWeights(s.to)},
                       {"stages", stages},
                       {"message", s.message}});
   }

@@ -105,9 +105,13 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
   const FitOptions& options = problem.options();
   EarlyStoppingSplit split;
   if (options.early_stopping > 0.0) {
-    // Whoever asks for a share that cannot be held out is told before (CheckFit).
     const auto made = SplitForEarlyStopping(problem, options.early_stopping, options.seed);
-    if (made.ok()) split = made.value();
+    if (!made.ok()) {
+      start->usable = false;
+      start->message = made.error().ToString();
+      return;
+    }
+    split = made.value();
   }
   const bool stop_early = !split.held_out.empty();
   const FitProblem training(problem.recordings(), options,

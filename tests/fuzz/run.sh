@@ -32,6 +32,9 @@ fuzz() {
     -max_len=65536 -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" >"$log" 2>&1; then
     echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") executions, \
 $(sed -n 's/^stat::peak_rss_mb: *//p' "$log") MB at most, nothing found"
+  elif grep -aq 'run interrupted' "$log"; then
+    echo "$target: interrupted, nothing found so far" >&2
+    return 1
   else
     echo "$target: FOUND SOMETHING, see $log and build/fuzz/findings" >&2
     return 1

@@ -153,6 +153,17 @@ TEST(EarlyStopping, HoldsOutAStratifiedShare) {
   EXPECT_FALSE(SplitForEarlyStopping(problem, 0.01, 1).ok());
 }
 
+// Six recordings cannot give a fiftieth of themselves away, and the fit says so.
+TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
+  const SyntheticOptions synthetic = TinyStudy();
+  FitOptions options = DefaultFit(synthetic);
+  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  options.early_stopping = 0.02;
+  const FitResult result = Fit(MakePendulums(synthetic), options);
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message.find("--early_stopping"), std::string::npos) << result.message;
+}
+
 TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy({NetworkKind::kGru, 2}, 0.002);
   study.options.ensemble = 3;
@@ -166,6 +177,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
   EXPECT_EQ(read.value().options.model.self_network->weights,
             result.options.model.self_network->weights);
+  EXPECT_EQ(read.value().options.ensemble, 3);
   EXPECT_EQ(HeldOutAde(study, read.value()), HeldOutAde(study, result));
   EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
   EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);

@@ -17,17 +17,6 @@ std::vector<NetworkShape> EveryNetwork() {
           {NetworkKind::kMlp, 3, 0, true}, {NetworkKind::kGru, 2, 0, true}};
 }
 
-ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* random) {
-  auto network = std::make_shared<SelfNetwork>();
-  network->shape = shape;
-  for (int i = 0; i < shape.num_weights(); ++i) {
-    network->weights.push_back(random->Uniform(-size, size));
-  }
-  ModelOptions options;
-  options.self_network = network;
-  return options;
-}
-
 struct Regime {
   std::string name;
   double lean, push, noise, weight;

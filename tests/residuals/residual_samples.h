@@ -162,6 +162,18 @@ inline void AddNoise(double magnitude, Random* random, PendulumRecording* record
   }
 }
 
+// A model with a network of random weights, each up to `size`.
+inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* random) {
+  auto network = std::make_shared<SelfNetwork>();
+  network->shape = shape;
+  for (int i = 0; i < shape.num_weights(); ++i) {
+    network->weights.push_back(random->Uniform(-size, size));
+  }
+  ModelOptions options;
+  options.self_network = network;
+  return options;
+}
+
 // None, each term alone or with what it needs, all smooth ones together.
 inline std::vector<InteractionTerms> SomeInteractions() {
   std::vector<InteractionTerms> some(6);

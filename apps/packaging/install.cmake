@@ -18,7 +18,7 @@ endforeach()
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pushid)
 install(EXPORT pushid_targets NAMESPACE pushid:: FILE pushidTargets.cmake
         DESTINATION ${package_folder} COMPONENT development)
-configure_package_config_file(cmake/pushidConfig.cmake.in ${PROJECT_BINARY_DIR}/pushidConfig.cmake
+configure_package_config_file(apps/packaging/pushidConfig.cmake.in ${PROJECT_BINARY_DIR}/pushidConfig.cmake
                               INSTALL_DESTINATION ${package_folder})
 # Before 1.0 every minor version may change the interface.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pushidConfigVersion.cmake
