@@ -5,31 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "apps/fit_flag_checks.h"
-#include "ident/large_network_stage.h"
+#include "apps/network_flags.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
-#include "ident/self_network_io.h"
 
 DEFINE_string(
     preset, "tail",
     "the model: tail (push tail, posture-relative recovery), ldp (plain PD and friction from "
     "upright), or group (tail with linear self forces and contact, pooled by setting)");
-DEFINE_string(self_force, "",
-              "what is fitted on top: none, linear (cross terms, quadratic), a network by kind and "
-              "hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a "
-              "network, comma-separated (default: the preset's)");
-DEFINE_double(network_prior, 1.0,
-              "standard deviation of the prior that ties a network's weights to zero; 0: none");
-DEFINE_double(early_stopping, 0.0,
-              "share of the recordings held out to stop a network's training in time; 0: none");
-DEFINE_double(takeover_weight, 0.0,
-              "weight of the penalty on what a network takes over from friction and balance");
-DEFINE_int32(ensemble, 1,
-             "networks trained from so many seeds; the model predicts the median of them");
 DEFINE_string(posture, "",
               "balance error measured from: upright or initial (default: the preset's)");
 DEFINE_string(gain_scaling, "",
@@ -126,21 +114,6 @@ MaybeError ReadModel(FitOptions* o) {
 
 // A linear self force can feed a mode that the demonstrations do not excite.
 constexpr double kLinearModeWeight = 30.0;
-MaybeError ReadSelfForce(FitOptions* o) {
-  if (!FLAGS_self_force.empty()) {
-    const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", FLAGS_self_force);
-    if (!choice.ok()) return choice.error();
-    o->self_force = choice.value().kind;
-    if (choice.value().network.any()) {
-      o->model.self_network = InitialNetwork(choice.value().network, FLAGS_seed);
-    }
-  }
-  o->network_prior = FLAGS_network_prior;
-  o->early_stopping = FLAGS_early_stopping;
-  o->takeover_weight = FLAGS_takeover_weight;
-  o->ensemble = FLAGS_ensemble;
-  return std::nullopt;
-}
 
 constexpr long kLongestHorizon = 1000000;  // frames
 
@@ -166,7 +139,7 @@ void FixWhatDoesNotAct(const ModelOptions& model, ParameterTable* table) {
   }
 }
 
-MaybeError ReadNetwork(ModelOptions* model) {
+MaybeError ReadInteraction(ModelOptions* model) {
   if (!model->interaction.network && FLAGS_interaction_network.empty()) return std::nullopt;
   if (!model->interaction.network) {
     return Error{"--interaction_network is given, but --interaction does not name network"};
@@ -193,33 +166,6 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   return std::nullopt;
 }
 
-bool AnyPooled(const ParameterTable& table) {
-  return std::any_of(table.specs.begin(), table.specs.end(),
-                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
-}
-
-// What asks for a network where there is none, or for more than it can do.
-MaybeError CheckNetworkFlags(const FitOptions& o) {
-  for (const char* flag : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
-    if (o.model.self_network != nullptr) break;
-    if (gflags::GetCommandLineFlagInfoOrDie(flag).is_default) continue;
-    return Error{std::string("--") + flag +
-                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
-  }
-  if (o.ensemble > 1 && NeedsGradientTraining(o)) {
-    return Error{"--ensemble is for small networks; this one is trained by its gradient"};
-  }
-  if (NeedsGradientTraining(o) && (o.model.interaction.Any() || AnyPooled(o.table))) {
-    return Error{"--self_force=" + FLAGS_self_force +
-                 " is trained by its gradient, which knows no people who touch and no pooled "
-                 "parameters; choose a smaller network, or --interaction=none --pool=none"};
-  }
-  if (o.ensemble > 1 && AnyPooled(o.table)) {
-    return Error{"--ensemble does not go together with --pool: its members share all parameters"};
-  }
-  return std::nullopt;
-}
-
 Result<FitOptions> OptionsOfFlags() {
   Result<Preset> preset = MakePreset(FLAGS_preset);
   if (!preset.ok()) return preset.error();
@@ -233,7 +179,7 @@ Result<FitOptions> OptionsOfFlags() {
       FLAGS_settling_weight >= 0.0 ? FLAGS_settling_weight : preset.value().settling_weight;
   o.stability_weight = FLAGS_stability_weight;
   if (MaybeError error = ReadModel(&o)) return *error;
-  if (MaybeError error = ReadSelfForce(&o)) return *error;
+  if (MaybeError error = ReadNetworkFlags(FLAGS_seed, &o)) return *error;
   if (MaybeError error = ReadHorizons(&o)) return *error;
   if (MaybeError error = CheckFitNumbers()) return *error;
 
@@ -241,11 +187,12 @@ Result<FitOptions> OptionsOfFlags() {
   o.mode_weight = FLAGS_mode_weight >= 0.0 ? FLAGS_mode_weight : hinge;
   o.mode_margin = FLAGS_mode_margin;
   FreeSelfForce(o.self_force, &o.table);
+  FreeRod(o.model, &o.table);
   FreeInteraction(o.model.interaction, &o.table);
   if (!FLAGS_preset_priors) {
     for (ParameterSpec& spec : o.table.specs) spec.prior.reset();
   }
-  if (MaybeError error = ReadNetwork(&o.model)) return *error;
+  if (MaybeError error = ReadInteraction(&o.model)) return *error;
   FixWhatDoesNotAct(o.model, &o.table);
   if (MaybeError error = TakeSelfFrom(FLAGS_self_from, &o.table)) return *error;
   TableEdits edits;
@@ -287,8 +234,11 @@ Result<FitOptions> FitOptionsFromFlags() {
 }
 
 Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
-  // Other flags than those of this file would be taken and do nothing.
-  const std::string this_file = gflags::GetCommandLineFlagInfoOrDie("preset").filename;
+  // Other flags than those of a fit would be taken and do nothing.
+  const auto file = [](const char* flag) {
+    return gflags::GetCommandLineFlagInfoOrDie(flag).filename;
+  };
+  const std::string these[] = {file("preset"), file("self_force")};
   const gflags::FlagSaver saver;
   std::stringstream list(extra_flags);
   for (std::string word; list >> word;) {
@@ -296,7 +246,8 @@ Result<FitOptions> FitOptionsWith(const std::string& extra_flags) {
     const std::string name = word.substr(0, equals);
     gflags::CommandLineFlagInfo flag;
     if (name.rfind("--", 0) != 0 || equals == std::string::npos ||
-        !gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) || flag.filename != this_file ||
+        !gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) ||
+        std::find(std::begin(these), std::end(these), flag.filename) == std::end(these) ||
         gflags::SetCommandLineOption(name.c_str() + 2, word.c_str() + equals + 1).empty()) {
       return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
     }

@@ -47,25 +47,42 @@ Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double
   return result;
 }
 
-// One step of a network about rest, by central differences (it is smooth, and its values are of
-// order one): d[force; memory]/d[theta, phi, qd; memory].
-Eigen::MatrixXd NetworkStep(const SelfNetwork& network, const Body& body) {
+// The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
+// cart's derivative is made), and what is learned of the rod and a network's memory.
+constexpr int kPreviousAt = 6, kRodAt = 8, kMemoryAt = 9;
+
+// One step of what is learned, about rest, by central differences (it is smooth, and its values are
+// of order one): d[force; rod's velocity; memory]/d(free state).
+Eigen::MatrixXd LearnedStep(const SelfNetwork& network, const SelfForce& self,
+                            const ParameterSet<double>& parameters) {
   constexpr double kDifference = 1e-5;
   const NetworkShape& shape = network.shape;
   const int hidden = shape.recurrent() ? shape.hidden : 0;
   const int cells = shape.kind == NetworkKind::kLstm ? shape.hidden : 0;
   const auto step = [&](const Eigen::VectorXd& from) {
-    NetworkState<double> state(shape, body);
-    if (hidden > 0) state.hidden = from.segment(6, hidden);
-    if (cells > 0) state.cell = from.tail(cells);
-    SetNetworkInputs<double>(from[0], from[1], from.segment<4>(2), 0.0, &state);
-    Eigen::VectorXd to(4 + hidden + cells);
-    to.head<4>() = StepNetwork(shape, network.weights.data(), body.mass, &state);
-    if (hidden > 0) to.segment(4, hidden) = state.hidden;
-    if (cells > 0) to.tail(cells) = state.cell;
+    const Vector4<double> qd = from.segment<4>(2);
+    Eigen::VectorXd to = Eigen::VectorXd::Zero(5 + hidden + cells);
+    if (shape.any()) {
+      NetworkState<double> memory(shape, self.body);
+      if (hidden > 0) memory.hidden = from.segment(kMemoryAt, hidden);
+      if (cells > 0) memory.cell = from.tail(cells);
+      SetNetworkInputs<double>(from[0], from[1], qd, from[kRodAt], &memory);
+      to.head<4>() = StepNetwork(shape, network.weights.data(), self.body.mass, &memory);
+      if (hidden > 0) to.segment(5, hidden) = memory.hidden;
+      if (cells > 0) to.tail(cells) = memory.cell;
+    }
+    if (network.rod.moves()) {
+      const PendulumState<double> state{{0.0, 0.0, from[0], from[1]}, qd, from[kRodAt]};
+      const Vector4<double> before{from[kPreviousAt], from[kPreviousAt + 1], 0.0, 0.0};
+      RodLayers<double> layers(network.rod);
+      SetRodInputs<double>(from[0], from[1], qd,
+                           self.Total(parameters, state, before) + to.head<4>(), state.rod,
+                           self.body.mass, &layers);
+      to[4] = RodVelocity(network.rod, network.weights.data() + network.rod_at(), &layers);
+    }
     return to;
   };
-  Eigen::MatrixXd jacobian(4 + hidden + cells, 6 + hidden + cells);
+  Eigen::MatrixXd jacobian(5 + hidden + cells, kMemoryAt + hidden + cells);
   for (int i = 0; i < jacobian.cols(); ++i) {
     const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(jacobian.cols(), i);
     jacobian.col(i) = (step(move) - step(-move)) / (2.0 * kDifference);
@@ -73,45 +90,40 @@ Eigen::MatrixXd NetworkStep(const SelfNetwork& network, const Body& body) {
   return jacobian;
 }
 
-// Eigenvalues of one free step about rest, as growth rates. The state is [theta, phi, qd], for the
-// backward difference of the cart's velocity that velocity one step earlier, and a network's
-// memory.
+// Eigenvalues of one free step about rest, as growth rates. Where the cart stands does not matter:
+// x and y are no part of the state.
 double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
   const Scene scene = DemonstrationScene(80.0, 0.0);
-  const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
+  const Body& body = scene.people[0].body;
+  const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   SelfForce::Jacobian jacobian;
   self.TotalJacobian(parameters, {}, Vector4<double>::Zero(), &jacobian);
   Eigen::Matrix<double, 4, 8> force = jacobian.by_state;
-  const double mgl = scene.people[0].body.point_mass() * kGravity * scene.people[0].body.rod_length;
-  force(2, 2) += mgl;  // minus the derivative of gravity at rest
+  const double mgl = body.point_mass() * kGravity * body.rod_length;
+  force(2, 2) += mgl;  // minus the derivative of gravity at rest; none by the rod, which is upright
   force(3, 3) += mgl;
-  const Eigen::Matrix4d inverse =
-      InverseMassMatrix<double>(scene.people[0].body, Vector4<double>::Zero());
-  const Eigen::Matrix<double, 4, 8> acceleration = inverse * force;
-  // Free modes do not depend on where the cart stands: drop x and y.
-  Eigen::MatrixXd network(4, 6);
-  network.setZero();
+  const Eigen::Matrix4d inverse = InverseMassMatrix<double>(body, Vector4<double>::Zero());
+  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
   if (options.self_network != nullptr) {
-    network = NetworkStep(*options.self_network, scene.people[0].body);
+    learned = LearnedStep(*options.self_network, self, parameters);
   }
-  const Eigen::Index memory = network.rows() - 4;
-  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(8 + memory, 8 + memory);
+  const Eigen::Index size = learned.cols(), memory = size - kMemoryAt;
+  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);
   auto velocity = step.middleRows<4>(2);
   velocity.middleCols<4>(2).setIdentity();
-  velocity.leftCols<6>() += scene.dt * acceleration.rightCols<6>();
-  velocity.leftCols<6>() += scene.dt * inverse * network.topLeftCorner<4, 6>();
-  velocity.rightCols(memory) = scene.dt * inverse * network.topRightCorner(4, memory);
-  velocity.middleCols<2>(6) = scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+  velocity.leftCols<6>() += scene.dt * inverse * force.rightCols<6>();
+  velocity.middleCols<2>(kPreviousAt) +=
+      scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+  velocity += scene.dt * inverse * learned.topRows<4>();
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
-  step.block<2, 2>(6, 2).setIdentity();
-  step.bottomLeftCorner(memory, 6) = network.bottomLeftCorner(memory, 6);
-  step.bottomRightCorner(memory, memory) = network.bottomRightCorner(memory, memory);
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(step);
-  double largest = 0.0;
-  for (int i = 0; i < step.rows(); ++i)
-    largest = std::max(largest, std::abs(solver.eigenvalues()[i]));
-  return std::log(largest) / scene.dt;
+  step.block<2, 2>(kPreviousAt, 2).setIdentity();
+  if (RodMoves(options)) {
+    step.row(kRodAt) = scene.dt * learned.row(4);
+    step(kRodAt, kRodAt) += 1.0;
+  }
+  step.bottomRows(memory) = learned.bottomRows(memory);
+  return std::log(step.eigenvalues().cwiseAbs().maxCoeff()) / scene.dt;
 }
 
 }  // namespace
@@ -157,7 +169,7 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;
   behaviour.self_propelling =
-      behaviour.fastest_growth > 0.0 || parameters[kMu] + parameters[kKpX] < 0.0;
+      behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
   for (const Demonstration& d : all) {
     behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;

@@ -41,6 +41,8 @@ struct Behaviour {
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
   double fastest_growth = 0.0;
+  // A rod that nothing pulls back neither grows nor decays, but for rounding.
+  bool unstable() const { return fastest_growth > 1e-6; }
   bool settles = false;  // every demonstration settled
   // Each line moved on farther along the push than the one pushed more weakly.
   bool harder_moves_farther = true;

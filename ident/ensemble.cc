@@ -49,7 +49,8 @@ std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& 
   for (int k = 1; k < options.ensemble; ++k) {
     FitOptions seeded = options;
     seeded.seed = options.seed + k;
-    seeded.model.self_network = InitialNetwork(options.model.self_network->shape, seeded.seed);
+    const SelfNetwork& network = *options.model.self_network;
+    seeded.model.self_network = InitialNetwork(network.shape, seeded.seed, network.rod);
     const FitProblem problem(recordings, seeded);
     const Solution solution = Solve(problem);
     if (solution.best < 0) continue;

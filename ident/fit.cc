@@ -203,7 +203,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.message = best.message;
   result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
-  if (const auto& network = result.options.model.self_network) {
+  if (const auto& network = result.options.model.self_network; network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);

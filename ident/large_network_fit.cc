@@ -10,6 +10,8 @@
 #include <memory>
 #include <utility>
 
+#include "ident/self_network_io.h"
+
 namespace pushid {
 namespace {
 
@@ -19,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 class Variables {
  public:
   explicit Variables(const LargeNetworkFit& fit)
-      : fit_(fit), num_weights_(fit.model.self_network->shape.num_weights()), shared_(fit.shared) {}
+      : fit_(fit), num_weights_(fit.model.self_network->num_weights()), shared_(fit.shared) {}
 
   int size() const { return num_weights_ + num_shared(); }
   int num_weights() const { return num_weights_; }
@@ -164,11 +166,11 @@ class Judge : public ceres::IterationCallback {
 };
 
 MaybeError CheckFit(const LargeNetworkFit& fit) {
-  if (fit.model.self_network == nullptr) return Error{"there is no self-force network to train"};
+  if (fit.model.self_network == nullptr) return Error{"there is no network to train"};
   const SelfNetwork& network = *fit.model.self_network;
-  if (static_cast<int>(network.weights.size()) != network.shape.num_weights()) {
-    return Error{"the network " + NetworkName(network.shape) + " has " +
-                 std::to_string(network.shape.num_weights()) + " weights, but " +
+  if (static_cast<int>(network.weights.size()) != network.num_weights()) {
+    return Error{"the network " + LearnedName(network) + " has " +
+                 std::to_string(network.num_weights()) + " weights, but " +
                  std::to_string(network.weights.size()) + " are given to start from"};
   }
   if (fit.training.empty()) return Error{"there are no recordings to train the network on"};
@@ -236,8 +238,9 @@ std::vector<SharedPrior> SharedPriors(const ParameterTable& table, const Paramet
   return priors;
 }
 
-std::shared_ptr<const SelfNetwork> LargeNetworkSolution::Network(const NetworkShape& shape) const {
-  return std::make_shared<const SelfNetwork>(SelfNetwork{shape, weights});
+std::shared_ptr<const SelfNetwork> LargeNetworkSolution::Network(SelfNetwork like) const {
+  like.weights = weights;
+  return std::make_shared<const SelfNetwork>(std::move(like));
 }
 
 Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,

@@ -1,4 +1,4 @@
-// ident: training a self-force network too large for Gauss-Newton, by its adjoint gradient
+// ident: training a network too large for Gauss-Newton, by its adjoint gradient
 // (residuals/adjoint_gradient.h) and L-BFGS.
 //
 //   cost = cost of the training recordings + 1/2 |weights / sigma|^2
@@ -88,8 +88,8 @@ struct LargeNetworkSolution {
   std::vector<ShortenedRecording> shortened;
   std::vector<LargeNetworkIteration> trace;  // from iteration 0 on
 
-  // The network at the best point.
-  std::shared_ptr<const SelfNetwork> Network(const NetworkShape& shape) const;
+  // The network at the best point; like: of its shape.
+  std::shared_ptr<const SelfNetwork> Network(SelfNetwork like) const;
 };
 
 // Called after every iteration; false ends the training.

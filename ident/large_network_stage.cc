@@ -30,6 +30,7 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
                                      const FitOptions& options, const SolveProgress& progress) {
   FitOptions physics = options;
   physics.model.self_network = nullptr;
+  physics.table[kRodLift].free = false;  // fitted with the network held, in the end
   const FitProblem problem(recordings, physics);
   const Solution solution = Solve(problem, progress);
   if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
@@ -58,7 +59,7 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   if (!trained.ok()) return trained.error();
 
   FitOptions held = options;
-  held.model.self_network = trained.value().Network(options.model.self_network->shape);
+  held.model.self_network = trained.value().Network(*options.model.self_network);
   held.hold_network = true;
   held.start = FitStart::kNominal;
   held.horizons = {0};

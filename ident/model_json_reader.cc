@@ -109,10 +109,15 @@ FitOptions OptionsFrom(const Json& json) {
   return o;
 }
 
+// A model written before there was such a parameter has its nominal value: nothing it did used it.
+double ValueFrom(const Json& values, const ParameterSpec& spec) {
+  return values.contains(spec.name) ? values.at(spec.name).get<double>() : spec.nominal;
+}
+
 EnsembleMember MemberFrom(const Json& json, const ParameterTable& table) {
   EnsembleMember member;
   for (const ParameterSpec& spec : table.specs) {
-    member.parameters[spec.id] = json.at("values").at(spec.name);
+    member.parameters[spec.id] = ValueFrom(json.at("values"), spec);
   }
   member.network = SelfNetworkFromJson(json.at("self_network"));
   return member;
@@ -272,7 +277,7 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     for (const ParameterSpec& spec : result.options.table.specs) {
       const Json& values = at("values");
       part = "values/" + spec.name;
-      result.parameters[spec.id] = values.at(spec.name);
+      result.parameters[spec.id] = ValueFrom(values, spec);
     }
     if (json.contains("ensemble")) {
       for (const Json& one : at("ensemble")) {

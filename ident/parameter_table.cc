@@ -1,6 +1,7 @@
 // ident: the parameters' facts and the two presets.
 #include "ident/parameter_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/self_network.h"
@@ -167,6 +168,11 @@ Result<Preset> MakePreset(const std::string& name) {
   if (name == "ldp") return LdpPreset();
   if (name == "group") return GroupPreset();
   return Error{"--preset is '" + name + "'; it must be tail, ldp or group"};
+}
+
+bool AnyPooled(const ParameterTable& table) {
+  return std::any_of(table.specs.begin(), table.specs.end(),
+                     [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
 }
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {

@@ -70,6 +70,9 @@ struct Preset {
 // Errors: no such preset.
 Result<Preset> MakePreset(const std::string& name);
 
+// Whether some parameter may differ by unit.
+bool AnyPooled(const ParameterTable& table);
+
 // Frees the terms of a self force, where the model's options let them act.
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
 

@@ -145,7 +145,7 @@ std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
   return SettlingText(b) + NoFartherText(b) +
          "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
-         (b.fastest_growth < 0 ? "stable" : "UNSTABLE") + ")\n";
+         (b.unstable() ? "UNSTABLE" : "stable") + ")\n";
 }
 
 TextTable LinesTable(const FitResult& result) {

@@ -51,29 +51,26 @@ std::string Significant(double value, int digits) {
   return text;
 }
 
-namespace {
-
 std::string NetworkText(const FitResult& result) {
   const auto& network = result.options.model.self_network;
-  if (network == nullptr || !result.takeover) return "";
-  const Takeover& t = *result.takeover;
-  const auto signed_number = [](double value) {
-    return (value < 0.0 ? "" : "+") + Significant(value, 3);
-  };
-  std::string text = "network " + NetworkName(network->shape) + " (" +
-                     Count(network->shape.num_weights(), "weight") + ", prior " +
+  if (network == nullptr) return "";
+  std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
+                     Count(network->num_weights(), "weight") + ", prior " +
                      Significant(result.options.network_prior) + ")";
   if (!result.others.empty()) {
     text += ", the first of " + std::to_string(result.others.size() + 1) +
             " seeds; predictions are their median";
   }
+  if (!result.takeover) return text;
+  const Takeover& t = *result.takeover;
+  const auto signed_number = [](double value) {
+    return (value < 0.0 ? "" : "+") + Significant(value, 3);
+  };
   return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
          signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
          " N m s/rad beside those above;\n  its force on the cart is " +
-         Significant(t.rms_force, 2) + " m/s^2 times the mass (root mean square)\n";
+         Significant(t.rms_force, 2) + " m/s^2 times the mass (root mean square)";
 }
-
-}  // namespace
 
 std::string ReportText(const FitResult& result) {
   const FitOptions& o = result.options;
@@ -93,7 +90,7 @@ std::string ReportText(const FitResult& result) {
   if (agreement.rows().size() > 1) {
     text += agreement.ToString() + AgreementNote(result) + "\n";
   }
-  text += NetworkText(result);
+  if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";

@@ -12,6 +12,10 @@ namespace pushid {
 // does after a push, warnings.
 std::string ReportText(const FitResult& result);
 
+// What is learned on top of the physics, and what it acts like; no line break at the end, and empty
+// where nothing is.
+std::string NetworkText(const FitResult& result);
+
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
 // One column per summary: all recordings, one setting, one rival.
 struct PropagationColumn {

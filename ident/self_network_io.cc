@@ -1,7 +1,9 @@
-// ident: self-force networks by name, by seed and by file.
+// ident: learned self forces and rod laws by name, by seed and by file.
 #include "ident/self_network_io.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
@@ -14,9 +16,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kDefaultHidden = 4;
 constexpr int kLargestSize = 4096;
+constexpr size_t kMostRodLayers = 8;
 constexpr double kOpenForgetGate = 1.0;
+constexpr uint64_t kRodSeed = 7919;  // so that a rod's law does not repeat the self force's weights
 
 const char* const kKinds[] = {"none", "mlp", "gru", "lstm"};
+const char* const kRodKinds[] = {"constant", "linear", "mlp"};
 
 // The kind of that name; kNone for any other.
 NetworkKind KindOf(const std::string& name) {
@@ -36,10 +41,15 @@ int Size(const std::string& text) {
   return size <= kLargestSize ? size : 0;
 }
 
-Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
+std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::stringstream list(text);
-  for (std::string part; std::getline(list, part, ':');) parts.push_back(part);
+  for (std::string part; std::getline(list, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
+  const std::vector<std::string> parts = Split(text, ':');
   NetworkShape shape;
   shape.kind = parts.empty() ? NetworkKind::kNone : KindOf(parts[0]);
   shape.hidden = kDefaultHidden;
@@ -58,8 +68,7 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
 
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
   SelfForceChoice choice;
-  std::stringstream list(text);
-  for (std::string part; std::getline(list, part, ',');) {
+  for (const std::string& part : Split(text, ',')) {
     if (part == "none") continue;
     if (part == "linear") {
       choice.kind = SelfForceKind::kLinear;
@@ -74,8 +83,33 @@ Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::strin
 }
 
 std::string SelfForceText(SelfForceKind kind, const SelfNetwork* network) {
-  if (network == nullptr) return kind == SelfForceKind::kLinear ? "linear" : "none";
-  return (kind == SelfForceKind::kLinear ? "linear," : "") + NetworkName(network->shape);
+  const bool linear = kind == SelfForceKind::kLinear;
+  if (network == nullptr || !network->shape.any()) return linear ? "linear" : "none";
+  return (linear ? "linear," : "") + NetworkName(network->shape);
+}
+
+Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
+  if (text == "constant") return RodShape{};
+  if (text == "linear") return RodShape{RodKind::kLinear, {}};
+  const size_t colon = text.find(':');
+  const std::string sizes =
+      colon == std::string::npos ? std::to_string(kDefaultHidden) : text.substr(colon + 1);
+  RodShape shape{RodKind::kMlp, {}};
+  for (const std::string& size : Split(sizes, '-')) shape.hidden.push_back(Size(size));
+  const bool sound = !shape.hidden.empty() && shape.hidden.size() <= kMostRodLayers &&
+                     sizes.back() != '-' &&
+                     *std::min_element(shape.hidden.begin(), shape.hidden.end()) > 0;
+  if (text.substr(0, colon) == "mlp" && sound) return shape;
+  return Error{flag + " is '" + text +
+               "'; it must be constant, linear, mlp:4 or mlp:256-128-256 (hidden sizes of 1 to " +
+               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostRodLayers) +
+               " layers)"};
+}
+
+std::string LearnedName(const SelfNetwork& network) {
+  const std::string rod = network.rod.moves() ? "rod " + RodName(network.rod) : "";
+  if (!network.shape.any()) return rod;
+  return NetworkName(network.shape) + (rod.empty() ? "" : " and " + rod);
 }
 
 std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
@@ -95,17 +129,56 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   return weights;
 }
 
-std::shared_ptr<const SelfNetwork> InitialNetwork(const NetworkShape& shape, uint64_t seed) {
-  return std::make_shared<const SelfNetwork>(SelfNetwork{shape, InitialWeights(shape, seed)});
+std::shared_ptr<const SelfNetwork> InitialNetwork(const NetworkShape& shape, uint64_t seed,
+                                                  const RodShape& rod) {
+  SelfNetwork network{shape, InitialWeights(shape, seed), rod};
+  Random random(seed + kRodSeed);
+  int width = RodShape::kInputs + 1;
+  for (int hidden : rod.hidden) {
+    for (int i = 0; i < hidden * width; ++i) {
+      network.weights.push_back(random.Normal() / std::sqrt(width));
+    }
+    width = hidden + 1;
+  }
+  network.weights.resize(network.num_weights(), 0.0);
+  return std::make_shared<const SelfNetwork>(std::move(network));
 }
+
+namespace {
+
+RodShape RodFromJson(const Json& json) {
+  const std::string kind = json.at("kind");
+  const auto* known = std::find(std::begin(kRodKinds), std::end(kRodKinds), kind);
+  if (known == std::end(kRodKinds)) {
+    throw std::runtime_error("rod: '" + kind + "' is no kind (constant, linear, mlp)");
+  }
+  RodShape rod;
+  rod.kind = static_cast<RodKind>(known - kRodKinds);
+  rod.hidden = json.at("hidden").get<std::vector<int>>();
+  const bool layers_fit = rod.kind == RodKind::kMlp
+                              ? !rod.hidden.empty() && rod.hidden.size() <= kMostRodLayers
+                              : rod.hidden.empty();
+  if (!layers_fit) throw std::runtime_error("rod: no " + kind + " has so many layers");
+  for (int size : rod.hidden) {
+    if (size < 1 || size > kLargestSize) {
+      throw std::runtime_error("rod: sizes must lie between 1 and " + std::to_string(kLargestSize));
+    }
+  }
+  return rod;
+}
+
+}  // namespace
 
 Json ToJson(const SelfNetwork& network) {
   const NetworkShape& s = network.shape;
-  return {{"kind", kKinds[static_cast<int>(s.kind)]},
-          {"hidden", s.hidden},
-          {"embedding", s.embedding},
-          {"rod_input", s.rod_input},
-          {"weights", network.weights}};
+  return {
+      {"kind", kKinds[static_cast<int>(s.kind)]},
+      {"hidden", s.hidden},
+      {"embedding", s.embedding},
+      {"rod_input", s.rod_input},
+      {"rod",
+       {{"kind", kRodKinds[static_cast<int>(network.rod.kind)]}, {"hidden", network.rod.hidden}}},
+      {"weights", network.weights}};
 }
 
 std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
@@ -113,18 +186,23 @@ std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
   NetworkShape& s = network.shape;
   const std::string kind = json.at("kind");
   s.kind = KindOf(kind);
-  if (!s.any()) throw std::runtime_error("network: '" + kind + "' is no kind (mlp, gru, lstm)");
+  if (!s.any() && kind != kKinds[0]) {
+    throw std::runtime_error("network: '" + kind + "' is no kind (none, mlp, gru, lstm)");
+  }
+  if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
+  if (!s.any() && !network.rod.moves()) throw std::runtime_error("network: nothing is learned");
   s.hidden = json.at("hidden");
   s.embedding = json.at("embedding");
   s.rod_input = json.at("rod_input");
-  if (s.hidden < 1 || s.hidden > kLargestSize || s.embedding < 0 || s.embedding > kLargestSize) {
+  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < 0 ||
+      s.embedding > kLargestSize) {
     throw std::runtime_error("network: sizes must lie between 1 and " +
                              std::to_string(kLargestSize));
   }
   network.weights = json.at("weights").get<std::vector<double>>();
-  if (static_cast<int>(network.weights.size()) != s.num_weights()) {
-    throw std::runtime_error("network: " + NetworkName(s) + " has " +
-                             std::to_string(s.num_weights()) + " weights, not " +
+  if (static_cast<int>(network.weights.size()) != network.num_weights()) {
+    throw std::runtime_error("network: " + LearnedName(network) + " has " +
+                             std::to_string(network.num_weights()) + " weights, not " +
                              std::to_string(network.weights.size()));
   }
   for (double weight : network.weights) {

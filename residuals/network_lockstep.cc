@@ -13,31 +13,20 @@ int StackedRows(const NetworkShape& shape) {
   return shape.recurrent() ? 4 * shape.hidden : shape.gate_rows();
 }
 
-std::vector<int> FirstColumns(const std::vector<int>& steps) {
-  std::vector<int> first = {0};
-  const int longest = steps.empty() ? 0 : steps.front();
-  int active = static_cast<int>(steps.size());
-  for (int step = 0; step < longest; ++step) {
-    while (steps[active - 1] <= step) --active;
-    first.push_back(first.back() + active);
-  }
-  return first;
-}
-
 }  // namespace
 
 NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels& kernels,
-                                 const std::vector<double>& masses, const std::vector<int>& steps)
+                                 const LockstepColumns& columns, const std::vector<double>& masses)
     : shape_(shape),
+      columns_(columns),
       kernels_(kernels),
       rows_(StackedRows(shape)),
       scale_(masses.size()),
       context_(2, masses.size()),
-      first_column_(FirstColumns(steps)),
       stacked_(kernels, PackedMatrix::kLeft),
       transposed_(kernels, PackedMatrix::kLeft),
       right_(kernels, PackedMatrix::kRight) {
-  const int people = static_cast<int>(masses.size()), total = first_column_.back();
+  const int people = static_cast<int>(masses.size()), total = columns_.total();
   for (int n = 0; n < people; ++n) {
     scale_[n] = kNetworkAcceleration * masses[n];
     context_.col(n) = NetworkState<double>(shape, Body{masses[n]}).context;
@@ -88,7 +77,7 @@ void NetworkLockstep::Start(const double* weights) {
 }
 
 void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) {
-  const int n = active(step), h = shape_.hidden, nf = shape_.num_features();
+  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto z = At(z_, step);
   At(inputs_, step) = inputs;
   if (shape_.embedding > 0) {
@@ -116,7 +105,7 @@ void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) 
 }
 
 void NetworkLockstep::Activate(int step) {
-  const int n = active(step), h = shape_.hidden, nf = shape_.num_features();
+  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto hidden = At(hidden_, step).array();
   for (int column = 0; column < n; ++column) {
     auto sum = At(activations_, step).col(column);
@@ -162,7 +151,7 @@ void NetworkLockstep::Forget(int step, int column) {
 }
 
 void NetworkLockstep::Deactivate(int step, const Columns& adjoint) {
-  const int n = active(step), h = shape_.hidden, nf = shape_.num_features();
+  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   const auto tanh_slope = [](const auto& a) { return 1.0 - a * a; };
   const auto logistic_slope = [](const auto& a) { return a * (1.0 - a); };
   for (int column = 0; column < n; ++column) {
@@ -213,7 +202,7 @@ void NetworkLockstep::Deactivate(int step, const Columns& adjoint) {
 }
 
 void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs) {
-  const int n = active(step), h = shape_.hidden, nf = shape_.num_features();
+  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto outputs = At(outputs_, step);
   outputs = forces * scale_.head(n).asDiagonal();
   Columns hidden = Weights().output.transpose() * outputs;
@@ -238,7 +227,7 @@ void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs)
 
 void NetworkLockstep::AddWeightGradient(double* gradient) {
   const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
-  const int total = first_column_.back(), gate_rows = shape_.gate_rows();
+  const int total = columns_.total(), gate_rows = shape_.gate_rows();
   PackedMatrix left(kernels_, PackedMatrix::kLeft);
   left.Pack(z_.data(), width, total, 1, width);
   right_.Pack(activations_.data(), rows_, total, 1, rows_);

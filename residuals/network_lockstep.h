@@ -5,8 +5,7 @@
 //   S = W Z,  activations a(S), memories and outputs by element,
 // and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
 //   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
-// Z, activations and cells of every step are kept. Those who go on longest are the first columns,
-// so that a step has the first `active` of them.
+// Z, activations and cells of every step are kept.
 // A GRU multiplies U_n h by r: there W has the rows [W_n 0] and [0 U_n] in place of [W_n U_n], a
 // third more work, for one product instead of three.
 #pragma once
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "models/self_network.h"
+#include "residuals/lockstep_columns.h"
 #include "residuals/packed_matrix.h"
 
 namespace pushid {
@@ -23,12 +23,9 @@ class NetworkLockstep {
  public:
   using Columns = Eigen::MatrixXd;
 
-  // masses, steps: by column; steps never increase.
+  // masses: by column.
   NetworkLockstep(const NetworkShape& shape, const VectorKernels& kernels,
-                  const std::vector<double>& masses, const std::vector<int>& steps);
-
-  int num_steps() const { return static_cast<int>(first_column_.size()) - 1; }
-  int active(int step) const { return first_column_[step + 1] - first_column_[step]; }
+                  const LockstepColumns& columns, const std::vector<double>& masses);
 
   // Everybody's memory back to zero. weights: there until the last step back.
   void Start(const double* weights);
@@ -46,7 +43,7 @@ class NetworkLockstep {
   void AddWeightGradient(double* gradient);
 
  private:
-  auto At(Columns& of, int step) { return of.middleCols(first_column_[step], active(step)); }
+  auto At(Columns& of, int step) const { return columns_.At(of, step); }
   NetworkWeights<double> Weights() const { return {shape_, weights_}; }
   void PackWeights();
   void Activate(int step);
@@ -54,12 +51,12 @@ class NetworkLockstep {
   void Deactivate(int step, const Columns& hidden);
 
   NetworkShape shape_;
+  LockstepColumns columns_;
   const VectorKernels& kernels_;
   const double* weights_ = nullptr;  // of the last Start
   int rows_;                         // of W
   Eigen::VectorXd scale_;            // newtons per output, by column
   Columns context_;                  // k, by column
-  std::vector<int> first_column_;    // of each step, and the total
   PackedMatrix stacked_, transposed_, right_;
 
   Columns inputs_, z_, activations_, hidden_, cells_, cell_tanh_;  // of all steps

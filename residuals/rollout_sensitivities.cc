@@ -24,9 +24,6 @@ Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<do
   return jacobian;
 }
 
-namespace {
-
-// d(M a + C + G)/dl at fixed acceleration a.
 Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
                                      const Vector4<double>& a) {
   using Jet = ceres::Jet<double, 1>;
@@ -35,8 +32,6 @@ Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<doubl
   const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
   return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
 }
-
-}  // namespace
 
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,

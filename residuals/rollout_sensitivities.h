@@ -71,6 +71,10 @@ class RolloutSensitivities {
 Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
                                         const Vector4<double>& a);
 
+// d(M a + C + G)/dl at fixed acceleration a.
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a);
+
 // Derivatives of NetForceAt: the analytic twin.
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,

@@ -50,6 +50,9 @@ ReportSection SummarySection(const FitResult& result) {
                Significant(MeanExplained(result), 3) + " %"});
   }
   section.tables.push_back({"", facts});
+  if (const std::string network = NetworkText(result); !network.empty()) {
+    section.paragraphs.push_back("Learned on top: " + network + ".");
+  }
   for (const std::string& warning : result.warnings) {
     section.paragraphs.push_back("Warning: " + warning);
   }

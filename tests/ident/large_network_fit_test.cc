@@ -110,7 +110,7 @@ TEST(LargeNetworkFit, EarlyStoppingKeepsTheBestPoint) {
   EXPECT_LT(s.best_held_out_cost, s.initial_held_out_cost);
   EXPECT_EQ(CostOf(fit, fit.held_out, s.weights), s.best_held_out_cost);
   EXPECT_EQ(CostOf(fit, fit.training, s.weights), s.final_cost);
-  EXPECT_EQ(s.Network(kShape)->weights, s.weights);
+  EXPECT_EQ(s.Network({kShape, {}})->weights, s.weights);
 }
 
 TEST(LargeNetworkFit, TheSameStartGivesTheSameBits) {

@@ -9,12 +9,37 @@
 namespace pushid {
 namespace {
 
-std::vector<NetworkShape> EveryNetwork() {
-  return {{NetworkKind::kMlp, 4},          {NetworkKind::kMlp, 13},
-          {NetworkKind::kMlp, 3, 5},       {NetworkKind::kGru, 3},
-          {NetworkKind::kGru, 5, 4},       {NetworkKind::kLstm, 3},
-          {NetworkKind::kLstm, 6, 4},      {NetworkKind::kLstm, 17, 9},
-          {NetworkKind::kMlp, 3, 0, true}, {NetworkKind::kGru, 2, 0, true}};
+struct Learned {
+  NetworkShape self;
+  RodShape rod = {};
+
+  // Differences of tanh stand in both.
+  bool mlp() const { return self.kind == NetworkKind::kMlp || rod.kind == RodKind::kMlp; }
+  std::string Name() const { return NetworkName(self) + ", rod " + RodName(rod); }
+};
+
+std::vector<Learned> EveryLearned() {
+  const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {5}},
+      deep{RodKind::kMlp, {4, 9, 3}};
+  std::vector<Learned> all = {{{}, linear},
+                              {{}, mlp},
+                              {{}, deep},
+                              {{NetworkKind::kGru, 2}, mlp},
+                              {{NetworkKind::kMlp, 3, 0, true}, linear},
+                              {{NetworkKind::kLstm, 3, 2, true}, deep}};
+  for (const NetworkShape& shape : std::vector<NetworkShape>{{NetworkKind::kMlp, 4},
+                                                             {NetworkKind::kMlp, 13},
+                                                             {NetworkKind::kMlp, 3, 5},
+                                                             {NetworkKind::kGru, 3},
+                                                             {NetworkKind::kGru, 5, 4},
+                                                             {NetworkKind::kLstm, 3},
+                                                             {NetworkKind::kLstm, 6, 4},
+                                                             {NetworkKind::kLstm, 17, 9},
+                                                             {NetworkKind::kMlp, 3, 0, true},
+                                                             {NetworkKind::kGru, 2, 0, true}}) {
+    all.push_back({shape});
+  }
+  return all;
 }
 
 struct Regime {
@@ -102,26 +127,26 @@ class AdjointTwins : public testing::TestWithParam<Regime> {};
 TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
   const Regime& regime = GetParam();
   Random random(61);
-  for (const NetworkShape& shape : EveryNetwork()) {
+  for (const Learned& learned : EveryLearned()) {
     for (PushUse use : {PushUse::kAdded, PushUse::kAsRecorded}) {
       for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
-        SCOPED_TRACE(NetworkName(shape));
-        ModelOptions options = WithNetwork(shape, regime.weight, &random);
+        SCOPED_TRACE(learned.Name());
+        ModelOptions options = WithNetwork(learned.self, regime.weight, &random, learned.rod);
         options.push = use;
         options.cart_derivative = derivative;
         ParameterMap map = EveryParameterMap({});
-        map.num_weights = shape.num_weights();
+        map.num_weights = options.self_network->num_weights();
         const std::vector<PendulumRecording> made = SomeRecordings(options, regime, &random);
         const std::vector<AdjointRecording> recordings = {
             {&made[0], 1.0}, {&made[1], 0.7}, {&made[2], 1.3, 25}, {&made[3], 1.0}};
         const std::vector<double> shared =
             SharedBlock(map, RandomRecoveringParameters(&random, 0.1));
         std::vector<double> weights;
-        for (int i = 0; i < shape.num_weights(); ++i) {
+        for (int i = 0; i < map.num_weights; ++i) {
           weights.push_back(random.Uniform(-regime.weight, regime.weight));
         }
         const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
-        const double tolerance = shape.kind == NetworkKind::kMlp ? regime.mlp : 1e-10;
+        const double tolerance = learned.mlp() ? regime.mlp : 1e-10;
         for (const VectorKernels* kernels : SupportedVectorKernels()) {
           SCOPED_TRACE(kernels->name);
           auto adjoint = AdjointGradient::Create(recordings, options, map, {}, *kernels);
@@ -151,11 +176,11 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, AdjointTwins,
 // Somebody falls: the frames before count, for everybody in the recording, and others go on.
 TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
   Random random(62);
-  for (const NetworkShape& shape : EveryNetwork()) {
-    SCOPED_TRACE(NetworkName(shape));
-    const ModelOptions options = WithNetwork(shape, 0.8, &random);
+  for (const Learned& learned : EveryLearned()) {
+    SCOPED_TRACE(learned.Name());
+    const ModelOptions options = WithNetwork(learned.self, 0.8, &random, learned.rod);
     ParameterMap map = EveryParameterMap({});
-    map.num_weights = shape.num_weights();
+    map.num_weights = options.self_network->num_weights();
     std::vector<PendulumRecording> made =
         SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
     made[1].scene.pushes.push_back(
@@ -242,16 +267,10 @@ TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
     return created.ok() ? "" : created.error().ToString();
   };
   EXPECT_EQ(complaint(options, map), "");
-  EXPECT_NE(complaint({}, map).find("needs a self-force network"), std::string::npos);
+  EXPECT_NE(complaint({}, map).find("needs a network"), std::string::npos);
   ModelOptions touching = options;
   touching.interaction.spring = true;
   EXPECT_NE(complaint(touching, map).find("forces between people"), std::string::npos);
-  auto moving = std::make_shared<SelfNetwork>(*options.self_network);
-  moving->rod.kind = RodKind::kLinear;
-  moving->weights.resize(moving->num_weights());
-  ModelOptions with_rod = options;
-  with_rod.self_network = moving;
-  EXPECT_NE(complaint(with_rod, map).find("rods that move"), std::string::npos);
   EXPECT_NE(complaint(options, EveryParameterMap({kMu})).find("deviations"), std::string::npos);
   made[0].initial_velocity = InitialVelocity::kFree;
   EXPECT_NE(complaint(options, map).find("'freely' has a free initial velocity"),

@@ -163,10 +163,10 @@ inline void AddNoise(double magnitude, Random* random, PendulumRecording* record
 }
 
 // A model with a network of random weights, each up to `size`.
-inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* random) {
-  auto network = std::make_shared<SelfNetwork>();
-  network->shape = shape;
-  for (int i = 0; i < shape.num_weights(); ++i) {
+inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* random,
+                                const RodShape& rod = {}) {
+  auto network = std::make_shared<SelfNetwork>(SelfNetwork{shape, {}, rod});
+  for (int i = 0; i < network->num_weights(); ++i) {
     network->weights.push_back(random->Uniform(-size, size));
   }
   ModelOptions options;

@@ -35,15 +35,7 @@ std::string NameOf(const Learned& learned) {
 }
 
 ModelOptions With(const Learned& learned, double size, Random* random) {
-  auto network = std::make_shared<SelfNetwork>();
-  network->shape = learned.self;
-  network->rod = learned.rod;
-  for (int i = 0; i < network->num_weights(); ++i) {
-    network->weights.push_back(random->Uniform(-size, size));
-  }
-  ModelOptions options;
-  options.self_network = network;
-  return options;
+  return WithNetwork(learned.self, size, random, learned.rod);
 }
 
 // Two people, one of whom is not under all forces for a while: the rod moves on.
