@@ -220,7 +220,7 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
       std::make_shared<const SelfNetwork>(SelfNetwork{kShape, std::vector<double>(3)});
   EXPECT_NE(complaint().find("but 3 are given"), std::string::npos);
   fit.model.self_network = nullptr;
-  EXPECT_NE(complaint().find("no self-force network"), std::string::npos);
+  EXPECT_NE(complaint().find("no network"), std::string::npos);
 }
 
 }  // namespace

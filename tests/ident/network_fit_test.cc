@@ -4,61 +4,17 @@
 
 #include "datasets/json_file.h"
 #include "ident/early_stopping.h"
-#include "ident/evaluation.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
-#include "ident/self_network_io.h"
-#include "tests/ident/fit_samples.h"
+#include "tests/ident/network_samples.h"
 
 namespace pushid {
 namespace {
 
-// People who do something that no gain can: a push is answered by a force of a network's own.
-std::shared_ptr<const SelfNetwork> PlantedNetwork(const NetworkShape& shape) {
-  SelfNetwork network{shape, InitialWeights(shape, 99)};
-  Random random(98);
-  for (int i = shape.output_at(); i < shape.num_weights(); ++i) {
-    network.weights[i] = random.Uniform(-0.4, 0.4);
-  }
-  return std::make_shared<const SelfNetwork>(network);
-}
-
-struct Study {
-  std::vector<PendulumRecording> training, held_out;
-  FitOptions options;
-};
-
-Study PlantedStudy(const NetworkShape& planted, double noise) {
-  SyntheticOptions synthetic;
-  synthetic.frames = 60;
-  synthetic.joint_noise_m = noise;
-  synthetic.model.self_network = PlantedNetwork(planted);
-  Study study;
-  const std::vector<PendulumRecording> all = MakePendulums(synthetic);
-  for (size_t i = 0; i < all.size(); ++i) {
-    (i % 4 == 0 ? study.held_out : study.training).push_back(all[i]);
-  }
-  study.options = UnbiasedFit(synthetic);
-  study.options.model.self_network = nullptr;
-  study.options.network_prior = 30.0;
-  return study;
-}
-
-FitResult FitWith(const Study& study, const NetworkShape& shape, uint64_t seed = 1) {
-  FitOptions options = study.options;
-  options.seed = seed;
-  if (shape.any()) options.model.self_network = InitialNetwork(shape, seed);
-  return Fit(study.training, options);
-}
-
-double HeldOutAde(const Study& study, const FitResult& result) {
-  return Evaluate(ModelOf(result), study.held_out).model.mean.hip_ade;
-}
-
 class PlantedNetworks : public testing::TestWithParam<NetworkShape> {};
 
 TEST_P(PlantedNetworks, PredictUnseenPushesAsTheTruthDoes) {
-  const Study study = PlantedStudy(GetParam(), 0.0);
+  const Study study = PlantedStudy(PlantedNetwork(GetParam()), 0.0);
   const double without = HeldOutAde(study, FitWith(study, {}));
   const double with = HeldOutAde(study, FitWith(study, GetParam()));
   EXPECT_GT(without, 0.002);
@@ -88,7 +44,7 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
 }
 
 TEST(NetworkFit, ThePenaltyGivesTheGainsTheirMeaningBack) {
-  Study study = PlantedStudy({NetworkKind::kMlp, 3}, 0.0);
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 3}), 0.0);
   const FitResult free = FitWith(study, {NetworkKind::kMlp, 3});
   study.options.takeover_weight = 30.0;
   const FitResult held = FitWith(study, {NetworkKind::kMlp, 3});
@@ -101,7 +57,7 @@ TEST(NetworkFit, ThePenaltyGivesTheGainsTheirMeaningBack) {
 }
 
 TEST(NetworkFit, ThreadsDoNotMatter) {
-  Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   study.options.network_prior = 1.0;
   const FitResult one = FitWith(study, {NetworkKind::kMlp, 2});
   const FitResult again = FitWith(study, {NetworkKind::kMlp, 2});
@@ -116,7 +72,7 @@ TEST(NetworkFit, ThreadsDoNotMatter) {
 }
 
 TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
-  const Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   FitOptions options = study.options;
   options.model.self_network = InitialNetwork({NetworkKind::kMlp, 2}, 1);
   const FitProblem problem(study.training, options);
@@ -140,7 +96,7 @@ TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
 }
 
 TEST(EarlyStopping, HoldsOutAStratifiedShare) {
-  const Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   const FitProblem problem(study.training, study.options);
   const auto split = SplitForEarlyStopping(problem, 0.25, 1);
   ASSERT_TRUE(split.ok());
@@ -165,7 +121,7 @@ TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
 }
 
 TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
-  Study study = PlantedStudy({NetworkKind::kGru, 2}, 0.002);
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kGru, 2}), 0.002);
   study.options.ensemble = 3;
   study.options.network_prior = 1.0;
   FitResult result = FitWith(study, {NetworkKind::kGru, 2});
@@ -189,7 +145,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
 
 // The prediction of an ensemble lies between those of its members.
 TEST(Ensemble, PredictsTheMedian) {
-  Study study = PlantedStudy({NetworkKind::kMlp, 2}, 0.002);
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   study.options.ensemble = 3;
   study.options.network_prior = 3.0;
   const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
@@ -208,46 +164,6 @@ TEST(Ensemble, PredictsTheMedian) {
     std::sort(x.begin(), x.end());
     EXPECT_EQ(median.path.At(t, 0).q[0], x[1]);
   }
-}
-
-TEST(SelfNetworkIo, NamesAreReadAndWritten) {
-  for (const char* text : {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "linear,gru:4"}) {
-    const auto choice = ParseSelfForce("--self_force", text);
-    ASSERT_TRUE(choice.ok()) << text;
-    const SelfNetwork network{choice.value().network, {}};
-    EXPECT_EQ(SelfForceText(choice.value().kind, choice.value().network.any() ? &network : nullptr),
-              text);
-  }
-  EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
-  for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
-                           "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
-    const auto choice = ParseSelfForce("--self_force", text);
-    ASSERT_FALSE(choice.ok()) << text;
-    EXPECT_NE(choice.error().ToString().find("--self_force"), std::string::npos);
-  }
-}
-
-TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
-  const NetworkShape shape{NetworkKind::kLstm, 3, 2};
-  const std::vector<double> weights = InitialWeights(shape, 5);
-  ASSERT_EQ(static_cast<int>(weights.size()), shape.num_weights());
-  for (int i = shape.output_at(); i < shape.num_weights(); ++i) EXPECT_EQ(weights[i], 0.0);
-  EXPECT_EQ(weights, InitialWeights(shape, 5));
-  EXPECT_NE(weights, InitialWeights(shape, 6));
-}
-
-TEST(SelfNetworkIo, DamageIsNamed) {
-  const nlohmann::ordered_json good = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
-  EXPECT_NO_THROW(SelfNetworkFromJson(good));
-  const auto broken = [&](const char* key, const nlohmann::ordered_json& value) {
-    nlohmann::ordered_json json = good;
-    json[key] = value;
-    return json;
-  };
-  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "rnn")), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 0)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 3)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("weights", {1.0})), std::runtime_error);
 }
 
 }  // namespace
