@@ -4,6 +4,7 @@
 
 #include "ident/behaviour.h"
 #include "ident/diagnostics.h"
+#include "ident/large_network_stage.h"
 #include "ident/prediction.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
@@ -59,6 +60,20 @@ TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_NE(text.find("self force none"), std::string::npos);
   EXPECT_NE(text.find("rod mlp:2 (26 weights, prior 1), the first of 2 seeds"), std::string::npos);
   EXPECT_NE(text.find("rod_lift"), std::string::npos);
+}
+
+// A law of too many weights for a Jacobian learns by its gradient; the lift is fitted after it.
+TEST(RodFit, LargeLawsLearnByTheirGradient) {
+  Study study = PlantedStudy(PlantedRod(), 0.0, kPlantedLift);
+  study.options.network_prior = 0.0;
+  study.options.max_iterations = 100;
+  const RodShape large{RodKind::kMlp, {64, 32}};
+  ASSERT_GT(large.num_weights(), kMostGaussNewtonWeights);
+  const double constant = HeldOutAde(study, FitWith(study, {}));
+  const FitResult result = FitRod(study, large);
+  ASSERT_TRUE(result.ok()) << result.message;
+  EXPECT_LT(HeldOutAde(study, result), 0.3 * constant);
+  EXPECT_NE(result.parameters[kRodLift], 1.0);
 }
 
 // A law that begins without any output hides the lift from a look at the start alone.
