@@ -11,6 +11,7 @@
 #include "datasets/atomic_file.h"
 #include "ident/confidence.h"
 #include "ident/experiment_design.h"
+#include "ident/large_network_stage.h"
 
 DECLARE_uint64(seed);
 
@@ -67,6 +68,12 @@ MaybeError CheckConfidenceFlags() {
 MaybeError CheckConfidence(const FitOptions& options, int recordings) {
   if (FLAGS_bootstrap > 0 && recordings < 2) {
     return Error{"--bootstrap draws recordings with replacement; it needs at least two"};
+  }
+  const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
+  if (stopped_early && (FLAGS_bootstrap > 0 || !FLAGS_profile.empty())) {
+    return Error{
+        "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
+        "reaches; let --network_prior guard the training instead"};
   }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";

@@ -13,6 +13,7 @@
 #include "ident/network_json.h"
 #include "ident/option_names.h"
 #include "ident/result_json.h"
+#include "ident/self_network_io.h"
 
 DEFINE_string(
     preset, "tail",
@@ -67,8 +68,8 @@ DEFINE_double(
     "preset's)");
 DEFINE_double(
     mode_weight, -1.0,
-    "weight of the hinge that makes a person's free modes at rest decay; 0: off (default: "
-    "30 with --self_force=linear, else 0)");
+    "weight of the hinge that makes a person's free modes at rest decay (it sees no network); 0: "
+    "off (default: 30 with --self_force=linear, else 0)");
 DEFINE_double(mode_margin, 0.2, "slowest decay the hinge allows, 1/s");
 DEFINE_double(stability_weight, 0.0,
               "weight of the rollouts continued past the data, with the push and 1.4 times it");
@@ -158,6 +159,11 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   if (path.empty()) return std::nullopt;
   const Result<FitResult> source = ReadFitResult(path);
   if (!source.ok()) return source.error();
+  if (const auto& network = source.value().options.model.self_network) {
+    return Error{"has learned " + LearnedName(*network) +
+                     ", which --self_from cannot take over; fit one without",
+                 path};
+  }
   for (ParameterSpec& spec : table->specs) {
     if (spec.id >= kFirstPairParameter) continue;
     spec.nominal = source.value().parameters[spec.id];

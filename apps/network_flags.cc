@@ -71,6 +71,9 @@ MaybeError CheckNetworkFlags(const FitOptions& o) {
     return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
   }
   const bool large = NeedsGradientTraining(o);
+  if (large && !IsDefault("takeover_weight")) {
+    return Error{"--takeover_weight is for small networks; this one is trained by its gradient"};
+  }
   if (o.ensemble > 1 && large) {
     return Error{"--ensemble is for small networks; this one is trained by its gradient"};
   }

@@ -7,6 +7,7 @@
 #include "ident/confidence.h"
 #include "ident/fit_command.h"
 #include "ident/report_text.h"
+#include "ident/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -69,6 +70,10 @@ void Adviser::Solver() {
 
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
+    if (n.parameters == std::vector<std::string>{"rod_lift"}) {
+      Add("The law of the rod moves nobody's rod; leave it out.", Same().Set("rod", "constant"));
+      continue;
+    }
     Add("The data cannot say: " + n.sentence + ". Hold one of them.",
         Same().Append("fix", n.parameters.back()));
   }
@@ -107,7 +112,10 @@ FitCommand Adviser::SettleHarder(double weight) const {
 }
 
 void Adviser::Person() {
-  if (result_.behaviour.self_propelling) {
+  if (RodRunsAway(result_)) {
+    Add("The rod runs away, and settling cannot hold it; see what is lost without it.",
+        Same().Set("rod", "constant"));
+  } else if (result_.behaviour.self_propelling) {
     const bool tail = result_.options.model.push_tail == PushTail::kExponential;
     Add(tail ? "The fitted person drives herself; hold the fit to people who stand again."
              : "The fitted person drives herself; let a push tail carry what the recorded push "
@@ -176,6 +184,7 @@ void Adviser::Intervals() {
 
 void Adviser::Residuals() {
   const bool linear = result_.options.self_force == SelfForceKind::kLinear;
+  const SelfNetwork* network = result_.options.model.self_network.get();
   const bool tail = result_.options.model.push_tail == PushTail::kExponential;
   if (linear && tail) return;  // nothing is left to switch on
   for (const Whiteness& w : result_.diagnostics.whiteness) {
@@ -185,7 +194,8 @@ void Adviser::Residuals() {
       Add("The errors of " + w.channel + " follow the push (correlation " +
               Significant(w.push[k], 2) + " at lag " + std::to_string(k) +
               "): the model misses part of the answer to it; try more terms.",
-          linear ? Same().Set("push_tail", "exponential") : Same().Set("self_force", "linear"));
+          linear ? Same().Set("push_tail", "exponential")
+                 : Same().Set("self_force", SelfForceText(SelfForceKind::kLinear, network)));
       return;
     }
   }

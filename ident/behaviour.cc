@@ -118,7 +118,8 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
   step.block<2, 2>(kPreviousAt, 2).setIdentity();
-  if (RodMoves(options)) {
+  // A law that is switched off leaves the rod where it is, which tells nothing of the person.
+  if (!learned.row(4).isZero(0.0)) {
     step.row(kRodAt) = scene.dt * learned.row(4);
     step(kRodAt, kRodAt) += 1.0;
   }
@@ -168,8 +169,7 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;
-  behaviour.self_propelling =
-      behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
+  behaviour.self_propelling = behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
   for (const Demonstration& d : all) {
     behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;

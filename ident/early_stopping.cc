@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/number_text.h"
 #include "ident/crossvalidation.h"
 
 namespace pushid {
@@ -20,8 +21,9 @@ Result<EarlyStoppingSplit> SplitForEarlyStopping(const FitProblem& problem, doub
   const int total = static_cast<int>(recordings.size());
   const int folds = static_cast<int>(std::lround(1.0 / share));
   if (folds < 2 || folds > total) {
-    return Error{"--early_stopping holds out " + std::to_string(share) + " of " +
-                 std::to_string(total) + " recordings: none or all of them"};
+    return Error{"--early_stopping=" + DoubleText(share) + " of " + std::to_string(total) +
+                 " recordings holds out none or all of them; a share from " +
+                 DoubleText(1.0 / total) + " to 0.5 leaves some on both sides"};
   }
   const Result<std::vector<Fold>> made =
       MakeFolds(recordings, FoldScheme::kStratified, folds, 1, seed);

@@ -1,5 +1,6 @@
 // ident: ensembles: networks trained from several seeds, whose predictions are put together by
-// their median, number by number, so that one bad seed does no harm.
+// their median, number by number, so that one bad seed does no harm. Members that leave the
+// model's domain have no say while most of them stay in it.
 #pragma once
 
 #include <memory>

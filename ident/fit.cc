@@ -131,7 +131,12 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     }
   }
   if (!result.converged) warnings.push_back("the solver stopped before it converged");
-  if (result.behaviour.self_propelling) {
+  if (RodRunsAway(result)) {
+    warnings.push_back("self-propelling: the rod or the person with it runs away from rest at " +
+                       Significant(result.behaviour.fastest_growth, 2) +
+                       " 1/s; such a fit predicts nothing beyond the data (a smaller "
+                       "--network_prior or --rod=constant holds it)");
+  } else if (result.behaviour.self_propelling) {
     warnings.push_back(
         "self-propelling: the fitted person drives herself after a push; such a fit may score well "
         "and predicts nothing beyond the data (--settling_weight holds it to settle)");
@@ -219,6 +224,11 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.warnings = Warnings(problem, result);
   ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
   return result;
+}
+
+bool RodRunsAway(const FitResult& result) {
+  const Behaviour& b = result.behaviour;
+  return RodMoves(result.options.model) && b.unstable() && b.settles;
 }
 
 IdentifiedModel ModelOf(const FitResult& result) {

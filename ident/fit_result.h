@@ -93,6 +93,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 
 IdentifiedModel ModelOf(const FitResult& result);
 
+// Whether a rod that moves makes a person unstable at rest who stands again after pushes: settling
+// cannot hold it.
+bool RodRunsAway(const FitResult& result);
+
 // A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
 

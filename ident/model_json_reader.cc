@@ -250,14 +250,19 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
       result.options.hold_network = true;  // what is read is not fitted on
     }
+    const SelfNetwork* network = result.options.model.self_network.get();
+    const std::string learned = at("model").at("self_force");
+    if (SelfForceText(result.options.self_force, network) != learned) {
+      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+    }
     if (json.contains("network_takeover")) {
       const Json& t = at("network_takeover");
       result.takeover = Takeover{t.at("mu_N_s_m"), t.at("Kp_theta_N_m_rad"),
                                  t.at("Kd_theta_N_m_s_rad"), t.at("rms_force_m_s2")};
     }
     if (json.contains("interaction_network")) {
-      const Json& network = at("interaction_network");
-      result.options.model.interaction_network = InteractionNetworkFromJson(network);
+      result.options.model.interaction_network =
+          InteractionNetworkFromJson(at("interaction_network"));
     }
     result.version = at("version");
     for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
@@ -282,6 +287,10 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     if (json.contains("ensemble")) {
       for (const Json& one : at("ensemble")) {
         result.others.push_back(MemberFrom(one, result.options.table));
+        if (network == nullptr ||
+            LearnedName(*result.others.back().network) != LearnedName(*network)) {
+          throw std::runtime_error("a member's network is not that of self_network");
+        }
       }
     }
     result.behaviour = BehaviourFrom(at("behaviour"));

@@ -45,18 +45,18 @@ Prediction PredictOne(const ModelOptions& options,
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames) {
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
-  std::vector<Prediction> predictions = {
-      PredictOne(model.options, PeoplesParameters(model, recording), recording, frames)};
+  std::vector<Prediction> stayed, left;  // in the model's domain, or not
+  const auto add = [&](Prediction prediction) {
+    (prediction.status.ok ? stayed : left).push_back(std::move(prediction));
+  };
+  add(PredictOne(model.options, PeoplesParameters(model, recording), recording, frames));
   for (const EnsembleMember& member : model.others) {
     ModelOptions options = model.options;
     options.self_network = member.network;
-    predictions.push_back(PredictOne(options, {member.parameters}, recording, frames));
+    add(PredictOne(options, {member.parameters}, recording, frames));
   }
-  // An ensemble is as good as its worst member where one of them leaves the model's domain.
-  for (const Prediction& prediction : predictions) {
-    if (!prediction.status.ok) return prediction;
-  }
-  return predictions.size() == 1 ? predictions.front() : MedianPrediction(recording, predictions);
+  if (left.size() >= stayed.size()) return left.front();
+  return stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
 }
 
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,

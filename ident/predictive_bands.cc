@@ -87,19 +87,21 @@ BandPoint PointOf(const Prediction& prediction, int frame, int person) {
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
   IdentifiedModel drawn = model;
   drawn.parameters = shared;
-  for (auto& [unit, set] : drawn.by_unit) {
+  const auto shift = [&](ParameterSet<double>* set) {
     for (const ParameterSpec& spec : model.table.specs) {
       const auto fitted = [&](const ParameterSet<double>& of) {
         return ToFitted(spec.transform, of[spec.id]);
       };
-      if (set[spec.id] == model.parameters[spec.id]) {
-        set[spec.id] = shared[spec.id];
+      double& value = (*set)[spec.id];
+      if (value == model.parameters[spec.id]) {
+        value = shared[spec.id];
       } else {
-        set[spec.id] =
-            ToNatural(spec.transform, fitted(shared) + fitted(set) - fitted(model.parameters));
+        value = ToNatural(spec.transform, fitted(shared) + fitted(*set) - fitted(model.parameters));
       }
     }
-  }
+  };
+  for (auto& [unit, set] : drawn.by_unit) shift(&set);
+  for (EnsembleMember& member : drawn.others) shift(&member.parameters);
   return drawn;
 }
 

@@ -139,7 +139,7 @@ double Profiler::Value(const Target& target, const FitPoint& point) const {
 
 // Of the target by all fitted numbers, at the estimate.
 Eigen::VectorXd Profiler::Gradient(const Target& target) const {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty_.covariance.rows());
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance_.inverse_hessian.rows());
   if (target.index >= 0) {
     gradient[target.index] = 1.0;
     return gradient;
@@ -168,7 +168,9 @@ double Profiler::MeanRatio() const {
 ProfileSearch Profiler::Search(const Target& target, const Eigen::VectorXd& gradient) const {
   const Eigen::VectorXd moved = covariance_.inverse_hessian * gradient;
   const double naive = gradient.dot(moved);
-  const double clustered = gradient.dot(uncertainty_.covariance * gradient);
+  // A result keeps no covariance of a network's weights, which stand last and are in no target.
+  const Eigen::VectorXd kept = gradient.head(uncertainty_.covariance.rows());
+  const double clustered = kept.dot(uncertainty_.covariance * kept);
   ProfileSearch search;
   search.estimate = Value(target, estimate_);
   search.cost = cost_;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "ident/confidence_text.h"
+#include "ident/large_network_stage.h"
 #include "ident/option_names.h"
 #include "ident/preparation_text.h"
 #include "ident/report_tables.h"
@@ -51,12 +52,29 @@ std::string Significant(double value, int digits) {
   return text;
 }
 
+namespace {
+
+std::string TrainingText(const FitOptions& o) {
+  std::string text =
+      o.network_prior > 0.0 ? "prior " + Significant(o.network_prior) : std::string("no prior");
+  if (o.early_stopping > 0.0) {
+    text += ", stopped early by " + Significant(100.0 * o.early_stopping) + " % of the recordings";
+  }
+  if (o.takeover_weight > 0.0) text += ", takeover weight " + Significant(o.takeover_weight);
+  if (o.model.self_network->num_weights() > kMostGaussNewtonWeights) {
+    text += ", held while the errors above were computed";
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string NetworkText(const FitResult& result) {
   const auto& network = result.options.model.self_network;
   if (network == nullptr) return "";
   std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
-                     Count(network->num_weights(), "weight") + ", prior " +
-                     Significant(result.options.network_prior) + ")";
+                     Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) +
+                     ")";
   if (!result.others.empty()) {
     text += ", the first of " + std::to_string(result.others.size() + 1) +
             " seeds; predictions are their median";
@@ -79,6 +97,7 @@ std::string ReportText(const FitResult& result) {
                      result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
                      NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
                      ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
+                     (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") +
                      ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
                      SelfFromText(result) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +

@@ -191,9 +191,17 @@ std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
   if (!s.any() && !network.rod.moves()) throw std::runtime_error("network: nothing is learned");
+  for (const char* size : {"hidden", "embedding"}) {
+    if (!json.at(size).is_number_integer()) {
+      throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
+    }
+  }
   s.hidden = json.at("hidden");
   s.embedding = json.at("embedding");
   s.rod_input = json.at("rod_input");
+  if (s.rod_input && !(s.any() && network.rod.moves())) {
+    throw std::runtime_error("network: rod_input is for a network beside a rod that moves");
+  }
   if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < 0 ||
       s.embedding > kLargestSize) {
     throw std::runtime_error("network: sizes must lie between 1 and " +

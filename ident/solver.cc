@@ -99,6 +99,12 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
   return start;
 }
 
+double CostAt(const FitProblem& problem, FitPoint* point) {
+  double cost = 0.0;
+  problem.Build(point, 0).problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
+
 // A network learns on top of a physical model that has converged without it, together with it.
 void TrainNetwork(const FitProblem& problem, const std::string& label,
                   const SolveProgress& progress, SolveStart* start) {
@@ -132,7 +138,8 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
   start->stages.push_back(stage);
   start->iterations += stage.iterations;
   start->failed = problem.Failures(start->to, 0);
-  start->cost = stage.final_cost;
+  // Of all recordings, whatever the training saw.
+  start->cost = stop_early ? CostAt(problem, &start->to) : stage.final_cost;
   start->converged = stage.converged || stopping.stopped();
   start->usable = start->converged || stage.final_cost < stage.initial_cost;
 }

@@ -1,4 +1,5 @@
 // ident: what can be said before a solve.
+#include <algorithm>
 #include <cmath>
 
 #include "datasets/number_text.h"

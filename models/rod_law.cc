@@ -46,7 +46,8 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
     if (by_weight != nullptr) {
       Eigen::Map<Rows> own(by_weight + at, rows, width + 1);
       own.leftCols(width).noalias() = by_sum * x.transpose();
-      own.col(width) = slope.array() * ((1.0 - active.square()) - (1.0 - rest.square()));
+      // tanh' less tanh' at rest, without the difference of near equals.
+      own.col(width) = -slope.array() * layers.hidden[i].array() * (active + rest);
     }
     const ConstRows<double> w(weights + at, rows, width, Eigen::OuterStride<>(width + 1));
     slope = w.transpose() * by_sum;

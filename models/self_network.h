@@ -1,12 +1,23 @@
 // models: a small network as a part of the self force: what a person does beyond balance and
 // friction, learned. An MLP, a GRU or an LSTM of any size, from the person's own state alone.
 //
-//   u = [e_theta / 0.15, e_phi / 0.15, xd / 0.8, yd / 0.8, thd / 0.6, phd / 0.6 (, (l - l_0) /
-//   0.05)] k = [(M - 85 kg) / 20 kg, 1]         what does not change during a rollout x = u, or
-//   tanh(E u) with an embedding mlp    h  = tanh(W x + C k) - tanh(C k) gru    z, r = s(W x + U h +
-//   C k),  n = tanh(W_n x + r (U_n h)),  h' = (1 - z) n + z h lstm   i, f, o = s(W x + U h + C k),
-//   g = tanh(W_g x + U_g h),  c' = f c + i g,  h' = o tanh(c') F  = 2 M [O h']   (m/s^2 and m^2/s^2
-//   per unit of output)
+//   u = [e_theta/0.15, e_phi/0.15, xd/0.8, yd/0.8, thd/0.6, phd/0.6 (, (l - l_0)/0.05)]
+//   k = [(M - 85 kg)/20 kg, 1]            what does not change during a rollout
+//   x = u, or tanh(E u) with an embedding
+//
+//   mlp    h = tanh(W x + C k) - tanh(C k)
+//
+//   gru    z, r = s(W x + U h + C k)
+//          n = tanh(W_n x + r (U_n h))
+//          h' = (1 - z) n + z h
+//
+//   lstm   i, f, o = s(W x + U h + C k)
+//          g = tanh(W_g x + U_g h)
+//          c' = f c + i g
+//          h' = o tanh(c')
+//
+//   F = 2 M [O h']                        m/s^2 and m^2/s^2 per unit of output
+//
 // s is the logistic function, products of vectors are by element, memories start at zero. What
 // could answer to k alone has no bias and no mass: whoever stands at rest (u = 0) feels exactly no
 // force, whatever the weights, and O = 0 is no force at all. Source: LDP's self-force network

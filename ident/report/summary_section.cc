@@ -43,6 +43,7 @@ ReportSection SummarySection(const FitResult& result) {
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
   facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
+  if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.self_network->rod)});
   facts.Add({"interaction", NameOf(o.model.interaction)});
   facts.Add({"cost", Significant(result.cost, 6)});
   if (!result.diagnostics.recordings.empty()) {

@@ -44,14 +44,19 @@ TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
   EXPECT_NE(bodies.err.find("the model's rod moves"), std::string::npos);
 }
 
-TEST_F(NetworkAppTest, RodFlagsThatCannotBeAreNamed) {
+TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
   for (const auto& [flags, complaint] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--rod=gru:4"}, "--rod is 'gru:4'"},
            {{"--rod_input", "--rod=linear"}, "--rod_input is for a network beside a rod"},
            {{"--rod_input", "--self_force=mlp:2"}, "--rod_input is for a network beside a rod"},
            {{"--rod=linear", "--takeover_weight=1"}, "only the rod has a network"},
-           {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"}}) {
+           {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"},
+           {{"--self_force=lstm:64", "--takeover_weight=1"}, "--takeover_weight is for small"},
+           {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},
+            "--profile and --bootstrap follow the least cost"},
+           {{"--self_from=" + FitModel("gru.json", {"--self_force=gru:2"})},
+            "has learned gru:2, which --self_from cannot take over"}}) {
     std::vector<std::string> all = {Recordings(), "--model_out=" + Path("m.json")};
     all.insert(all.end(), flags.begin(), flags.end());
     const auto run = RunApp("pushid-fit", all);

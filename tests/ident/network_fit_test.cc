@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/json_file.h"
+#include "ident/confidence.h"
 #include "ident/early_stopping.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
@@ -143,6 +144,49 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   }
 }
 
+TEST(NetworkFit, AnEarlyStopHasTheCostOfAllRecordings) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.network_prior = 0.0;
+  study.options.early_stopping = 0.25;
+  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
+  double sum = 0.0;
+  for (const FittedRecording& recording : result.recordings) sum += recording.cost;
+  EXPECT_NEAR(result.cost, sum, 1e-9 * sum);
+}
+
+// The weights, of which a result keeps no covariance, follow along.
+TEST(NetworkFit, ProfilesAreAsWideAsTheClusteredIntervals) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.005);
+  study.options.network_prior = 1.0;
+  FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
+  ASSERT_FALSE(AddProfiles(study.training, {"mu", "Kp_theta"}, 1, nullptr, &result));
+  ASSERT_EQ(result.profiles.size(), 2u);
+  for (const Profile& profile : result.profiles) {
+    const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
+                                       [&](const Estimate& e) { return e.name == profile.name; });
+    ASSERT_NE(estimate, result.estimates.end());
+    const double width = estimate->upper95 - estimate->lower95;
+    EXPECT_NEAR(profile.lower95, estimate->lower95, 0.25 * width) << profile.name;
+    EXPECT_NEAR(profile.upper95, estimate->upper95, 0.25 * width) << profile.name;
+  }
+}
+
+TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.ensemble = 2;
+  const nlohmann::ordered_json good = ToJson(FitWith(study, {NetworkKind::kMlp, 2}), RunInfo{});
+  const auto complaint = [](const nlohmann::ordered_json& json) {
+    const Result<FitResult> read = FitResultFromJson(json, "model.json");
+    return read.ok() ? "" : read.error().ToString();
+  };
+  EXPECT_EQ(complaint(good), "");
+  nlohmann::ordered_json without = good, other = good;
+  without.erase("self_network");
+  EXPECT_NE(complaint(without).find("self_force is mlp:2"), std::string::npos);
+  other["ensemble"][0]["self_network"] = ToJson(*InitialNetwork({NetworkKind::kMlp, 3}, 1));
+  EXPECT_NE(complaint(other).find("a member's network"), std::string::npos);
+}
+
 // The prediction of an ensemble lies between those of its members.
 TEST(Ensemble, PredictsTheMedian) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
@@ -164,6 +208,15 @@ TEST(Ensemble, PredictsTheMedian) {
     std::sort(x.begin(), x.end());
     EXPECT_EQ(median.path.At(t, 0).q[0], x[1]);
   }
+  // One that falls has no say; two of three have the last.
+  IdentifiedModel bad = model;
+  bad.others[0].parameters[kKpTheta] = -1e5;
+  const Prediction two = Predict(bad, recording);
+  ASSERT_TRUE(two.status.ok);
+  EXPECT_EQ(two.path.At(20, 0).q[0], 0.5 * (Predict(members[0], recording).path.At(20, 0).q[0] +
+                                            Predict(members[2], recording).path.At(20, 0).q[0]));
+  bad.others[1].parameters[kKpTheta] = -1e5;
+  EXPECT_FALSE(Predict(bad, recording).status.ok);
 }
 
 }  // namespace

@@ -99,8 +99,11 @@ TEST(RodFit, FreeModesKnowTheRod) {
     return ComputeBehaviour(options, p);
   };
   ASSERT_LT(constant, 0.0);
-  EXPECT_FALSE(growth(0.0).unstable());
+  EXPECT_NEAR(growth(0.0).fastest_growth, constant, 1e-9);  // switched off
+  network.weights.front() = 0.1;  // moved, and never back
   EXPECT_NEAR(growth(0.0).fastest_growth, 0.0, 1e-9);
+  EXPECT_FALSE(growth(0.0).unstable());
+  network.weights.front() = 0.0;
   EXPECT_NEAR(growth(-3.0).fastest_growth, constant, 1e-6);  // gone at 6 1/s
   // 0.1 m/s for 0.05 m: a rate of 2 1/s, up to a step's square.
   EXPECT_NEAR(growth(1.0).fastest_growth, 2.0, 0.1);

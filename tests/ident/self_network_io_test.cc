@@ -90,6 +90,8 @@ TEST(SelfNetworkIo, DamageIsNamed) {
   EXPECT_THROW(SelfNetworkFromJson(broken("kind", "rnn")), std::runtime_error);
   EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 0)), std::runtime_error);
   EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 3)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 2.7)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("rod_input", true)), std::runtime_error);
   EXPECT_THROW(SelfNetworkFromJson(broken("weights", {1.0})), std::runtime_error);
   EXPECT_THROW(SelfNetworkFromJson(broken("kind", "none")), std::runtime_error);
   using Rod = nlohmann::ordered_json;
