@@ -26,6 +26,7 @@ DEFINE_int32(
     resample, 0,
     "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
     "k; 0: the recordings as they are");
+DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
 
 namespace {
 
@@ -55,11 +56,8 @@ int Run() {
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (FLAGS_resample < 0) return Fail("--resample must not be negative");
-  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
-                                        {"model_out", FLAGS_model_out},
-                                        {"bootstrap_file", FLAGS_bootstrap_file}})) {
-    return Fail(*error);
-  }
+  if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
+  if (FLAGS_check) return kDone;
   for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);

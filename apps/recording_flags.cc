@@ -47,7 +47,27 @@ MaybeError LeaveOut(std::vector<Recording>* recordings) {
   return Error{"--leave_out leaves no recording", FLAGS_recordings};
 }
 
+Result<LoadOptions> LoadOptionsOfFlags() {
+  LoadOptions options;
+  options.setting = FLAGS_setting;
+  options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
+  options.ids = SplitList(FLAGS_ids);
+  if (!FLAGS_length_unit.empty()) {
+    options.length_unit = LengthUnitFromName(FLAGS_length_unit);
+    if (!options.length_unit) {
+      return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
+    }
+  }
+  if (MaybeError error = CheckPreparation(options.preparation)) return *error;
+  return options;
+}
+
 }  // namespace
+
+MaybeError CheckRecordingFlags() {
+  const Result<LoadOptions> options = LoadOptionsOfFlags();
+  return options.ok() ? std::nullopt : MaybeError(options.error());
+}
 
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
                                                      bool keep_all_joints) {
@@ -55,19 +75,13 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
   }
-  LoadOptions options;
-  options.setting = FLAGS_setting;
-  options.keep_all_joints = keep_all_joints;
-  options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
-  options.ids = ids.empty() ? SplitList(FLAGS_ids) : ids;
-  if (!FLAGS_length_unit.empty()) {
-    options.length_unit = LengthUnitFromName(FLAGS_length_unit);
-    if (!options.length_unit) {
-      return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
-    }
-  }
+  Result<LoadOptions> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.error();
+  options.value().keep_all_joints = keep_all_joints;
+  if (!ids.empty()) options.value().ids = ids;
   std::vector<std::string> warnings;
-  Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_recordings, options, &warnings);
+  Result<std::vector<Recording>> recordings =
+      LoadRecordings(FLAGS_recordings, options.value(), &warnings);
   for (const std::string& warning : warnings) Warn(warning);
   if (!recordings.ok() || !ids.empty()) return recordings;
   if (MaybeError error = LeaveOut(&recordings.value())) return *error;

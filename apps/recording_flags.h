@@ -20,6 +20,9 @@ namespace pushid {
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
                                                      bool keep_all_joints = false);
 
+// What is wrong with their flags, before any file is read.
+MaybeError CheckRecordingFlags();
+
 // Those of another --setting, with whole bodies.
 Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
 

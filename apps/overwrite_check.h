@@ -1,0 +1,22 @@
+// apps: no program replaces what it reads, nor one of its outputs by another.
+//
+// Outputs are known by their flags' names (out, *_out, bootstrap_file), inputs by the list in
+// overwrite_check.cc; so the check holds for every program at once.
+#pragma once
+
+#include <string>
+
+#include "datasets/result.h"
+
+namespace pushid {
+
+// Whether a flag of this name says where to write.
+bool IsOutputFlag(const std::string& name);
+
+// Between the flags, as they are given. RunApp asks for it before anything is done.
+MaybeError CheckOutputs();
+
+// For an input that no flag names: `reader` says what does ("--sensors", "the command line").
+MaybeError CheckNoOutput(const std::string& reader, const std::string& path);
+
+}  // namespace pushid
