@@ -46,6 +46,25 @@ Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecord
   return hash.Hex();
 }
 
+// What a variant's flags say: of a file its contents, wherever it lies.
+Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
+  ContentHash hash;
+  for (const std::string& flag : variant.flags) {
+    const std::string file = FileOfFlag(flag);
+    if (file.empty()) {
+      AddPiece(flag, &hash);
+      continue;
+    }
+    const Result<std::string> contents = HashFile(file);
+    if (!contents.ok()) {
+      return Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
+                   variant.line};
+    }
+    AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
+  }
+  return hash.Hex();
+}
+
 std::string GroupOf(GroupBy by, const ManifestRecording& entry) {
   switch (by) {
     case GroupBy::kRecording:
@@ -129,17 +148,19 @@ class Expander {
       at->second.push_back(i);
     }
     for (const BatchVariant& variant : plan_.variants) {
+      const Result<std::string> flags = FlagsHash(plan_, variant);
+      if (!flags.ok()) return flags.error();
       for (const auto& [name, members] : groups) {
         const auto parts = PartsOf(plan_, manifest_, name, members);
         if (!parts.ok()) return parts.error();
-        for (const Part& part : parts.value()) AddPart(variant, part);
+        for (const Part& part : parts.value()) AddPart(variant, flags.value(), part);
       }
     }
     return jobs_;
   }
 
  private:
-  void AddPart(const BatchVariant& variant, const Part& part) {
+  void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
     for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
       BatchJob job;
       job.variant = variant.name;
@@ -152,7 +173,8 @@ class Expander {
       if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
       ContentHash hash;
       AddPiece(Version(), &hash);
-      for (const std::string& flag : job.fit_flags) AddPiece(flag, &hash);
+      AddPiece(flags_hash, &hash);
+      AddPiece(std::to_string(plan_.seed) + "/" + std::to_string(replica), &hash);
       for (int i : part.train) AddPiece(hashes_[i], &hash);
       AddPiece("held out", &hash);
       for (int i : part.held_out) AddPiece(hashes_[i], &hash);
@@ -192,8 +214,10 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
 
 std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n) {
   std::vector<BatchJob> part;
-  for (size_t k = static_cast<size_t>(i) - 1; k < jobs.size(); k += static_cast<size_t>(n)) {
-    part.push_back(jobs[k]);
+  std::map<std::string, size_t> order;  // of first appearance
+  for (const BatchJob& job : jobs) {
+    const size_t k = order.emplace(job.id, order.size()).first->second;
+    if (k % static_cast<size_t>(n) + 1 == static_cast<size_t>(i)) part.push_back(job);
   }
   return part;
 }

@@ -21,8 +21,13 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/overwrite_check.h"
+
 namespace pushid {
 namespace {
+
+// Flags that name files to read: as all paths of a plan they are relative to it.
+const std::set<std::string> kFileFlags = {"self_from", "interaction_network"};
 
 // Set by the batch for every job.
 const std::set<std::string> kOwnFlags = {"recordings", "setting",  "ids",   "leave_out",
@@ -48,8 +53,10 @@ class PlanReader {
  private:
   // The first error is the one that is told.
   void Fail(const toml::node& at, const std::string& message) {
-    if (!error_) error_ = Error{message, path_, static_cast<int>(at.source().begin.line)};
+    if (!error_) error_ = Error{message, path_, LineOf(at)};
   }
+
+  static int LineOf(const toml::node& at) { return static_cast<int>(at.source().begin.line); }
 
   void Known(const toml::table& table, const std::string& what,
              const std::vector<std::string>& keys) {
@@ -179,7 +186,13 @@ class PlanReader {
         Fail(table, "two variants are called '" + variant.name + "'");
       }
       GetStrings(table, "flags", &variant.flags);
-      for (const std::string& flag : variant.flags) CheckFlag(table, flag);
+      const toml::node* flags = table.get("flags");
+      variant.line = LineOf(flags == nullptr ? table : *flags);
+      for (std::string& flag : variant.flags) {
+        CheckFlag(table, flag);
+        const std::string file = FileOfFlag(flag);
+        if (!file.empty()) flag = flag.substr(0, flag.find('=') + 1) + Resolve(file);
+      }
       plan_.variants.push_back(variant);
     }
   }
@@ -191,6 +204,12 @@ class PlanReader {
     const std::string name = flag.substr(2, flag.find('=') - 2);
     if (kOwnFlags.count(name) == 1) {
       Fail(table, "--" + name + " is set by the batch itself for every job");
+    }
+    if (IsOutputFlag(name)) {
+      Fail(table, "--" + name + " would be written by every job of the variant; leave it out");
+    }
+    if (name.rfind("help", 0) == 0 || name == "version" || name == "check") {
+      Fail(table, "--" + name + " makes no fit; leave it out");
     }
   }
 
@@ -211,6 +230,12 @@ class PlanReader {
 };
 
 }  // namespace
+
+std::string FileOfFlag(const std::string& flag) {
+  const size_t equals = flag.find('=');
+  if (flag.rfind("--", 0) != 0 || equals == std::string::npos) return "";
+  return kFileFlags.count(flag.substr(2, equals - 2)) == 1 ? flag.substr(equals + 1) : "";
+}
 
 Result<BatchPlan> ReadPlan(const std::string& path) {
   std::error_code ignored;

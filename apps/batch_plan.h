@@ -15,7 +15,7 @@
 //
 //   [[variant]]                      # one or more
 //   name = "physics"
-//   flags = ["--self_force=none"]    # any flag of pushid-fit
+//   flags = ["--self_force=none"]    # any flag of pushid-fit; files relative to the plan
 //
 //   [output]
 //   dir = "out"                      # relative to the plan
@@ -33,7 +33,8 @@ enum class GroupBy { kNone, kRecording, kSubject, kSetting };
 
 struct BatchVariant {
   std::string name;
-  std::vector<std::string> flags;
+  std::vector<std::string> flags;  // of pushid-fit, with paths as the programs can open them
+  int line = 0;                    // of the plan
 };
 
 struct BatchPlan {
@@ -49,6 +50,9 @@ struct BatchPlan {
   std::vector<BatchVariant> variants;
   std::string dir;
 };
+
+// The file that a variant's flag reads ("--self_from=model.json"), or nothing.
+std::string FileOfFlag(const std::string& flag);
 
 // Errors: file:line, what is wrong: TOML syntax, unknown or missing keys, wrong types, values out
 // of range, two variants of one name, flags that the batch sets itself.
