@@ -104,9 +104,8 @@ Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifes
   for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
   const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
   if (!folds.ok()) {
-    return Error{"group '" + group + "' in " + std::to_string(plan.folds) +
-                     " folds: " + folds.error().message,
-                 plan.path};
+    return plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                                       " folds: " + folds.error().message});
   }
   std::vector<Part> parts;
   for (size_t f = 0; f < folds.value().size(); ++f) {
@@ -133,7 +132,7 @@ class Expander {
   Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
 
   Result<std::vector<BatchJob>> Expand() {
-    const auto chosen = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    const Result<std::vector<int>> chosen = Chosen();
     if (!chosen.ok()) return chosen.error();
     hashes_.resize(manifest_.recordings.size());
     std::vector<std::pair<std::string, std::vector<int>>> groups;
@@ -160,6 +159,17 @@ class Expander {
   }
 
  private:
+  // Each key by itself, so that the one that is wrong can be named.
+  Result<std::vector<int>> Chosen() const {
+    const auto all = SelectRecordings(manifest_, plan_.setting, {});
+    if (!all.ok()) return plan_.ErrorAt("setting", all.error());
+    const auto named = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    if (!named.ok()) return plan_.ErrorAt("ids", named.error());
+    const auto left = SelectRecordings(manifest_, plan_.setting, plan_.ids, plan_.leave_out);
+    if (!left.ok()) return plan_.ErrorAt("leave_out", left.error());
+    return left;
+  }
+
   void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
     for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
       BatchJob job;

@@ -69,6 +69,10 @@ class PlanReader {
     }
   }
 
+  void KeepLines(const toml::table& table) {
+    for (const auto& [key, value] : table) plan_.lines[std::string(key.str())] = LineOf(value);
+  }
+
   const toml::table* Table(const char* name, bool needed) {
     const toml::node* node = root_.get(name);
     if (node == nullptr) {
@@ -118,13 +122,15 @@ class PlanReader {
   void Data() {
     const toml::table* data = Table("data", true);
     if (data == nullptr) return;
-    Known(*data, "[data]", {"recordings", "setting", "ids"});
+    Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
+    KeepLines(*data);
     std::string manifest;
     Get(*data, "recordings", "a text: the manifest's path", &manifest);
     if (manifest.empty()) Fail(*data, "[data] needs recordings = \"M/manifest.json\"");
     plan_.manifest = Resolve(manifest);
     Get(*data, "setting", "a text", &plan_.setting);
     GetStrings(*data, "ids", &plan_.ids);
+    GetStrings(*data, "leave_out", &plan_.leave_out);
   }
 
   void Jobs() {
@@ -132,6 +138,7 @@ class PlanReader {
     if (jobs == nullptr) return;
     Known(*jobs, "[jobs]",
           {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"});
+    KeepLines(*jobs);
     std::string group_by = "none";
     Get(*jobs, "group_by", "a text", &group_by);
     const std::vector<std::pair<std::string, GroupBy>> names = {{"none", GroupBy::kNone},
@@ -237,8 +244,16 @@ std::string FileOfFlag(const std::string& flag) {
   return kFileFlags.count(flag.substr(2, equals - 2)) == 1 ? flag.substr(equals + 1) : "";
 }
 
+Error BatchPlan::ErrorAt(const std::string& key, const Error& error) const {
+  const auto line = lines.find(key);
+  return Error{key + ": " + error.ToString(), path, line == lines.end() ? 0 : line->second};
+}
+
 Result<BatchPlan> ReadPlan(const std::string& path) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return Error{"is a folder; name the plan in it, a TOML file", path};
+  }
   if (!std::filesystem::is_regular_file(path, ignored)) {
     return Error{"cannot be read: no such file", path};
   }

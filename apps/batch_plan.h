@@ -4,6 +4,7 @@
 //   recordings = "M/manifest.json"   # relative to the plan
 //   setting = "single"               # as --setting; default all
 //   ids = ["a", "b"]                 # only these; default all of the setting
+//   leave_out = ["c"]                # not these of them
 //
 //   [jobs]
 //   group_by = "subject"             # recording, subject, setting or none (default)
@@ -22,6 +23,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,7 +43,7 @@ struct BatchPlan {
   std::string path;      // of the plan
   std::string manifest;  // as the programs can open it
   std::string setting = "all";
-  std::vector<std::string> ids;
+  std::vector<std::string> ids, leave_out;
   GroupBy group_by = GroupBy::kNone;
   int folds = 0, bootstrap = 0;
   uint64_t seed = 1;
@@ -49,6 +51,10 @@ struct BatchPlan {
   int memory_limit_mb = 0;
   std::vector<BatchVariant> variants;
   std::string dir;
+  std::map<std::string, int> lines;  // of the keys of [data] and [jobs]
+
+  // An error about what the plan says under `key`, where more than the plan shows that it is wrong.
+  Error ErrorAt(const std::string& key, const Error& error) const;
 };
 
 // The file that a variant's flag reads ("--self_from=model.json"), or nothing.

@@ -28,6 +28,7 @@ void AddModel(const Json& model, JobResult* result) {
     result->errors[name] = NumberFrom(parameter.at("standard_error"));
   }
   result->cost = NumberFrom(model.at("fit").at("cost"));
+  result->warnings = model.at("warnings").get<std::vector<std::string>>();
   result->settles = model.at("behaviour").at("settles");
   result->solve_s = NumberFrom(model.at("run").at("solve_seconds"));
 }

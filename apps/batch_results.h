@@ -17,6 +17,7 @@ struct JobResult {
   std::map<std::string, double> parameters, errors;  // free ones, with standard errors
   double cost = 0.0, solve_s = 0.0, seconds = 0.0;
   bool settles = false;
+  std::vector<std::string> warnings;
   double hip_ade = -1.0, hip_fde = -1.0;  // of what was held out; negative: nothing was
 
   bool done() const { return status == "done"; }

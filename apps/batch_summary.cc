@@ -37,14 +37,20 @@ std::string Cell(const std::map<std::string, double>& values, const std::string&
   return found == values.end() ? "" : DoubleText(found->second);
 }
 
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
 // Full precision, for summary.csv.
 TextTable FullTable(const std::vector<JobResult>& rows) {
   const std::vector<std::string> names = ParameterNames(rows);
   std::vector<std::string> header = {"id", "variant", "group", "replica", "status", "reason"};
   header.insert(header.end(), names.begin(), names.end());
   for (const std::string& name : names) header.push_back(name + "_se");
-  for (const char* name :
-       {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m", "solve_s", "seconds"}) {
+  for (const char* name : {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m",
+                           "warnings", "solve_s", "seconds"}) {
     header.push_back(name);
   }
   TextTable table(header, std::vector<bool>(header.size(), true));
@@ -59,6 +65,7 @@ TextTable FullTable(const std::vector<JobResult>& rows) {
     cells.push_back(done ? (row.settles ? "yes" : "no") : "");
     cells.push_back(row.hip_ade >= 0.0 ? DoubleText(row.hip_ade) : "");
     cells.push_back(row.hip_fde >= 0.0 ? DoubleText(row.hip_fde) : "");
+    cells.push_back(Joined(row.warnings));
     cells.push_back(done ? DoubleText(row.solve_s) : "");
     cells.push_back(row.status == "open" ? "" : DoubleText(row.seconds));
     table.Add(cells);
@@ -79,6 +86,7 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
       }
       job["cost"] = NumberJson(row.cost);
       job["settles"] = row.settles;
+      if (!row.warnings.empty()) job["warnings"] = row.warnings;
       if (row.hip_ade >= 0.0) {
         job["held_out"] = {{"hipADE_m", row.hip_ade}, {"hipFDE_m", row.hip_fde}};
       }
@@ -148,10 +156,11 @@ TextTable JobTable(const std::vector<JobResult>& rows) {
   const std::vector<std::string> names = ParameterNames(rows);
   std::vector<std::string> header = {"job", "variant", "group", "replica", "status"};
   header.insert(header.end(), names.begin(), names.end());
-  header.insert(header.end(), {"settles", "solve s"});
+  header.insert(header.end(), {"settles", "held-out hipADE, m", "held-out hipFDE, m", "solve s",
+                               "seconds", "warnings"});
   std::vector<bool> words(header.size(), false);
   std::fill(words.begin(), words.begin() + 3, true);
-  words[4] = true;
+  words[4] = words.back() = true;
   TextTable table(header, words);
   for (const JobResult& row : rows) {
     if (table.rows().size() > kMostRowsOnPage) break;
@@ -159,11 +168,17 @@ TextTable JobTable(const std::vector<JobResult>& rows) {
                                       std::to_string(row.job->replica), row.status};
     for (const std::string& name : names) {
       const auto found = row.parameters.find(name);
-      cells.push_back(found == row.parameters.end() ? "" : Significant(found->second));
+      cells.push_back(found == row.parameters.end() ? ""
+                                                    : Significant(found->second) + " +- " +
+                                                          Significant(row.errors.at(name), 3));
     }
-    const bool done = row.status == "done";
+    const bool done = row.done();
     cells.push_back(done ? (row.settles ? "yes" : "no") : "");
+    cells.push_back(row.hip_ade >= 0.0 ? Significant(row.hip_ade, 3) : "");
+    cells.push_back(row.hip_fde >= 0.0 ? Significant(row.hip_fde, 3) : "");
     cells.push_back(done ? Significant(row.solve_s, 2) : "");
+    cells.push_back(row.status == "open" ? "" : Significant(row.seconds, 2));
+    cells.push_back(Joined(row.warnings));
     table.Add(cells);
   }
   return table;

@@ -12,7 +12,7 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
 
 // summary.csv, summary.json and summary.html in the plan's folder. CSV columns:
 // id,variant,group,replica,status,reason,<parameter>...,<parameter>_se...,cost,settles,
-// held_out_hip_ade_m,held_out_hip_fde_m,solve_s,seconds
+// held_out_hip_ade_m,held_out_hip_fde_m,warnings,solve_s,seconds
 MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
 // By variant: jobs done and failed, mean and spread over groups and replicas of each parameter.

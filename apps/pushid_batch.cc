@@ -155,7 +155,7 @@ int Run() {
   const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
   if (!plan.ok()) return Fail(plan.error());
   const Result<Manifest> manifest = ReadManifest(plan.value().manifest);
-  if (!manifest.ok()) return Fail(manifest.error());
+  if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
   const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
   if (!all.ok()) return Fail(all.error());
   const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());

@@ -1,7 +1,6 @@
 // apps: loading what --recordings names.
 #include "apps/recording_flags.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include "apps/app_support.h"
@@ -32,26 +31,12 @@ std::vector<std::string> SplitList(const std::string& text) {
   return words;
 }
 
-MaybeError LeaveOut(std::vector<Recording>* recordings) {
-  for (const std::string& id : SplitList(FLAGS_leave_out)) {
-    const auto at = std::find_if(recordings->begin(), recordings->end(),
-                                 [&id](const Recording& r) { return r.id == id; });
-    if (at == recordings->end()) {
-      return Error{
-          "--leave_out: there is no recording '" + id + "' among those that were asked for",
-          FLAGS_recordings};
-    }
-    recordings->erase(at);
-  }
-  if (!recordings->empty()) return std::nullopt;
-  return Error{"--leave_out leaves no recording", FLAGS_recordings};
-}
-
 Result<LoadOptions> LoadOptionsOfFlags() {
   LoadOptions options;
   options.setting = FLAGS_setting;
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = SplitList(FLAGS_ids);
+  options.leave_out = SplitList(FLAGS_leave_out);
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);
     if (!options.length_unit) {
@@ -70,7 +55,8 @@ MaybeError CheckRecordingFlags() {
 }
 
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
-                                                     bool keep_all_joints) {
+                                                     bool keep_all_joints,
+                                                     std::vector<std::string>* warnings) {
   if (MaybeError missing =
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
@@ -78,13 +64,15 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   Result<LoadOptions> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.error();
   options.value().keep_all_joints = keep_all_joints;
-  if (!ids.empty()) options.value().ids = ids;
-  std::vector<std::string> warnings;
+  if (!ids.empty()) {
+    options.value().ids = ids;
+    options.value().leave_out.clear();
+  }
+  std::vector<std::string> odd;
   Result<std::vector<Recording>> recordings =
-      LoadRecordings(FLAGS_recordings, options.value(), &warnings);
-  for (const std::string& warning : warnings) Warn(warning);
-  if (!recordings.ok() || !ids.empty()) return recordings;
-  if (MaybeError error = LeaveOut(&recordings.value())) return *error;
+      LoadRecordings(FLAGS_recordings, options.value(), &odd);
+  for (const std::string& warning : odd) Warn(warning);
+  if (warnings != nullptr) *warnings = odd;
   return recordings;
 }
 

@@ -92,7 +92,9 @@ class PersonLoader {
 
   void Warn(const std::string& warning) const {
     if (warnings_ != nullptr) {
-      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + path_ + " " + warning);
+      // As the manifest names it: results keep warnings, and not where the data lay.
+      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion_files()[index_] +
+                           " " + warning);
     }
   }
 

@@ -101,7 +101,7 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
   const Result<Manifest> manifest = ReadManifest(manifest_path);
   if (!manifest.ok()) return manifest.error();
   const Result<std::vector<int>> selected =
-      SelectRecordings(manifest.value(), options.setting, options.ids);
+      SelectRecordings(manifest.value(), options.setting, options.ids, options.leave_out);
   if (!selected.ok()) return selected.error();
   std::vector<Recording> recordings;
   for (int index : selected.value()) {

@@ -152,6 +152,17 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = RunApp("pushid-fit", {"--recordings=" + Path("made.json")});
   EXPECT_EQ(run.exit_code, 0) << run.err;
+  // Measured pushes, the default, have no tail to fit.
+  ASSERT_EQ(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                       "--mass_kg=80", "--out=" + Path("measured.json")})
+                .exit_code,
+            0);
+  const std::string measured = "--recordings=" + Path("measured.json");
+  run = RunApp("pushid-fit", {measured});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
+  run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,a_x"});
+  EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
   const int files = CountFiles();
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> bad = {
       {{pattern}, {"--folder is missing"}},

@@ -84,6 +84,11 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
     EXPECT_GT(job["held_out"]["hipADE_m"].get<double>(), 0.0);
     EXPECT_LT(job["held_out"]["hipADE_m"].get<double>(), 0.1);
   }
+  const std::string page = ReadText(Path("out/summary.html"));
+  for (const char* column : {"held-out hipADE, m", "held-out hipFDE, m", "solve s", "seconds"}) {
+    EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;
+  }
+  EXPECT_TRUE(Contains(page, " +- "));
 }
 
 TEST_F(BatchTest, IdsFollowTheContent) {
@@ -289,6 +294,33 @@ TEST_F(BatchTest, InterruptedItGoesOnLater) {
   EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
 }
 
+TEST_F(BatchTest, RecordingsMayBeLeftOut) {
+  const std::string rest = "[[variant]]\nname = \"a\"\n[output]\ndir = \"out\"\n";
+  const auto plan = [&](const std::string& data) {
+    return "--plan=" +
+           WriteText("plan.toml", "[data]\nrecordings = \"manifest.json\"\n" + data + "\n" + rest);
+  };
+  const std::string other = Json(manifest_)["recordings"][1]["id"];
+  EXPECT_TRUE(
+      Contains(Batch(plan("leave_out = [\"" + id_ + "\", \"" + other + "\"]"), {"--list"}).out,
+               ",all,0,10,0,"));
+  EXPECT_TRUE(Refused(Batch(plan("leave_out = [\"nobody\"]"), {"--list"}),
+                      {"plan.toml:3: leave_out", "'nobody'"}));
+  EXPECT_TRUE(
+      Refused(Batch(plan("ids = [\"nobody\"]"), {"--list"}), {"plan.toml:3: ids", "'nobody'"}));
+}
+
+TEST_F(BatchTest, WarningsOfAFitAreInTheTable) {
+  nlohmann::ordered_json json = Json(manifest_);
+  json["recordings"][0]["fps"] = 61;
+  WriteText("manifest.json", json.dump(1));
+  ASSERT_EQ(Batch(Plan("group_by = \"subject\"", {{"a", ""}})).exit_code, 0);
+  EXPECT_TRUE(Contains(Table("out")[1], "has a frame time of"));
+  EXPECT_FALSE(Contains(Table("out")[2], "has a frame time of"));
+  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "has a frame time of"));
+  EXPECT_TRUE(Contains(Json(Path("out/summary.json"))["jobs"][0]["warnings"].dump(), "frame time"));
+}
+
 struct BadPlan {
   std::string text, says;
 };
@@ -316,15 +348,16 @@ TEST_F(BatchTest, BadPlansAreToldWhereAndWhy) {
        "'x' is no flag"},
       {data + "[[variant]]\nname = \"a\"\nflags = [\"--model_out=x\"]\n[output]\ndir = \"o\"\n",
        "--model_out is set by the batch"},
-      {"[data]\nrecordings = \"missing.json\"\n" + rest, "missing.json"},
-      {data + "setting = \"moon\"\n" + rest, "moon"},
-      {data + "[jobs]\ngroup_by = \"recording\"\nfolds = 2\n" + rest, "in 2 folds"},
+      {"[data]\nrecordings = \"missing.json\"\n" + rest, "plan.toml:2: recordings: "},
+      {data + "setting = \"moon\"\n" + rest, "plan.toml:3: setting: "},
+      {data + "[jobs]\ngroup_by = \"recording\"\nfolds = 2\n" + rest, "plan.toml:5: folds: group"},
   };
   for (const BadPlan& bad : plans) {
     const AppRun run = Batch("--plan=" + WriteText("plan.toml", bad.text), {"--list"});
     EXPECT_TRUE(Refused(run, {bad.says})) << bad.text;
   }
   EXPECT_TRUE(Refused(Batch("--plan=" + Path("none.toml")), {"none.toml", "no such file"}));
+  EXPECT_TRUE(Refused(Batch("--plan=" + folder_.string()), {"is a folder; name the plan in it"}));
   const std::string good = "--plan=" + WriteText("plan.toml", data + rest);
   EXPECT_TRUE(Refused(Batch(good, {"--shard=3/2"}), {"--shard is '3/2'"}));
   EXPECT_TRUE(Refused(Batch(good, {"--job=zz"}), {"no job 'zz'"}));
