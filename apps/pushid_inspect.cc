@@ -36,6 +36,10 @@ int Run() {
     }
     std::printf("%s", InspectionText(found.value()).c_str());
     if (FLAGS_svg_out.empty()) continue;
+    const Inspection& seen = found.value();
+    if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
+      return Fail(file + ": a " + seen.format + " has nothing to draw; name a recording's file");
+    }
     if (MaybeError error = WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value()))) {
       return Fail(*error);
     }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "datasets/load_person.h"
+#include "datasets/manifest_keys.h"
 #include "datasets/number_text.h"
 #include "datasets/push_csv.h"
 #include "datasets/select_recordings.h"
@@ -61,6 +62,10 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.pushed_person = entry.pushed_person;
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
+
+  for (const std::string& odd : MisspeltKeys(entry)) {
+    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + odd);
+  }
 
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
   for (std::size_t i = 0; i < entry.motion_files().size(); ++i) {

@@ -137,6 +137,10 @@ TEST_F(AnyRecordingTest, Inspect) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_TRUE(Contains(run.err, "none.trc: there is no such file"));
   EXPECT_TRUE(Contains(run.out, "12, 12 can be read, 12 have a push"));
+  run = RunApp("pushid-inspect", {manifest_, "--svg_out=" + Path("m.svg")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(Contains(run.err, "a manifest has nothing to draw"));
+  EXPECT_FALSE(std::filesystem::exists(Path("m.svg")));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {}), {"name one or more files"}));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {"a", "b", "--svg_out=" + Path("x.svg")}),
                       {"--svg_out draws one file"}));
@@ -242,7 +246,7 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   ASSERT_NE(at, std::string::npos) << run.out;
   EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
 
-  EXPECT_TRUE(Refused(with({c3d_flag}), {"an analog channel or platform:1"}));
+  EXPECT_TRUE(Refused(with({c3d_flag}), {"--sensor_column", "it has rod"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
   EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
