@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/app_support.h"
+#include "apps/overwrite_check.h"
 
 DEFINE_string(recordings, "", "manifest.json of the recordings");
 DEFINE_string(setting, "all",
@@ -73,6 +74,13 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
       LoadRecordings(FLAGS_recordings, options.value(), &odd);
   for (const std::string& warning : odd) Warn(warning);
   if (warnings != nullptr) *warnings = odd;
+  if (!recordings.ok()) return recordings;
+  // Pushes may be written again where they were read; a motion cannot be had back.
+  for (const Recording& recording : recordings.value()) {
+    for (const RecordedPerson& person : recording.people) {
+      if (MaybeError error = CheckNoOutput("recording " + recording.id, person.file)) return *error;
+    }
+  }
   return recordings;
 }
 

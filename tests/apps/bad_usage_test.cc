@@ -141,6 +141,7 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
       {"pushid-report", model, {"--model=" + model, "--html_out=" + model}},
       {"pushid-report", model, {"--model=" + Path("link.json"), "--html_out=" + model}},
       {"pushid-predict", model, with(predict, {"--out=" + folder_.string() + "/./model.json"})},
+      {"pushid-evaluate", bvh, {Recordings(), "--model=" + model, "--json_out=" + bvh}},
       {"pushid-animate", model, with(predict, {"--out=" + model})},
       {"pushid-fit", model, {Recordings(), "--self_from=" + model, "--model_out=" + model}},
   };
