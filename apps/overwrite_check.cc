@@ -51,11 +51,6 @@ Error BothName(const std::string& a, const std::string& b, const std::string& pa
 
 }  // namespace
 
-bool IsOutputFlag(const std::string& name) {
-  const bool ends = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
-  return name == "out" || name == "bootstrap_file" || (ends && name != "leave_out");
-}
-
 MaybeError CheckOutputs() {
   const std::vector<NamedPath> outputs = Outputs();
   for (size_t i = 0; i < outputs.size(); ++i) {

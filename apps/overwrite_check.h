@@ -10,8 +10,11 @@
 
 namespace pushid {
 
-// Whether a flag of this name says where to write.
-bool IsOutputFlag(const std::string& name);
+// Whether a flag of this name says where to write. Here, so that plans are read without flags.
+inline bool IsOutputFlag(const std::string& name) {
+  const bool ends = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
+  return name == "out" || name == "bootstrap_file" || (ends && name != "leave_out");
+}
 
 // Between the flags, as they are given. RunApp asks for it before anything is done.
 MaybeError CheckOutputs();
