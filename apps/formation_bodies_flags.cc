@@ -55,7 +55,7 @@ const char* GivenBodyFlag() {
   return nullptr;
 }
 
-Result<std::optional<FormationBodyPlan>> PlanBodies(Scene* scene) {
+Result<std::optional<FormationBodyPlan>> PlanBodies(bool rod_moves, Scene* scene) {
   if (FLAGS_restoration.empty()) {
     const char* flag = GivenBodyFlag();
     if (flag == nullptr) return std::optional<FormationBodyPlan>();
@@ -63,7 +63,7 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(Scene* scene) {
                  " needs bodies: name the folder of pushid-train-restoration by --restoration"};
   }
   FormationBodyPlan plan;
-  Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration(rod_moves);
   if (!restoration.ok()) return restoration.error();
   plan.restoration = std::move(restoration.value());
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();

@@ -21,7 +21,7 @@ struct FormationBodyPlan {
 };
 
 // Nothing without --restoration. Gives the scene's people the pendulums of their bodies.
-Result<std::optional<FormationBodyPlan>> PlanBodies(Scene* scene);
+Result<std::optional<FormationBodyPlan>> PlanBodies(bool rod_moves, Scene* scene);
 
 // What --html_out, --strip_out, --joints_out and --bodies_out name.
 MaybeError WriteFormationBodies(const FormationRun& run, const FormationBodyPlan& plan,

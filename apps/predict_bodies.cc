@@ -73,7 +73,8 @@ MaybeError CheckBodyFlags(const std::string& out) {
 
 int WriteBodies(const Recording& recorded, SkeletonMapping mapping, const Prediction& prediction,
                 const std::string& out, bool compare) {
-  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  const Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(prediction.rod_moves);
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
   if (!postprocess.ok()) return Fail(postprocess.error());

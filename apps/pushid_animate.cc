@@ -11,6 +11,7 @@
 #include "ident/animation.h"
 #include "ident/body_evaluation.h"
 #include "ident/prediction.h"
+#include "models/self_network.h"
 
 DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
@@ -42,7 +43,8 @@ int Run() {
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (FLAGS_restoration.empty()) FLAGS_restoration = "rigid";
-  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  const Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(RodMoves(model.value().options));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
   if (!postprocess.ok()) return Fail(postprocess.error());

@@ -14,6 +14,7 @@
 #include "ident/peer.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
+#include "models/self_network.h"
 
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_string(
@@ -33,7 +34,8 @@ Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
     return Error{"--peer needs --restoration to be compared with"};
   }
   if (FLAGS_restoration.empty()) return std::optional<BodyEvaluation>();
-  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration();
+  const Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(RodMoves(model.options));
   if (!restoration.ok()) return restoration.error();
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
   if (!postprocess.ok()) return postprocess.error();

@@ -78,7 +78,7 @@ int Run() {
   for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
   // A large network has no force yet and no Jacobian at all: the physical model is what is checked.
   FitOptions checked = options.value();
-  if (NeedsGradientTraining(checked)) checked.model.self_network = nullptr;
+  if (NeedsGradientTraining(checked)) checked = PhysicsAlone(checked);
   if (MaybeError error = CheckEffects(FitProblem(pendulums, checked))) return Fail(*error);
 
   ProgressLine line;

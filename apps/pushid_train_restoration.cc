@@ -16,6 +16,7 @@
 #include "ident/report_text.h"
 #include "ident/restoration_training_run.h"
 #include "ident/result_json.h"
+#include "models/self_network.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
 DEFINE_string(kind, "window",
@@ -83,6 +84,10 @@ Result<RestorationRunOptions> RunOptions() {
   if (!postprocess.ok()) return postprocess.error();
   RestorationRunOptions options;
   options.fit = fit.value().options;
+  if (RodMoves(options.fit.model)) {
+    return Error{"its rod moves, and bodies hang on rods of constant length; fit --rod=constant",
+                 FLAGS_model};
+  }
   options.fit.num_threads = FLAGS_num_threads;
   options.postprocess = postprocess.value();
   options.inner_folds = FLAGS_inner_folds;

@@ -8,7 +8,12 @@ DEFINE_string(restoration, "",
 
 namespace pushid {
 
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration() {
+Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(bool rod_moves) {
+  if (rod_moves) {
+    return Error{
+        "the model's rod moves, and bodies hang on rods of constant length; fit one with "
+        "--rod=constant for --restoration"};
+  }
   return LoadRestoration(FLAGS_restoration);
 }
 

@@ -15,6 +15,7 @@
 #include "ident/formation_run.h"
 #include "ident/report_text.h"
 #include "ident/text_table.h"
+#include "models/self_network.h"
 
 DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");
 DEFINE_string(forces_out, "", "formation: net forces, one row a frame, person and part (CSV)");
@@ -175,10 +176,10 @@ int SimulateFormation() {
   }
   Result<FormationPlan> plan = PlanOfFlags();
   if (!plan.ok()) return Fail(plan.error());
-  const auto bodies = PlanBodies(&plan.value().scene);
-  if (!bodies.ok()) return Fail(bodies.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
+  const auto bodies = PlanBodies(RodMoves(model.value().options), &plan.value().scene);
+  if (!bodies.ok()) return Fail(bodies.error());
   if (MaybeError error = ActAsIn(FLAGS_as_setting, &model.value())) return Fail(*error);
   if (MaybeError error = CheckOutputs(plan.value().scene.num_people())) return Fail(*error);
   if (!model.value().options.interaction.Any() && plan.value().scene.num_people() > 1) {

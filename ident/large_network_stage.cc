@@ -18,6 +18,17 @@ std::vector<AdjointRecording> Counted(const FitProblem& problem, const std::vect
   return counted;
 }
 
+// What the network is trained beside: the physical parameters held where they fit best alone, and
+// the lift free, without which a rod's law means nothing.
+ParameterMap MapBesideNetwork(const FitOptions& options, const ParameterSet<double>& physics) {
+  ParameterMap map;
+  map.values = physics;
+  const ParameterSpec& lift = options.table[kRodLift];
+  if (lift.free) map.fitted = {{lift.id, lift.transform}};
+  map.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  return map;
+}
+
 }  // namespace
 
 bool NeedsGradientTraining(const FitOptions& options) {
@@ -26,11 +37,15 @@ bool NeedsGradientTraining(const FitOptions& options) {
          static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
 }
 
+FitOptions PhysicsAlone(FitOptions options) {
+  options.model.self_network = nullptr;
+  options.table[kRodLift].free = false;  // no rod moves
+  return options;
+}
+
 Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
                                      const FitOptions& options, const SolveProgress& progress) {
-  FitOptions physics = options;
-  physics.model.self_network = nullptr;
-  physics.table[kRodLift].free = false;  // fitted with the network held, in the end
+  const FitOptions physics = PhysicsAlone(options);
   const FitProblem problem(recordings, physics);
   const Solution solution = Solve(problem, progress);
   if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
@@ -45,10 +60,13 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   fit.training = Counted(problem, split.training);
   fit.held_out = Counted(problem, split.held_out);
   fit.model = options.model;
-  fit.map = problem.map();
-  fit.map.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  fit.map = MapBesideNetwork(options, problem.Parameters(solution.Best().to, ""));
+  for (const FittedParameter& f : fit.map.fitted) {
+    fit.shared.push_back(ToFitted(f.transform, options.table[f.parameter].nominal));
+  }
+  fit.shared_prior = SharedPriors(options.table, fit.map);
+  fit.options.fit_shared = true;
   fit.sigmas = options.sigmas;
-  fit.shared = solution.Best().to.shared;
   fit.options.weight_sigma = options.network_prior;
   fit.options.max_iterations = options.max_iterations;
   const Result<LargeNetworkSolution> trained =
@@ -63,10 +81,9 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   held.hold_network = true;
   held.start = FitStart::kNominal;
   held.horizons = {0};
-  for (size_t i = 0; i < fit.map.fitted.size(); ++i) {
-    const FittedParameter& f = fit.map.fitted[i];
-    held.table[f.parameter].nominal = ToNatural(f.transform, fit.shared[i]);
-  }
+  const ParameterSet<double> learned =
+      fit.map.Apply<double>(trained.value().shared.data(), nullptr);
+  for (ParameterSpec& spec : held.table.specs) spec.nominal = learned[spec.id];
   return held;
 }
 

@@ -13,6 +13,9 @@ namespace pushid {
 inline constexpr int kMostGaussNewtonWeights = 2000;
 bool NeedsGradientTraining(const FitOptions& options);
 
+// The fit without its network: the first of the steps.
+FitOptions PhysicsAlone(FitOptions options);
+
 // The options of the last of the three steps: the trained network, held, and the physical
 // parameters' values to start from. Errors: no physical optimum; what the adjoint gradient refuses
 // (people who touch, pooled parameters, free initial velocities).

@@ -2,12 +2,14 @@
 #include <cmath>
 
 #include "datasets/number_text.h"
+#include "datasets/random.h"
 #include "ident/diagnostics.h"
 #include "ident/score_blocks.h"
 
 namespace pushid {
 namespace {
 
+constexpr double kNearbyWeight = 0.1;
 constexpr double kNoEffect = 1e-12;                  // of the largest column, in typical sizes
 constexpr double kNearby = 2.0;                      // factor of the second look
 constexpr uint64_t kNearbySeed = 7;                  // fixed: the check is part of no random choice
@@ -69,8 +71,11 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 MaybeError CheckEffects(const FitProblem& problem) {
   std::vector<std::string> names = WithoutEffect(problem, problem.NominalPoint());
   if (names.empty()) return std::nullopt;
-  // A term may rest at the nominal values (a contact not reached) and act beside them.
+  // A term may rest at the nominal values (a contact not reached, a network that begins without
+  // any output) and act beside them.
   FitPoint nearby = RandomStart(problem, kNearby, kNearbySeed);
+  Random random(kNearbySeed);
+  for (double& weight : nearby.weights) weight += random.Uniform(-kNearbyWeight, kNearbyWeight);
   MoveOffBounds(problem, &nearby);
   const std::vector<std::string> still = WithoutEffect(problem, nearby);
   std::string list;

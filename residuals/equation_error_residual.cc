@@ -28,7 +28,7 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
   const SensitivityInputs inputs = RolloutInputs(scene, map_, layout_, blocks);
   const std::vector<SelfForce> self = SelfForces(scene, options_);
   const std::vector<int> sizes = layout_.BlockSizes();
-  Eigen::MatrixXd by_column(4, inputs.num_columns);
+  RowMajorMatrix by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
   int row = 0;
   // Equation error serves the start of a fit: contact is left at its nominal values there.

@@ -49,8 +49,8 @@ bool ModeResidual::Evaluate(double const* const* blocks, double* residuals,
   for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i], i);
   const Eigen::Matrix<Jet, kResiduals, 1> hinges = Hinges(jets);
   const int shared = map_.num_shared();
-  Eigen::MatrixXd by_column =
-      Eigen::MatrixXd::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
+  RowMajorMatrix by_column =
+      RowMajorMatrix::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
   for (const ColumnEntry& entry : map_.Entries(p, of_unit ? shared : -1)) {
     for (int row = 0; row < kResiduals; ++row) {
       by_column(row, entry.column) += entry.derivative * hinges[row].v[entry.parameter];

@@ -1,6 +1,8 @@
 // residuals: the chain rule through one step of an MLP, a GRU or an LSTM.
 #include "residuals/network_sensitivities.h"
 
+#include "residuals/narrow_product.h"
+
 namespace pushid {
 namespace {
 
@@ -18,8 +20,9 @@ NetworkSensitivities::NetworkSensitivities(const NetworkShape& shape, const doub
       weights_(shape, weights),
       scale_(kNetworkAcceleration * mass),
       weight_column_(weight_column),
-      z_(Columns::Zero(shape.num_features() + shape.hidden, num_columns)),
-      next_(shape.hidden, num_columns),
+      embedding_(shape.embedding, num_columns),
+      now_(shape.hidden, num_columns),
+      next_(Columns::Zero(shape.hidden, num_columns)),
       hidden_(VectorXd::Zero(shape.hidden)) {
   if (shape.kind == NetworkKind::kLstm) cell_ = Columns::Zero(shape.hidden, num_columns);
 }
@@ -45,31 +48,37 @@ void NetworkSensitivities::AddOwnGates(const NetworkState<double>& state, int bl
   AddOwn(first, width, shape_.candidate_width(), gain, state.context, rows);
 }
 
-void NetworkSensitivities::AdvanceFeatures(const NetworkState<double>& state,
-                                           const States& by_state, const Row& rod) {
-  static const auto kScales = MotionInputScales();
-  const bool sees_rod = shape_.rod_input && rod.size() > 0;
-  if (shape_.embedding == 0) {
-    z_.topRows(6).noalias() = kScales.asDiagonal() * by_state.middleRows<6>(2);
-    if (sees_rod) z_.row(6) = rod / kNetworkRod;
-    return;
-  }
+void NetworkSensitivities::AdvanceEmbedding(const NetworkState<double>& state, const Heard& heard) {
   const VectorXd slope = TanhSlope(state.features);
-  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(6) * kScales.asDiagonal();
-  auto features = z_.topRows(shape_.embedding);
-  features.noalias() = embed * by_state.middleRows<6>(2);
-  if (sees_rod) {
-    const VectorXd by_rod = slope.cwiseProduct(weights_.embed.col(6)) / kNetworkRod;
-    features.noalias() += by_rod * rod;
+  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(kMotionInputs) *
+                        MotionInputScales().asDiagonal();
+  SetNarrowProduct(embed, heard.by_state.middleRows<kMotionInputs>(2), embedding_);
+  if (shape_.rod_input && heard.rod.size() > 0) {
+    const VectorXd by_rod = slope.cwiseProduct(weights_.embed.col(kMotionInputs)) / kNetworkRod;
+    embedding_.noalias() += by_rod * heard.rod;
   }
-  AddOwn(0, shape_.num_inputs(), 0, slope, state.inputs, features);
+  AddOwn(0, shape_.num_inputs(), 0, slope, state.inputs, embedding_.topRows(shape_.embedding));
 }
 
-void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state) {
+void NetworkSensitivities::Carry(const Columns& step, const Heard& heard, bool add,
+                                 Columns* rows) const {
+  if (shape_.embedding > 0) {
+    NarrowProduct(step.leftCols(shape_.embedding), embedding_, add, *rows);
+  } else {
+    const Columns motion = step.leftCols(kMotionInputs) * MotionInputScales().asDiagonal();
+    NarrowProduct(motion, heard.by_state.middleRows<kMotionInputs>(2), add, *rows);
+    if (shape_.rod_input && heard.rod.size() > 0) {
+      rows->noalias() += (step.col(kMotionInputs) / kNetworkRod) * heard.rod;
+    }
+  }
+  if (shape_.recurrent()) AddNarrowProduct(step.rightCols(shape_.hidden), now_, *rows);
+}
+
+void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state, const Heard& heard) {
   const VectorXd slope = TanhSlope(state.gates);
   const int nf = shape_.num_features();
   const Columns step = slope.asDiagonal() * weights_.gates;
-  next_.noalias() = step * z_.topRows(nf);
+  Carry(step, heard, false, &next_);
   auto rows = next_.topRows(shape_.hidden);
   const int first = shape_.gates_at(), width = shape_.gate_width();
   AddOwn(first, width, 0, slope, state.features, rows);
@@ -78,7 +87,7 @@ void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state) {
          rows);
 }
 
-void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state) {
+void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const Heard& heard) {
   const int nf = shape_.num_features(), h = shape_.hidden;
   const VectorXd slope = LogisticSlope(state.gates);
   const VectorXd keep = state.gates.head(h), recall = state.gates.tail(h);
@@ -90,8 +99,8 @@ void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state) {
   step += by_r.asDiagonal() * weights_.gates.bottomRows(h);
   step.leftCols(nf) += by_n.asDiagonal() * weights_.candidates.leftCols(nf);
   step.rightCols(h) += by_n.cwiseProduct(recall).asDiagonal() * weights_.candidates.rightCols(h);
-  step.rightCols(h) += keep.asDiagonal();
-  next_.noalias() = step * z_;
+  step.rightCols(h).diagonal() += keep;
+  Carry(step, heard, false, &next_);
   AddOwnGates(state, 0, by_z, next_.topRows(h));
   AddOwnGates(state, 1, by_r, next_.topRows(h));
   const int first = shape_.candidates_at(), width = shape_.candidate_width();
@@ -99,7 +108,7 @@ void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state) {
   AddOwn(first, width, nf, by_n.cwiseProduct(recall), state.hidden_before, next_.topRows(h));
 }
 
-void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state) {
+void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const Heard& heard) {
   const int nf = shape_.num_features(), h = shape_.hidden;
   const VectorXd slope = LogisticSlope(state.gates);
   const VectorXd input = state.gates.head(h), output = state.gates.tail(h);
@@ -112,7 +121,7 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state) {
   step += by_f.asDiagonal() * weights_.gates.middleRows(h, h);
   step += by_g.asDiagonal() * weights_.candidates;
   cell_ = state.gates.segment(h, h).asDiagonal() * cell_;
-  cell_.noalias() += step * z_;
+  Carry(step, heard, true, &cell_);
   AddOwnGates(state, 0, by_i, cell_.topRows(h));
   AddOwnGates(state, 1, by_f, cell_.topRows(h));
   const int first = shape_.candidates_at(), width = shape_.candidate_width();
@@ -120,34 +129,35 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state) {
   AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
 
   step = by_o.asDiagonal() * weights_.gates.bottomRows(h);
-  next_.noalias() = step * z_;
+  Carry(step, heard, false, &next_);
   next_ += output.cwiseProduct(TanhSlope(state.cell_tanh)).asDiagonal() * cell_;
   AddOwnGates(state, 2, by_o, next_.topRows(h));
 }
 
 void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state,
                                    const Row& rod) {
-  AdvanceFeatures(state, by_state, rod);
+  const Heard heard{by_state, rod};
+  if (shape_.embedding > 0) AdvanceEmbedding(state, heard);
+  now_.swap(next_);
   switch (shape_.kind) {
     case NetworkKind::kNone:
       return;
     case NetworkKind::kMlp:
-      AdvanceMlp(state);
+      AdvanceMlp(state, heard);
       break;
     case NetworkKind::kGru:
-      AdvanceGru(state);
+      AdvanceGru(state, heard);
       break;
     case NetworkKind::kLstm:
-      AdvanceLstm(state);
+      AdvanceLstm(state, heard);
       break;
   }
-  z_.bottomRows(shape_.hidden) = next_;
   hidden_ = state.hidden;
 }
 
-void NetworkSensitivities::AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const {
+void NetworkSensitivities::AddTo(ForceColumns* by_column) const {
   const Columns output = scale_ * weights_.output;
-  by_column->noalias() += output * next_;
+  AddNarrowProduct(output, next_, *by_column);
   AddOwn(shape_.output_at(), shape_.hidden, 0, VectorXd::Constant(4, scale_), hidden_,
          by_column->topRows(4));
 }

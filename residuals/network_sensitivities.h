@@ -16,8 +16,10 @@ namespace pushid {
 
 class NetworkSensitivities {
  public:
-  using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
-  using States = Eigen::Ref<const Eigen::Matrix<double, 8, Eigen::Dynamic>>;
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using ForceColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
+  using StateColumns = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
+  using States = Eigen::Ref<const StateColumns>;
   using Row = Eigen::Ref<const Eigen::RowVectorXd>;
 
   // weight_column: of the first weight; negative when the weights are not fitted.
@@ -30,12 +32,19 @@ class NetworkSensitivities {
                const Row& rod = Eigen::RowVectorXd());
 
   // Adds d(force)/d(columns) of the last step.
-  void AddTo(Eigen::Matrix<double, 4, Eigen::Dynamic>* by_column) const;
+  void AddTo(ForceColumns* by_column) const;
   // Adds by_force times it.
   void AddTo(const Eigen::RowVector4d& by_force, Eigen::RowVectorXd* by_column) const;
 
  private:
-  void AdvanceFeatures(const NetworkState<double>& state, const States& by_state, const Row& rod);
+  // What a step hears of one moment: d[q, qd]/d(columns), d(rod)/d(columns).
+  struct Heard {
+    const States& by_state;
+    const Row& rod;
+  };
+  void AdvanceEmbedding(const NetworkState<double>& state, const Heard& heard);
+  // rows = step [features; hidden], or the same added: the linearized step meets the columns.
+  void Carry(const Columns& step, const Heard& heard, bool add, Columns* rows) const;
   // Rows of weights, `width` apart from `first` on, whose sums move their rows by `gain`: adds gain
   // times what each weight multiplies, from the row's weight `offset` on.
   template <typename Rows>
@@ -45,16 +54,17 @@ class NetworkSensitivities {
   template <typename Rows>
   void AddOwnGates(const NetworkState<double>& state, int block, const Eigen::VectorXd& gain,
                    Rows rows) const;
-  void AdvanceMlp(const NetworkState<double>& state);
-  void AdvanceGru(const NetworkState<double>& state);
-  void AdvanceLstm(const NetworkState<double>& state);
+  void AdvanceMlp(const NetworkState<double>& state, const Heard& heard);
+  void AdvanceGru(const NetworkState<double>& state, const Heard& heard);
+  void AdvanceLstm(const NetworkState<double>& state, const Heard& heard);
 
   NetworkShape shape_;
   NetworkWeights<double> weights_;
   double scale_;
   int weight_column_;
-  Columns z_, next_, cell_;  // of [features; hidden], of the hidden units next, of the cells
-  Eigen::VectorXd hidden_;   // the last step's
+  Columns embedding_, now_, next_, cell_;  // of the embedding, the hidden units before and after a
+                                           // step, the cells
+  Eigen::VectorXd hidden_;                 // the last step's
 };
 
 }  // namespace pushid

@@ -55,9 +55,9 @@ Eigen::Vector3d TakeoverResidual::Regress(const double* weights,
                                           double* mean_square) const {
   const int columns = num_weights_;
   if (jacobian != nullptr) jacobian->setZero(3, columns);
-  const Eigen::Matrix<double, 8, Eigen::Dynamic> measured =
-      Eigen::Matrix<double, 8, Eigen::Dynamic>::Zero(8, columns);  // states do not move
-  Eigen::Matrix<double, 4, Eigen::Dynamic> by_weight;
+  using States = NetworkSensitivities::StateColumns;
+  const States measured = States::Zero(8, columns);  // states do not move
+  NetworkSensitivities::ForceColumns by_weight;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double squares = 0.0, frames = 0.0;
   for (const Path& path : paths_) {

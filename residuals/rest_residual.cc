@@ -77,7 +77,7 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
 
   const std::vector<int> sizes = p.layout.BlockSizes();
   const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
-  Eigen::MatrixXd by_column(1, inputs.num_columns);
+  RowMajorMatrix by_column(1, inputs.num_columns);
   int row = 0;
   for (int t = p.first_frame; t < p.last_frame; ++t) {
     for (int n = 0; n < p.scene.num_people(); ++n) {

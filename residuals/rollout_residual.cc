@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "residuals/narrow_product.h"
+
 namespace pushid {
 
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by) {
@@ -48,14 +50,13 @@ SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
   return inputs;
 }
 
-void ScatterJacobian(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
+void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
                      const std::vector<int>& block_sizes, int first_row, int total_rows,
                      double** jacobians) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   int column = 0;
   for (size_t b = 0; b < block_sizes.size(); column += block_sizes[b++]) {
     if (jacobians[b] == nullptr) continue;
-    Eigen::Map<RowMajor> block(jacobians[b], total_rows, block_sizes[b]);
+    Eigen::Map<RowMajorMatrix> block(jacobians[b], total_rows, block_sizes[b]);
     block.middleRows(first_row, jacobian.rows()) = jacobian.middleCols(column, block_sizes[b]);
   }
 }
@@ -87,8 +88,8 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
   const bool rod_moves = RodMoves(p.options);
   Eigen::Matrix<double, kFrameResiduals, 8> by_state;
   Eigen::Matrix<double, kFrameResiduals, 10> by_rod;  // by_state, by the rod, by the cart's lift
-  Eigen::Matrix<double, kFrameResiduals, Eigen::Dynamic> by_column(kFrameResiduals,
-                                                                   inputs.num_columns);
+  Eigen::Matrix<double, kFrameResiduals, Eigen::Dynamic, Eigen::RowMajor> by_column(
+      kFrameResiduals, inputs.num_columns);
   int row = 0;
   for (int t = 1; t < p.horizon; ++t) {
     for (int n = 0; n < scene.num_people(); ++n, row += kFrameResiduals) {
@@ -109,7 +110,8 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
         r = p.weight *
             FrameResidualWithJacobian(body, state, p.Measured(t, n), p.sigmas, &by_state);
       }
-      by_column.noalias() = (p.weight * by_state) * sensitivities.At(t, n);
+      by_state *= p.weight;
+      SetNarrowProduct(by_state, sensitivities.At(t, n), by_column);
       if (rod_moves) {
         by_column.noalias() += (p.weight * by_rod.col(8)) * sensitivities.Rod(t, n);
         for (const ColumnEntry& entry : inputs.entries[n]) {

@@ -22,6 +22,8 @@ namespace pushid {
 // The unit of each person, by which pooled parameters differ.
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by);
 
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 // Everything a rollout residual needs; shared by the analytic cost function and its oracle.
 struct RolloutProblem {
   const PendulumRecording* recording = nullptr;  // must outlive the residual
@@ -105,7 +107,7 @@ struct RolloutResidualFunctor {
 };
 
 // Writes `jacobian` (rows x all columns) into the blocks that Ceres asks for.
-void ScatterJacobian(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
+void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
                      const std::vector<int>& block_sizes, int first_row, int total_rows,
                      double** jacobians);
 

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "residuals/narrow_product.h"
 #include "residuals/network_sensitivities.h"
 #include "residuals/rod_sensitivities.h"
 
@@ -61,7 +62,7 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
 
 namespace {
 
-using Columns = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+using Columns = NetworkSensitivities::ForceColumns;
 
 // Derivatives of what everybody gets from others, now and lately.
 class ReceivedSensitivities {
@@ -211,7 +212,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
       const auto now = sensitivities->At(t, n);
-      by_column.noalias() = jacobian.by_state * now;
+      SetNarrowProduct(jacobian.by_state, now, by_column);
       if (self.cart_derivative) {
         by_column.topRows<2>() +=
             jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
@@ -228,8 +229,9 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         if (!networks.empty()) networks[n].AddTo(&by_column);
       }
       auto next = sensitivities->At(t + 1, n);
-      next.bottomRows<4>().noalias() =
-          now.bottomRows<4>() + scene.dt * (InverseMassMatrix(now_body, state.q) * by_column);
+      next.bottomRows<4>() = now.bottomRows<4>();
+      const Matrix4<double> inverse = scene.dt * InverseMassMatrix(now_body, state.q);
+      AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
       if (!rod_moves) continue;
       self.TotalJacobian(p, state, previous, &jacobian);

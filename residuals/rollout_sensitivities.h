@@ -33,19 +33,19 @@ struct SensitivityInputs {
 // d [q, qd] / d columns at every frame and person; of the rod beside it, where it moves.
 class RolloutSensitivities {
  public:
-  using Block = Eigen::Matrix<double, 8, Eigen::Dynamic>;
+  using Block = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
   void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false) {
     num_people_ = num_people;
     num_columns_ = num_columns;
     const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
-    storage_.resize(8, all);
+    storage_.resize(8 * all);
     rod_.resize(rod_moves ? all : 0);
   }
-  auto At(int frame, int person) {
-    return storage_.middleCols(Offset(frame, person), num_columns_);
+  Eigen::Map<Block> At(int frame, int person) {
+    return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
   }
-  auto At(int frame, int person) const {
-    return storage_.middleCols(Offset(frame, person), num_columns_);
+  Eigen::Map<const Block> At(int frame, int person) const {
+    return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
   }
   // d l / d columns; empty where the rod is constant.
   auto Rod(int frame, int person) {
@@ -63,7 +63,7 @@ class RolloutSensitivities {
     return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
   }
   int num_people_ = 0, num_columns_ = 0;
-  Block storage_;
+  Eigen::VectorXd storage_;  // the blocks, one after the other
   Eigen::RowVectorXd rod_;
 };
 

@@ -1,5 +1,6 @@
-// residuals: the inner loops of networks in lockstep (network_lockstep.h), once for each width of
-// vectors that processors have, and the choice of the widest at run time.
+// residuals: the inner loops of networks in lockstep (network_lockstep.h) and of derivatives by
+// many weights (narrow_product.h), once for each width of vectors that processors have, and the
+// choice of the widest at run time.
 //
 // Releases are built for any x86-64, where Eigen's own products have 128-bit vectors and no fused
 // multiply-add, and its tanh of doubles no vectors at all. For 1024 x 290 times 290 x 32 on one
@@ -21,6 +22,11 @@ struct VectorKernels {
   // c by columns, `stride` apart.
   void (*add_tile)(int depth, const double* left, const double* right, double* c,
                    std::ptrdiff_t stride);
+  // c = a b or, where add, c += a b, all by rows, b's and c's `stride` apart: a few rows of many
+  // columns.
+  void (*narrow_product)(int rows, int depth, std::ptrdiff_t columns, const double* a,
+                         const double* b, std::ptrdiff_t b_stride, double* c,
+                         std::ptrdiff_t c_stride, bool add);
   // In place; to about two units in the last place, of tanh near zero too.
   void (*tanh)(double* values, std::ptrdiff_t count);
   void (*logistic)(double* values, std::ptrdiff_t count);

@@ -46,6 +46,56 @@ void AddTile(int depth, const double* left, const double* right, double* c, std:
   }
 }
 
+inline Vector LoadFirst(const double* from, int count) {
+  if (count == PUSHID_VECTOR_DOUBLES) return Load(from);
+  Vector vector = {};
+  __builtin_memcpy(&vector, from, count * sizeof(double));
+  return vector;
+}
+
+// `width` columns of some rows: one vector, each number of b read once for all rows.
+template <int kRows>
+inline void NarrowBlock(int depth, int width, const double* a, const double* b,
+                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  Vector sums[kRows];
+#pragma GCC unroll 8
+  for (int r = 0; r < kRows; ++r) sums[r] = add ? LoadFirst(c + r * c_stride, width) : Vector{};
+  for (int k = 0; k < depth; ++k) {
+    const Vector row = LoadFirst(b + k * b_stride, width);
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) sums[r] += row * a[r * depth + k];
+  }
+#pragma GCC unroll 8
+  for (int r = 0; r < kRows; ++r) {
+    __builtin_memcpy(c + r * c_stride, &sums[r], width * sizeof(double));
+  }
+}
+
+template <bool kWhole>
+inline void NarrowStrip(int rows, int depth, int width, const double* a, const double* b,
+                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  if (kWhole) width = PUSHID_VECTOR_DOUBLES;  // known to the compiler
+  for (; rows >= 8; rows -= 8, a += 8 * depth, c += 8 * c_stride) {
+    NarrowBlock<8>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+  for (; rows >= 4; rows -= 4, a += 4 * depth, c += 4 * c_stride) {
+    NarrowBlock<4>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+  for (; rows > 0; --rows, a += depth, c += c_stride) {
+    NarrowBlock<1>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+}
+
+void NarrowProduct(int rows, int depth, std::ptrdiff_t columns, const double* a, const double* b,
+                   std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
+  for (; columns >= kWidth; columns -= kWidth, b += kWidth, c += kWidth) {
+    NarrowStrip<true>(rows, depth, kWidth, a, b, b_stride, c, c_stride, add);
+  }
+  const int rest = static_cast<int>(columns);
+  if (rest > 0) NarrowStrip<false>(rows, depth, rest, a, b, b_stride, c, c_stride, add);
+}
+
 // exp(x) - 1 = 2^n (1 + p) - 1 with p = exp(r) - 1 by its series, x = n ln 2 + r, |r| <= ln 2 / 2:
 // p starts with r, so that the result is exact to rounding near zero too. Vectors throughout, since
 // compilers leave the plain loop alone where bounds are to respect NaN.
@@ -100,8 +150,8 @@ void Each(double* values, std::ptrdiff_t count) {
   __builtin_memcpy(values + i, &result, (count - i) * sizeof(double));
 }
 
-constexpr VectorKernels kKernels = {
-    PUSHID_VECTOR_NAME, kTileRows, PUSHID_TILE_COLUMNS, AddTile, Each<TanhOf>, Each<LogisticOf>};
+constexpr VectorKernels kKernels = {PUSHID_VECTOR_NAME, kTileRows,    PUSHID_TILE_COLUMNS, AddTile,
+                                    NarrowProduct,      Each<TanhOf>, Each<LogisticOf>};
 
 }  // namespace
 }  // namespace pushid

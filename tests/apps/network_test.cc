@@ -22,5 +22,43 @@ TEST_F(NetworkAppTest, EveryProgramTakesAnEnsemble) {
   }
 }
 
+TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
+  const std::string model =
+      FitModel("model.json", {"--self_force=mlp:2", "--rod=linear", "--rod_input", "--ensemble=2"});
+  EXPECT_EQ(Json(model).at("self_network").at("rod").at("kind"), "linear");
+  EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 26u + 11u);
+  for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"pushid-report", {Recordings(), "--html_out=" + Path("report.html")}},
+           {"pushid-evaluate", {Recordings()}},
+           {"pushid-predict", {Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}}}) {
+    std::vector<std::string> all = {"--model=" + model};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const auto run = RunApp(app, all);
+    EXPECT_EQ(run.exit_code, 0) << app << ": " << run.err;
+  }
+  EXPECT_NE(ReadText(Path("report.html")).find("network mlp:2 and rod linear"), std::string::npos);
+  EXPECT_NE(ReadText(Path("path.csv")).find(",rod_length_m,cart_height_m"), std::string::npos);
+  const auto bodies = RunApp("pushid-predict", {"--model=" + model, Recordings(), "--id=" + id_,
+                                                "--restoration=rigid", "--out=" + Path("b.bvh")});
+  EXPECT_EQ(bodies.exit_code, 1);
+  EXPECT_NE(bodies.err.find("the model's rod moves"), std::string::npos);
+}
+
+TEST_F(NetworkAppTest, RodFlagsThatCannotBeAreNamed) {
+  for (const auto& [flags, complaint] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--rod=gru:4"}, "--rod is 'gru:4'"},
+           {{"--rod_input", "--rod=linear"}, "--rod_input is for a network beside a rod"},
+           {{"--rod_input", "--self_force=mlp:2"}, "--rod_input is for a network beside a rod"},
+           {{"--rod=linear", "--takeover_weight=1"}, "only the rod has a network"},
+           {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"}}) {
+    std::vector<std::string> all = {Recordings(), "--model_out=" + Path("m.json")};
+    all.insert(all.end(), flags.begin(), flags.end());
+    const auto run = RunApp("pushid-fit", all);
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.err.find(complaint), std::string::npos) << run.err;
+  }
+}
+
 }  // namespace
 }  // namespace pushid

@@ -17,40 +17,43 @@
 namespace pushid {
 namespace {
 
-constexpr NetworkShape kShapes[] = {{NetworkKind::kMlp, 4},
-                                    {NetworkKind::kGru, 8},
-                                    {NetworkKind::kGru, 64, 16},
-                                    {NetworkKind::kLstm, 256, 32}};
+// The last two with LDP's law of the rod, alone and beside its self force.
+const SelfNetwork& Network(int64_t index) {
+  static const std::vector<int> hidden = {256, 128, 256};
+  static const SelfNetwork networks[] = {
+      {{NetworkKind::kMlp, 4}, {}},
+      {{NetworkKind::kGru, 8}, {}},
+      {{NetworkKind::kGru, 64, 16}, {}},
+      {{NetworkKind::kLstm, 256, 32}, {}},
+      {{}, {}, {RodKind::kMlp, hidden}},
+      {{NetworkKind::kLstm, 256, 32}, {}, {RodKind::kMlp, hidden}}};
+  return networks[index];
+}
 
-// Hidden weights at random by 1 / sqrt(inputs), the output small: people move nearly as without.
-std::vector<double> SomeWeights(const NetworkShape& shape) {
+// As a fit begins, the outputs small instead of zero: people move nearly as without.
+std::vector<double> SomeWeights(const SelfNetwork& network) {
+  std::vector<double> weights = InitialNetwork(network.shape, 7, network.rod)->weights;
   Random random(7);
-  std::vector<double> weights(shape.num_weights());
-  for (int i = 0; i < shape.num_weights(); ++i) {
-    const double size = i < shape.gates_at()    ? 0.4
-                        : i < shape.output_at() ? 1.0 / std::sqrt(shape.gate_width())
-                                                : 0.01;
-    weights[i] = random.Uniform(-size, size);
+  for (double& weight : weights) {
+    if (weight == 0.0) weight = random.Uniform(-0.01, 0.01);
   }
   return weights;
 }
 
 // Arguments: the network, the vectors, and whether with the gradient.
 void Adjoint(benchmark::State& state) {
-  const NetworkShape& shape = kShapes[state.range(0)];
+  const SelfNetwork& network = Network(state.range(0));
   if (state.range(1) >= static_cast<int>(SupportedVectorKernels().size())) {
     state.SkipWithError("this processor has no such vectors");
     return;
   }
   const VectorKernels& kernels = *SupportedVectorKernels()[state.range(1)];
-  auto network = std::make_shared<SelfNetwork>();
-  network->shape = shape;
   ModelOptions options;
-  options.self_network = network;
+  options.self_network = std::make_shared<const SelfNetwork>(network);
   ParameterMap map;
   map.values = PublishedTailParameters();
   map.fitted = {{kMu, Transform::kLog}, {kKpTheta, Transform::kLog}, {kAx, Transform::kIdentity}};
-  map.num_weights = shape.num_weights();
+  map.num_weights = network.num_weights();
   std::vector<double> shared;
   for (const FittedParameter& f : map.fitted) {
     shared.push_back(ToFitted(f.transform, map.values[f.parameter]));
@@ -62,7 +65,7 @@ void Adjoint(benchmark::State& state) {
     steps += recording.num_frames() - 1;
   }
   auto adjoint = AdjointGradient::Create(recordings, options, map, {}, kernels).value();
-  const std::vector<double> weights = SomeWeights(shape);
+  const std::vector<double> weights = SomeWeights(network);
   std::vector<double> by_shared(shared.size()), by_weight(weights.size());
   for (auto _ : state) {
     const bool all = state.range(2) != 0;
@@ -72,19 +75,22 @@ void Adjoint(benchmark::State& state) {
     if (!cost.ok()) state.SkipWithError("a rollout fails");
     benchmark::ClobberMemory();
   }
-  state.SetLabel(NetworkName(shape) + ", " + std::to_string(shape.num_weights()) + " weights, " +
-                 kernels.name + (state.range(2) != 0 ? ", gradient, " : ", cost alone, ") +
+  state.SetLabel(LearnedName(network) + ", " + std::to_string(network.num_weights()) +
+                 " weights, " + kernels.name +
+                 (state.range(2) != 0 ? ", gradient, " : ", cost alone, ") +
                  std::to_string(recordings.size()) + " " + SinglePeople().origin + " recordings, " +
                  std::to_string(steps) + " person-steps");
 }
-BENCHMARK(Adjoint)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2}, {0, 1}});
+BENCHMARK(Adjoint)
+    ->Unit(benchmark::kMillisecond)
+    ->ArgsProduct({{0, 1, 2, 3, 4, 5}, {0, 1, 2}, {0, 1}});
 
 // A training as it is used: every fourth recording held out, until these have not come closer for
 // 30 iterations. The label has what became of them, in units of the cost. Arguments: the
 // network, and ten times the prior's standard deviation (0: none).
 void Training(benchmark::State& state) {
   LargeNetworkFit fit;
-  fit.model.self_network = InitialNetwork(kShapes[state.range(0)], 1);
+  fit.model.self_network = InitialNetwork(Network(state.range(0)).shape, 1);
   fit.map.values = PublishedTailParameters();
   const std::vector<PendulumRecording>& all = SinglePeople().recordings;
   for (size_t i = 0; i < all.size(); ++i) {
@@ -95,7 +101,7 @@ void Training(benchmark::State& state) {
   LargeNetworkSolution s;
   for (auto _ : state) s = FitLargeNetwork(fit).value();
   state.SetLabel(
-      NetworkName(kShapes[state.range(0)]) + ", " + std::to_string(s.trace.size() - 1) +
+      LearnedName(Network(state.range(0))) + ", " + std::to_string(s.trace.size() - 1) +
       " iterations, " + std::to_string(s.gradients) + " gradients, best after " +
       std::to_string(s.best_iteration) + "; training " + std::to_string(s.initial_training_cost) +
       " -> " + std::to_string(s.final_training_cost) + ", held out " +

@@ -2,15 +2,10 @@
 // in three regimes.
 #include "residuals/network_sensitivities.h"
 
-#include <ceres/dynamic_autodiff_cost_function.h>
-
-#include "residuals/rollout_residual.h"
-#include "tests/residuals/residual_samples.h"
+#include "tests/residuals/learned_pair.h"
 
 namespace pushid {
 namespace {
-
-constexpr int kFrames = 30;
 
 std::vector<NetworkShape> EveryNetwork() {
   return {{NetworkKind::kMlp, 4},          {NetworkKind::kMlp, 1},
@@ -19,53 +14,18 @@ std::vector<NetworkShape> EveryNetwork() {
           {NetworkKind::kMlp, 3, 0, true}, {NetworkKind::kGru, 2, 0, true}};
 }
 
-// Two people, one of whom is not under all forces for a while: a network thinks on.
-PendulumRecording NetworkPair(const ModelOptions& options, double lean, double push, double noise,
-                              Random* random) {
-  Scene scene = SceneOfPeople(2, lean, random);
-  scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, push, random),
-                  RandomPush(1, 2, 5, PushKind::kNetWithoutFriction, push, random)};
-  PendulumRecording recording =
-      RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kFrames);
-  AddNoise(noise, random, &recording);
-  recording.initial_velocity = InitialVelocity::kFree;
-  return recording;
-}
-
-struct Regime {
-  std::string name;
-  double lean, push, velocity, noise, weight;
-  double absolute;  // tolerance where a whole column vanishes
-};
-
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
-
 class NetworkTwins : public testing::TestWithParam<Regime> {};
 
 TEST_P(NetworkTwins, DerivativesByHandEqualJets) {
   const Regime& regime = GetParam();
   Random random(51);
-  ParameterMap map = EveryParameterMap({kMu, kAx});
+  const ParameterMap map = EveryParameterMap({kMu, kAx});
   for (const NetworkShape& shape : EveryNetwork()) {
     for (PushUse use : {PushUse::kAdded, PushUse::kAsRecorded}) {
       SCOPED_TRACE(NetworkName(shape));
       ModelOptions options = WithNetwork(shape, regime.weight, &random);
       options.push = use;
-      map.num_weights = shape.num_weights();
-      const PendulumRecording recording =
-          NetworkPair(options, regime.lean, regime.push, regime.noise, &random);
-      const auto problem = MakeRolloutProblem(recording, options, map, {}, 0.7, 0);
-      ParameterBlocks blocks =
-          RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.0, &random);
-      for (double& v : blocks[blocks.size() - 2])
-        v = random.Uniform(-regime.velocity, regime.velocity);
-      for (double& w : blocks.back()) w = random.Uniform(-regime.weight, regime.weight);
-      ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16> oracle(
-          new RolloutResidualFunctor{problem});
-      for (int size : problem->layout.BlockSizes()) oracle.AddParameterBlock(size);
-      oracle.SetNumResiduals(problem->num_residuals());
-      ExpectCorrectJacobian(RolloutResidual(problem), oracle, blocks,
-                            {1e-10, regime.absolute, 1e-12});
+      ExpectDerivativesEqualJets(options, map, regime, &random);
       if (HasFailure()) return;
     }
   }
@@ -95,24 +55,7 @@ TEST(SelfNetwork, IsSilentAtRest) {
 TEST(SelfNetwork, FixedWeightsAreTheModels) {
   Random random(53);
   for (const NetworkShape& shape : EveryNetwork()) {
-    const ModelOptions options = WithNetwork(shape, 1.0, &random);
-    const PendulumRecording recording = NetworkPair(options, 0.1, 150.0, 0.0, &random);
-    ParameterMap fixed = EveryParameterMap({}), fitted = fixed;
-    fitted.num_weights = shape.num_weights();
-    const auto evaluate = [&](const ParameterMap& map) {
-      const auto problem = MakeRolloutProblem(recording, options, map, {}, 1.0, 0);
-      Random again(54);
-      ParameterBlocks blocks =
-          RandomBlocks(map, problem->layout, RecoveringParameters(), 0.0, 0.1, &again);
-      blocks[1] = std::vector<double>(8, 0.1);
-      if (map.num_weights > 0) blocks.back() = options.self_network->weights;
-      return EvaluateCost(RolloutResidual(problem), blocks, std::vector<bool>(blocks.size(), true));
-    };
-    const Evaluation with = evaluate(fitted), without = evaluate(fixed);
-    EXPECT_EQ(with.residuals, without.residuals);
-    // Products of other sizes round otherwise.
-    EXPECT_TRUE(with.jacobians[0].isApprox(without.jacobians[0], 1e-12));
-    EXPECT_TRUE(with.jacobians[1].isApprox(without.jacobians[1], 1e-12));
+    ExpectFixedWeightsAreTheModels(WithNetwork(shape, 1.0, &random), &random);
   }
 }
 

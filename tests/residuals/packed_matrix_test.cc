@@ -41,6 +41,32 @@ TEST(PackedMatrix, ProductsEqualEigens) {
   }
 }
 
+// By rows, a part of a wider matrix, with and without the vector that is not whole.
+TEST(NarrowProduct, EqualsEigens) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Random random(74);
+  for (const VectorKernels* kernels : SupportedVectorKernels()) {
+    for (int rows : {1, 3, 4, 8, 9, 16, 23}) {
+      for (int columns : {1, 7, 8, 31, 64}) {
+        for (int depth : {1, 8, 14}) {
+          for (bool add : {false, true}) {
+            const Rows a = RandomMatrix(rows, depth, &random);
+            const Rows b = RandomMatrix(depth, columns + 5, &random);
+            const Rows before = RandomMatrix(rows, columns + 3, &random);
+            Rows expected = before, c = before;
+            expected.leftCols(columns) = a * b.leftCols(columns);
+            if (add) expected.leftCols(columns) += before.leftCols(columns);
+            kernels->narrow_product(rows, depth, columns, a.data(), b.data(), columns + 5, c.data(),
+                                    columns + 3, add);
+            EXPECT_LE((c - expected).cwiseAbs().maxCoeff(), 1e-13)
+                << kernels->name << ", " << rows << " x " << depth << " x " << columns;
+          }
+        }
+      }
+    }
+  }
+}
+
 // A column of a product does not depend on who stands beside it.
 TEST(PackedMatrix, ColumnsKnowNothingOfEachOther) {
   Random random(72);

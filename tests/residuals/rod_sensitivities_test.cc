@@ -2,16 +2,11 @@
 // a self force that sees the rod, in three regimes.
 #include "residuals/rod_sensitivities.h"
 
-#include <ceres/dynamic_autodiff_cost_function.h>
-
 #include "residuals/rest_residual.h"
-#include "residuals/rollout_residual.h"
-#include "tests/residuals/residual_samples.h"
+#include "tests/residuals/learned_pair.h"
 
 namespace pushid {
 namespace {
-
-constexpr int kFrames = 30;
 
 struct Learned {
   RodShape rod;
@@ -38,37 +33,12 @@ ModelOptions With(const Learned& learned, double size, Random* random) {
   return WithNetwork(learned.self, size, random, learned.rod);
 }
 
-// Two people, one of whom is not under all forces for a while: the rod moves on.
-Scene PushedPair(double lean, double push, Random* random) {
-  Scene scene = SceneOfPeople(2, lean, random);
-  scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, push, random),
-                  RandomPush(1, 2, 5, PushKind::kNetWithoutFriction, push, random)};
-  return scene;
-}
-
-PendulumRecording RodPair(const ModelOptions& options, double lean, double push, double noise,
-                          Random* random) {
-  PendulumRecording recording = RecordRollout(PushedPair(lean, push, random), options,
-                                              std::vector(2, RecoveringParameters()), kFrames);
-  AddNoise(noise, random, &recording);
-  recording.initial_velocity = InitialVelocity::kFree;
-  return recording;
-}
-
-struct Regime {
-  std::string name;
-  double lean, push, velocity, noise, weight;
-  double absolute;  // tolerance where a whole column vanishes
-};
-
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
-
 class RodTwins : public testing::TestWithParam<Regime> {};
 
 TEST_P(RodTwins, DerivativesByHandEqualJets) {
   const Regime& regime = GetParam();
   Random random(81);
-  ParameterMap map = EveryParameterMap({kMu, kAx, kRodLift});
+  const ParameterMap map = EveryParameterMap({kMu, kAx, kRodLift});
   for (const Learned& learned : EveryLearned()) {
     for (PushUse use : {PushUse::kAdded, PushUse::kAsRecorded}) {
       for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
@@ -77,21 +47,7 @@ TEST_P(RodTwins, DerivativesByHandEqualJets) {
         options.push = use;
         options.cart_derivative = derivative;
         options.interaction.spring = true;
-        map.num_weights = options.self_network->num_weights();
-        const PendulumRecording recording =
-            RodPair(options, regime.lean, regime.push, regime.noise, &random);
-        const auto problem = MakeRolloutProblem(recording, options, map, {}, 0.7, 0);
-        ParameterBlocks blocks =
-            RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.0, &random);
-        for (double& v : blocks[blocks.size() - 2])
-          v = random.Uniform(-regime.velocity, regime.velocity);
-        for (double& w : blocks.back()) w = random.Uniform(-regime.weight, regime.weight);
-        ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16> oracle(
-            new RolloutResidualFunctor{problem});
-        for (int size : problem->layout.BlockSizes()) oracle.AddParameterBlock(size);
-        oracle.SetNumResiduals(problem->num_residuals());
-        ExpectCorrectJacobian(RolloutResidual(problem), oracle, blocks,
-                              {1e-10, regime.absolute, 1e-12});
+        ExpectDerivativesEqualJets(options, map, regime, &random);
         if (HasFailure()) return;
       }
     }
@@ -111,7 +67,7 @@ TEST(RodSensitivities, PathIsTheRollouts) {
   Random random(82);
   for (const Learned& learned : EveryLearned()) {
     const ModelOptions options = With(learned, 0.8, &random);
-    const PendulumRecording recording = RodPair(options, 0.1, 150.0, 0.0, &random);
+    const PendulumRecording recording = LearnedPair(options, 0.1, 150.0, 0.0, &random);
     SensitivityInputs inputs;
     inputs.parameters.assign(2, RecoveringParameters());
     inputs.initial_velocity = InitialVelocities(recording.scene);
@@ -120,17 +76,17 @@ TEST(RodSensitivities, PathIsTheRollouts) {
     inputs.velocity_column = 0;
     RolloutPath<double> path;
     RolloutSensitivities sensitivities;
-    ASSERT_TRUE(
-        RolloutWithSensitivities(recording.scene, options, inputs, kFrames, &path, &sensitivities)
-            .ok);
-    for (int t = 0; t < kFrames; ++t) {
+    ASSERT_TRUE(RolloutWithSensitivities(recording.scene, options, inputs, kPairFrames, &path,
+                                         &sensitivities)
+                    .ok);
+    for (int t = 0; t < kPairFrames; ++t) {
       for (int n = 0; n < 2; ++n) {
         EXPECT_EQ(path.At(t, n).q, recording.states[n][t].q);
         EXPECT_EQ(path.At(t, n).rod, recording.states[n][t].rod);
         EXPECT_EQ(sensitivities.Rod(t, n).size(), 8);
       }
     }
-    EXPECT_NE(path.At(kFrames - 1, 0).rod, 0.0) << NameOf(learned);
+    EXPECT_NE(path.At(kPairFrames - 1, 0).rod, 0.0) << NameOf(learned);
   }
 }
 
@@ -138,21 +94,7 @@ TEST(RodSensitivities, PathIsTheRollouts) {
 TEST(RodSensitivities, FixedWeightsAreTheModels) {
   Random random(83);
   for (const Learned& learned : EveryLearned()) {
-    const ModelOptions options = With(learned, 0.8, &random);
-    const PendulumRecording recording = RodPair(options, 0.1, 150.0, 0.0, &random);
-    ParameterMap fixed = EveryParameterMap({}), fitted = fixed;
-    fitted.num_weights = options.self_network->num_weights();
-    const auto evaluate = [&](const ParameterMap& map) {
-      const auto problem = MakeRolloutProblem(recording, options, map, {}, 1.0, 0);
-      ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
-                                std::vector<double>(8, 0.1)};
-      if (map.num_weights > 0) blocks.push_back(options.self_network->weights);
-      return EvaluateCost(RolloutResidual(problem), blocks, std::vector<bool>(blocks.size(), true));
-    };
-    const Evaluation with = evaluate(fitted), without = evaluate(fixed);
-    EXPECT_EQ(with.residuals, without.residuals);
-    EXPECT_TRUE(with.jacobians[0].isApprox(without.jacobians[0], 1e-12));
-    EXPECT_TRUE(with.jacobians[1].isApprox(without.jacobians[1], 1e-12));
+    ExpectFixedWeightsAreTheModels(With(learned, 0.8, &random), &random);
   }
 }
 
