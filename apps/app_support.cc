@@ -10,10 +10,11 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <filesystem>
+#include <new>
 #include <set>
 #include <vector>
 
+#include "apps/overwrite_check.h"
 #include "datasets/number_text.h"
 
 DEFINE_bool(quiet, false, "no progress on stderr");
@@ -35,11 +36,9 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
 
 // What names outputs or only changes speed and talk is no part of a result.
 bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "bootstrap_file",
-                                                 "checkpoint_seconds"};
-  const std::string& name = flag.name;
-  const bool output = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
-  return name != "out" && (!output || name == "leave_out") && kLeftOut.count(name) == 0;
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
+                                                 "check"};
+  return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
 }
 
 // gflags prints 0.2 as 0.20000000000000001.
@@ -127,8 +126,11 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   } else if (argc > 1) {
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + g_program + " --help");
   }
+  if (MaybeError error = CheckOutputs()) return Fail(*error);
   try {
     return CheckPrinted(run());
+  } catch (const std::bad_alloc&) {
+    return Fail("out of memory");
   } catch (const std::exception& exception) {
     return Fail(std::string("unexpected: ") + exception.what());
   }
@@ -150,20 +152,7 @@ MaybeError Require(const std::string& flag, const std::string& value, const std:
   return Error{"--" + flag + " is missing: " + what};
 }
 
-MaybeError CheckDistinct(const std::vector<std::pair<std::string, std::string>>& flag_and_path) {
-  std::map<std::string, std::string> flag_of;
-  for (const auto& [flag, path] : flag_and_path) {
-    if (path.empty()) continue;
-    std::string whole = std::filesystem::absolute(path).lexically_normal().string();
-    if (whole.back() == '/') whole.pop_back();
-    const auto [known, is_new] = flag_of.emplace(whole, flag);
-    if (!is_new) {
-      return Error{"--" + known->second + " and --" + flag + " both name " + path +
-                   "; give each a file of its own"};
-    }
-  }
-  return std::nullopt;
-}
+bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
 
 std::map<std::string, std::string> EffectiveFlags() {
   std::map<std::string, std::string> flags;

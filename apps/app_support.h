@@ -15,8 +15,9 @@ namespace pushid {
 
 inline constexpr int kDone = 0, kBadInput = 1, kFitFailed = 2;
 
-// Parses flags (--help and --version answer themselves), then calls run. usage: one paragraph and
-// an example. Words that are no flags go to `words`; without it they are an error.
+// Parses flags (--help and --version answer themselves), refuses outputs that would replace an
+// input or each other, then calls run. usage: one paragraph and an example. Words that are no flags
+// go to `words`; without it they are an error.
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words = nullptr);
 
@@ -28,8 +29,8 @@ void Warn(const std::string& message);
 // "--recordings is missing ..." when a flag that is needed is empty.
 MaybeError Require(const std::string& flag, const std::string& value, const std::string& what);
 
-// Two flags of one path: the later output would replace the earlier one. Empty paths are none.
-MaybeError CheckDistinct(const std::vector<std::pair<std::string, std::string>>& flag_and_path);
+// Whether a flag was given at all, even with its default's value.
+bool Given(const char* flag);
 
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.

@@ -46,6 +46,25 @@ Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecord
   return hash.Hex();
 }
 
+// What a variant's flags say: of a file its contents, wherever it lies.
+Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
+  ContentHash hash;
+  for (const std::string& flag : variant.flags) {
+    const std::string file = FileOfFlag(flag);
+    if (file.empty()) {
+      AddPiece(flag, &hash);
+      continue;
+    }
+    const Result<std::string> contents = HashFile(file);
+    if (!contents.ok()) {
+      return Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
+                   variant.line};
+    }
+    AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
+  }
+  return hash.Hex();
+}
+
 std::string GroupOf(GroupBy by, const ManifestRecording& entry) {
   switch (by) {
     case GroupBy::kRecording:
@@ -85,9 +104,8 @@ Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifes
   for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
   const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
   if (!folds.ok()) {
-    return Error{"group '" + group + "' in " + std::to_string(plan.folds) +
-                     " folds: " + folds.error().message,
-                 plan.path};
+    return plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                                       " folds: " + folds.error().message});
   }
   std::vector<Part> parts;
   for (size_t f = 0; f < folds.value().size(); ++f) {
@@ -114,7 +132,7 @@ class Expander {
   Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
 
   Result<std::vector<BatchJob>> Expand() {
-    const auto chosen = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    const Result<std::vector<int>> chosen = Chosen();
     if (!chosen.ok()) return chosen.error();
     hashes_.resize(manifest_.recordings.size());
     std::vector<std::pair<std::string, std::vector<int>>> groups;
@@ -129,17 +147,30 @@ class Expander {
       at->second.push_back(i);
     }
     for (const BatchVariant& variant : plan_.variants) {
+      const Result<std::string> flags = FlagsHash(plan_, variant);
+      if (!flags.ok()) return flags.error();
       for (const auto& [name, members] : groups) {
         const auto parts = PartsOf(plan_, manifest_, name, members);
         if (!parts.ok()) return parts.error();
-        for (const Part& part : parts.value()) AddPart(variant, part);
+        for (const Part& part : parts.value()) AddPart(variant, flags.value(), part);
       }
     }
     return jobs_;
   }
 
  private:
-  void AddPart(const BatchVariant& variant, const Part& part) {
+  // Each key by itself, so that the one that is wrong can be named.
+  Result<std::vector<int>> Chosen() const {
+    const auto all = SelectRecordings(manifest_, plan_.setting, {});
+    if (!all.ok()) return plan_.ErrorAt("setting", all.error());
+    const auto named = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    if (!named.ok()) return plan_.ErrorAt("ids", named.error());
+    const auto left = SelectRecordings(manifest_, plan_.setting, plan_.ids, plan_.leave_out);
+    if (!left.ok()) return plan_.ErrorAt("leave_out", left.error());
+    return left;
+  }
+
+  void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
     for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
       BatchJob job;
       job.variant = variant.name;
@@ -152,7 +183,8 @@ class Expander {
       if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
       ContentHash hash;
       AddPiece(Version(), &hash);
-      for (const std::string& flag : job.fit_flags) AddPiece(flag, &hash);
+      AddPiece(flags_hash, &hash);
+      AddPiece(std::to_string(plan_.seed) + "/" + std::to_string(replica), &hash);
       for (int i : part.train) AddPiece(hashes_[i], &hash);
       AddPiece("held out", &hash);
       for (int i : part.held_out) AddPiece(hashes_[i], &hash);
@@ -192,8 +224,10 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
 
 std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n) {
   std::vector<BatchJob> part;
-  for (size_t k = static_cast<size_t>(i) - 1; k < jobs.size(); k += static_cast<size_t>(n)) {
-    part.push_back(jobs[k]);
+  std::map<std::string, size_t> order;  // of first appearance
+  for (const BatchJob& job : jobs) {
+    const size_t k = order.emplace(job.id, order.size()).first->second;
+    if (k % static_cast<size_t>(n) + 1 == static_cast<size_t>(i)) part.push_back(job);
   }
   return part;
 }

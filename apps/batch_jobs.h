@@ -1,6 +1,7 @@
 // apps: from a plan to jobs. A job's id is the hash of all that decides its result - the contents
-// of its recordings, its flags, its replica and the version of the programs - so the same job keeps
-// its id in another order, folder or plan, and a changed file makes new jobs of those it touches.
+// of its recordings and of the files its flags name, its flags, its replica and the version of the
+// programs - so the same job keeps its id in another order, folder or plan, and a changed file
+// makes new jobs of those it touches.
 #pragma once
 
 #include <string>
@@ -17,7 +18,7 @@ struct BatchJob {
   std::string group;    // "X05", "row_1", "all"; of a fold "X05 fold 2 of 4"
   int replica = 0;      // 0: the recordings as they are
   std::vector<std::string> recordings, held_out;  // ids
-  std::vector<std::string> fit_flags;             // of pushid-fit, without paths and recordings
+  std::vector<std::string> fit_flags;             // of pushid-fit, without outputs and recordings
 };
 
 // In a fixed order: variants as in the plan, groups as in the manifest, folds, replicas. Errors: of
@@ -30,7 +31,8 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
                                                   const std::string& folder,
                                                   const std::string& bin);
 
-// The part i of n (from 1) of the jobs, every n-th one.
+// The part i of n (from 1) of the jobs, every n-th one. Jobs of the same id, of variants with the
+// same flags, are in one part.
 std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n);
 
 }  // namespace pushid

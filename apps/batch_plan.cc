@@ -21,8 +21,13 @@
 #include <filesystem>
 #include <set>
 
+#include "apps/overwrite_check.h"
+
 namespace pushid {
 namespace {
+
+// Flags that name files to read: as all paths of a plan they are relative to it.
+const std::set<std::string> kFileFlags = {"self_from", "interaction_network"};
 
 // Set by the batch for every job.
 const std::set<std::string> kOwnFlags = {"recordings", "setting",  "ids",   "leave_out",
@@ -48,8 +53,10 @@ class PlanReader {
  private:
   // The first error is the one that is told.
   void Fail(const toml::node& at, const std::string& message) {
-    if (!error_) error_ = Error{message, path_, static_cast<int>(at.source().begin.line)};
+    if (!error_) error_ = Error{message, path_, LineOf(at)};
   }
+
+  static int LineOf(const toml::node& at) { return static_cast<int>(at.source().begin.line); }
 
   void Known(const toml::table& table, const std::string& what,
              const std::vector<std::string>& keys) {
@@ -60,6 +67,10 @@ class PlanReader {
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
       Fail(value, what + " has no key '" + name + "'; it may have " + list);
     }
+  }
+
+  void KeepLines(const toml::table& table) {
+    for (const auto& [key, value] : table) plan_.lines[std::string(key.str())] = LineOf(value);
   }
 
   const toml::table* Table(const char* name, bool needed) {
@@ -111,13 +122,15 @@ class PlanReader {
   void Data() {
     const toml::table* data = Table("data", true);
     if (data == nullptr) return;
-    Known(*data, "[data]", {"recordings", "setting", "ids"});
+    Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
+    KeepLines(*data);
     std::string manifest;
     Get(*data, "recordings", "a text: the manifest's path", &manifest);
     if (manifest.empty()) Fail(*data, "[data] needs recordings = \"M/manifest.json\"");
     plan_.manifest = Resolve(manifest);
     Get(*data, "setting", "a text", &plan_.setting);
     GetStrings(*data, "ids", &plan_.ids);
+    GetStrings(*data, "leave_out", &plan_.leave_out);
   }
 
   void Jobs() {
@@ -125,6 +138,7 @@ class PlanReader {
     if (jobs == nullptr) return;
     Known(*jobs, "[jobs]",
           {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"});
+    KeepLines(*jobs);
     std::string group_by = "none";
     Get(*jobs, "group_by", "a text", &group_by);
     const std::vector<std::pair<std::string, GroupBy>> names = {{"none", GroupBy::kNone},
@@ -179,7 +193,13 @@ class PlanReader {
         Fail(table, "two variants are called '" + variant.name + "'");
       }
       GetStrings(table, "flags", &variant.flags);
-      for (const std::string& flag : variant.flags) CheckFlag(table, flag);
+      const toml::node* flags = table.get("flags");
+      variant.line = LineOf(flags == nullptr ? table : *flags);
+      for (std::string& flag : variant.flags) {
+        CheckFlag(table, flag);
+        const std::string file = FileOfFlag(flag);
+        if (!file.empty()) flag = flag.substr(0, flag.find('=') + 1) + Resolve(file);
+      }
       plan_.variants.push_back(variant);
     }
   }
@@ -191,6 +211,12 @@ class PlanReader {
     const std::string name = flag.substr(2, flag.find('=') - 2);
     if (kOwnFlags.count(name) == 1) {
       Fail(table, "--" + name + " is set by the batch itself for every job");
+    }
+    if (IsOutputFlag(name)) {
+      Fail(table, "--" + name + " would be written by every job of the variant; leave it out");
+    }
+    if (name.rfind("help", 0) == 0 || name == "version" || name == "check") {
+      Fail(table, "--" + name + " makes no fit; leave it out");
     }
   }
 
@@ -212,8 +238,22 @@ class PlanReader {
 
 }  // namespace
 
+std::string FileOfFlag(const std::string& flag) {
+  const size_t equals = flag.find('=');
+  if (flag.rfind("--", 0) != 0 || equals == std::string::npos) return "";
+  return kFileFlags.count(flag.substr(2, equals - 2)) == 1 ? flag.substr(equals + 1) : "";
+}
+
+Error BatchPlan::ErrorAt(const std::string& key, const Error& error) const {
+  const auto line = lines.find(key);
+  return Error{key + ": " + error.ToString(), path, line == lines.end() ? 0 : line->second};
+}
+
 Result<BatchPlan> ReadPlan(const std::string& path) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    return Error{"is a folder; name the plan in it, a TOML file", path};
+  }
   if (!std::filesystem::is_regular_file(path, ignored)) {
     return Error{"cannot be read: no such file", path};
   }

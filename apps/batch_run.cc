@@ -15,7 +15,9 @@
 
 #include "apps/app_support.h"
 #include "apps/child_process.h"
+#include "apps/folder_lock.h"
 #include "datasets/json_file.h"
+#include "datasets/number_text.h"
 
 namespace pushid {
 namespace {
@@ -69,6 +71,19 @@ std::string LastLine(const std::string& path) {
   return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
 }
 
+// How a program under a limit ends that gets no more memory: by its own words, by those of the
+// loader, or without any.
+bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
+  for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
+    if (end.signal == signal) return true;
+  }
+  for (const char* words :
+       {"out of memory", "bad_alloc", "annot allocate memory", "failed to map segment"}) {
+    if (last.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
 struct Running {
   const BatchJob* job = nullptr;
   std::string folder;
@@ -77,6 +92,7 @@ struct Running {
   pid_t pid = 0;
   Clock::time_point begin;
   bool out_of_time = false;
+  FolderLock lock;
 };
 
 class Pool {
@@ -111,16 +127,34 @@ class Pool {
     Running running;
     running.job = &job;
     running.folder = JobFolder(plan_, job);
-    std::error_code failed;
-    fs::remove_all(running.folder, failed);  // half-written
-    fs::create_directories(running.folder, failed);
-    if (failed) {
-      error_ = Error{"cannot be made: " + failed.message(), running.folder};
+    const Result<bool> mine = TakeFolder(running.folder, &running.lock);
+    if (!mine.ok()) {
+      error_ = mine.error();
       return;
+    }
+    if (!mine.value()) {
+      ++outcome_.elsewhere;
+      return;
+    }
+    // Another process may have done it since this one began.
+    if (options_.resume && ReadResult(plan_, job).done()) {
+      ++outcome_.skipped;
+      return;
+    }
+    // Half-written, or failed. The folder itself stays: it is what is locked.
+    for (const fs::directory_entry& entry : fs::directory_iterator(running.folder)) {
+      fs::remove_all(entry.path());
     }
     running.commands = JobCommands(job, plan_, running.folder, options_.bin);
     running.begin = Clock::now();
     if (Start(&running)) running_.push_back(std::move(running));
+  }
+
+  static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) return Error{"cannot be made: " + failed.message(), folder};
+    return lock->Take(folder);
   }
 
   // Its next command; false when that cannot even be started.
@@ -161,20 +195,26 @@ class Pool {
 
   std::string ReasonOf(const Running& running, const ChildEnd& end) const {
     if (running.out_of_time) {
-      return "out of time after " + std::to_string(static_cast<int>(options_.time_limit_s)) + " s";
+      return "out of time after " + DoubleText(options_.time_limit_s) + " s";
     }
     const std::string last = LastLine(running.folder + "/stderr.txt");
+    if (options_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
+      return "out of memory (limit " + std::to_string(options_.memory_limit_mb) + " MB" +
+             (end.signal != 0 ? std::string("; ") + strsignal(end.signal) : "") + ")";
+    }
     if (end.signal != 0) {
       return std::string("killed by signal ") + strsignal(end.signal) +
              (last.empty() ? "" : "; it last said: " + last);
     }
     if (!last.empty()) return last;
+    if (end.exit_code == 0) return running.commands[0][0] + " wrote no model.json";
     return end.exit_code == kFitFailed ? "the fit did not converge"
                                        : "exit code " + std::to_string(end.exit_code);
   }
 
   void Finish(const Running& running, const ChildEnd& end) {
-    const bool done = end.exit_code == 0;
+    const bool written = fs::exists(running.folder + "/model.json");
+    const bool done = end.exit_code == 0 && written;
     ++(done ? outcome_.done : outcome_.failed);
     if (!done && !options_.keep_going) outcome_.stopped = true;
     nlohmann::ordered_json json = {{"id", running.job->id},
@@ -223,28 +263,6 @@ class Pool {
 
 }  // namespace
 
-std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
-  return plan.dir + "/jobs/" + job.id;
-}
-
-Result<std::optional<JobStatus>> ReadStatus(const BatchPlan& plan, const BatchJob& job) {
-  const std::string path = JobFolder(plan, job) + "/status.json";
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return std::optional<JobStatus>();
-  const auto document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const auto& json = document.value().content;
-  JobStatus status;
-  try {
-    status.done = json.at("status") == "done";
-    status.reason = json.at("reason");
-    status.seconds = json.at("run").at("seconds");
-  } catch (const nlohmann::json::exception&) {
-    return Error{"is no status of a job; remove it, and the job is done again", path};
-  }
-  return std::optional<JobStatus>(status);
-}
-
 Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                               const BatchRunOptions& options,
                               const std::function<void(const BatchProgress&)>& progress) {
@@ -253,13 +271,9 @@ Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>
   int skipped = 0;
   for (const BatchJob& job : jobs) {
     if (!seen.insert(job.id).second) continue;
-    if (options.resume) {
-      const auto status = ReadStatus(plan, job);
-      if (!status.ok()) return status.error();
-      if (status.value() && status.value()->done) {
-        ++skipped;
-        continue;
-      }
+    if (options.resume && ReadResult(plan, job).done()) {
+      ++skipped;
+      continue;
     }
     waiting.push_back(&job);
   }

@@ -1,22 +1,17 @@
 // apps: running a batch's jobs, several at a time, each in a folder and in processes of its own.
 //
-// A job is finished when jobs/<id>/status.json stands; it is written last and whole. Everything
-// else in a job's folder may be half-written by a kill and is made again.
+// A job has ended when jobs/<id>/status.json stands; it is written last and whole. Everything else
+// in a job's folder may be half-written by a kill and is made again. Who works on a job holds the
+// lock of its folder, so that batches may run in one output folder at the same time.
 #pragma once
 
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "apps/batch_jobs.h"
+#include "apps/batch_results.h"
 
 namespace pushid {
-
-struct JobStatus {
-  bool done = false;   // false: failed
-  std::string reason;  // of a failure
-  double seconds = 0.0;
-};
 
 struct BatchRunOptions {
   int jobs = 1;             // at a time
@@ -34,14 +29,10 @@ struct BatchProgress {
 
 struct BatchOutcome {
   int skipped = 0, done = 0, failed = 0;
+  int elsewhere = 0;         // left to another process that was at work on them
   bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
   bool stopped = false;      // by the first failure
 };
-
-std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
-
-// Nothing when the job is not finished. Errors: a status that cannot be read.
-Result<std::optional<JobStatus>> ReadStatus(const BatchPlan& plan, const BatchJob& job);
 
 // Errors: the output folder or a status cannot be written; nothing is lost by trying again.
 Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,

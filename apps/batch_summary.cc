@@ -9,6 +9,7 @@
 #include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
 #include "datasets/number_text.h"
+#include "ident/json_pieces.h"
 #include "ident/report/document_files.h"
 #include "ident/report/page.h"
 #include "ident/report_text.h"
@@ -20,66 +21,10 @@ constexpr size_t kMostRowsOnPage = 2000;
 
 using Json = nlohmann::ordered_json;
 
-// A number, or the text "infinity" of an error that is unknown.
-double Number(const Json& value) { return value.is_number() ? value.get<double>() : INFINITY; }
-
-void ReadModel(const Json& model, SummaryRow* row) {
-  for (const Json& parameter : model.at("parameters")) {
-    if (parameter.at("status") == "fixed") continue;
-    const std::string name = parameter.at("name");
-    row->parameters[name] = Number(parameter.at("value"));
-    row->errors[name] = Number(parameter.at("standard_error"));
-  }
-  row->cost = Number(model.at("fit").at("cost"));
-  row->settles = model.at("behaviour").at("settles");
-  row->solve_s = Number(model.at("run").at("solve_seconds"));
-}
-
-SummaryRow RowOf(const BatchPlan& plan, const BatchJob& job) {
-  SummaryRow row;
-  row.job = &job;
-  const auto status = ReadStatus(plan, job);
-  row.status = "failed";
-  if (!status.ok()) {
-    row.reason = status.error().ToString();
-    return row;
-  }
-  if (!status.value()) {
-    row.status = "open";
-    return row;
-  }
-  row.reason = status.value()->reason;
-  row.seconds = status.value()->seconds;
-  if (!status.value()->done) return row;
-  const std::string folder = JobFolder(plan, job);
-  try {
-    const auto model = ReadJsonDocument(folder + "/model.json");
-    if (!model.ok()) {
-      row.reason = model.error().ToString();
-      return row;
-    }
-    ReadModel(model.value().content, &row);
-    if (!job.held_out.empty()) {
-      const auto scores = ReadJsonDocument(folder + "/scores.json");
-      if (!scores.ok()) {
-        row.reason = scores.error().ToString();
-        return row;
-      }
-      const Json& mean = scores.value().content.at("mean");
-      row.hip_ade = Number(mean.at("hipADE_m"));
-      row.hip_fde = Number(mean.at("hipFDE_m"));
-    }
-    row.status = "done";
-  } catch (const nlohmann::json::exception& error) {
-    row.reason = folder + ": not what this version writes: " + error.what();
-  }
-  return row;
-}
-
-std::vector<std::string> ParameterNames(const std::vector<SummaryRow>& rows) {
+std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
   std::vector<std::string> names;
   std::set<std::string> seen;
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     for (const auto& [name, value] : row.parameters) {
       if (seen.insert(name).second) names.push_back(name);
     }
@@ -92,18 +37,24 @@ std::string Cell(const std::map<std::string, double>& values, const std::string&
   return found == values.end() ? "" : DoubleText(found->second);
 }
 
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
 // Full precision, for summary.csv.
-TextTable FullTable(const std::vector<SummaryRow>& rows) {
+TextTable FullTable(const std::vector<JobResult>& rows) {
   const std::vector<std::string> names = ParameterNames(rows);
   std::vector<std::string> header = {"id", "variant", "group", "replica", "status", "reason"};
   header.insert(header.end(), names.begin(), names.end());
   for (const std::string& name : names) header.push_back(name + "_se");
-  for (const char* name :
-       {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m", "solve_s", "seconds"}) {
+  for (const char* name : {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m",
+                           "warnings", "solve_s", "seconds"}) {
     header.push_back(name);
   }
   TextTable table(header, std::vector<bool>(header.size(), true));
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     const bool done = row.status == "done";
     std::vector<std::string> cells = {row.job->id,    row.job->variant,
                                       row.job->group, std::to_string(row.job->replica),
@@ -114,6 +65,7 @@ TextTable FullTable(const std::vector<SummaryRow>& rows) {
     cells.push_back(done ? (row.settles ? "yes" : "no") : "");
     cells.push_back(row.hip_ade >= 0.0 ? DoubleText(row.hip_ade) : "");
     cells.push_back(row.hip_fde >= 0.0 ? DoubleText(row.hip_fde) : "");
+    cells.push_back(Joined(row.warnings));
     cells.push_back(done ? DoubleText(row.solve_s) : "");
     cells.push_back(row.status == "open" ? "" : DoubleText(row.seconds));
     table.Add(cells);
@@ -121,21 +73,20 @@ TextTable FullTable(const std::vector<SummaryRow>& rows) {
   return table;
 }
 
-Json SummaryJson(const BatchPlan& plan, const std::vector<SummaryRow>& rows) {
+Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   Json jobs = Json::array();
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     Json job = {{"id", row.job->id},       {"variant", row.job->variant},
                 {"group", row.job->group}, {"replica", row.job->replica},
                 {"status", row.status},    {"reason", row.reason}};
     if (row.status == "done") {
       for (const auto& [name, value] : row.parameters) {
-        Json entry = {{"value", value}};
-        const double error = row.errors.at(name);
-        entry["standard_error"] = std::isfinite(error) ? Json(error) : Json("infinity");
-        job["parameters"][name] = entry;
+        job["parameters"][name] = {{"value", NumberJson(value)},
+                                   {"standard_error", NumberJson(row.errors.at(name))}};
       }
-      job["cost"] = row.cost;
+      job["cost"] = NumberJson(row.cost);
       job["settles"] = row.settles;
+      if (!row.warnings.empty()) job["warnings"] = row.warnings;
       if (row.hip_ade >= 0.0) {
         job["held_out"] = {{"hipADE_m", row.hip_ade}, {"hipFDE_m", row.hip_fde}};
       }
@@ -151,9 +102,9 @@ struct VariantSummary {
   std::map<std::string, std::vector<double>> values;
 };
 
-std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<SummaryRow>& rows) {
+std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<JobResult>& rows) {
   std::vector<std::pair<std::string, VariantSummary>> variants;
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     auto at = std::find_if(variants.begin(), variants.end(), [&row](const auto& variant) {
       return variant.first == row.job->variant;
     });
@@ -169,7 +120,7 @@ std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<
   return variants;
 }
 
-TextTable VariantTable(const std::vector<SummaryRow>& rows) {
+TextTable VariantTable(const std::vector<JobResult>& rows) {
   TextTable table({"variant", "jobs done", "failed", "open", "of each job", "mean", "std deviation",
                    "lowest", "highest"},
                   {true, false, false, false, true, false, false, false, false});
@@ -189,10 +140,10 @@ TextTable VariantTable(const std::vector<SummaryRow>& rows) {
   return table;
 }
 
-TextTable FailureTable(const std::vector<SummaryRow>& rows) {
+TextTable FailureTable(const std::vector<JobResult>& rows) {
   TextTable table({"failed", "variant", "group", "replica", "reason"},
                   {true, true, true, false, true});
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     if (row.status != "failed" || table.rows().size() > kMostRowsOnPage) continue;
     table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
                std::to_string(row.job->replica), row.reason});
@@ -201,32 +152,39 @@ TextTable FailureTable(const std::vector<SummaryRow>& rows) {
 }
 
 // Rounded, for the page.
-TextTable JobTable(const std::vector<SummaryRow>& rows) {
+TextTable JobTable(const std::vector<JobResult>& rows) {
   const std::vector<std::string> names = ParameterNames(rows);
   std::vector<std::string> header = {"job", "variant", "group", "replica", "status"};
   header.insert(header.end(), names.begin(), names.end());
-  header.insert(header.end(), {"settles", "solve s"});
+  header.insert(header.end(), {"settles", "held-out hipADE, m", "held-out hipFDE, m", "solve s",
+                               "seconds", "warnings"});
   std::vector<bool> words(header.size(), false);
   std::fill(words.begin(), words.begin() + 3, true);
-  words[4] = true;
+  words[4] = words.back() = true;
   TextTable table(header, words);
-  for (const SummaryRow& row : rows) {
+  for (const JobResult& row : rows) {
     if (table.rows().size() > kMostRowsOnPage) break;
     std::vector<std::string> cells = {row.job->id.substr(0, 8), row.job->variant, row.job->group,
                                       std::to_string(row.job->replica), row.status};
     for (const std::string& name : names) {
       const auto found = row.parameters.find(name);
-      cells.push_back(found == row.parameters.end() ? "" : Significant(found->second));
+      cells.push_back(found == row.parameters.end() ? ""
+                                                    : Significant(found->second) + " +- " +
+                                                          Significant(row.errors.at(name), 3));
     }
-    const bool done = row.status == "done";
+    const bool done = row.done();
     cells.push_back(done ? (row.settles ? "yes" : "no") : "");
+    cells.push_back(row.hip_ade >= 0.0 ? Significant(row.hip_ade, 3) : "");
+    cells.push_back(row.hip_fde >= 0.0 ? Significant(row.hip_fde, 3) : "");
     cells.push_back(done ? Significant(row.solve_s, 2) : "");
+    cells.push_back(row.status == "open" ? "" : Significant(row.seconds, 2));
+    cells.push_back(Joined(row.warnings));
     table.Add(cells);
   }
   return table;
 }
 
-Report PageOf(const BatchPlan& plan, const std::vector<SummaryRow>& rows) {
+Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   Report report;
   report.title = "pushid: batch of " + std::to_string(rows.size()) + " jobs";
   report.subtitle = plan.path + ", recordings " + plan.manifest + ", pushid " + Version();
@@ -253,13 +211,13 @@ Report PageOf(const BatchPlan& plan, const std::vector<SummaryRow>& rows) {
 
 }  // namespace
 
-std::vector<SummaryRow> CollectRows(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
-  std::vector<SummaryRow> rows;
-  for (const BatchJob& job : jobs) rows.push_back(RowOf(plan, job));
+std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
+  std::vector<JobResult> rows;
+  for (const BatchJob& job : jobs) rows.push_back(ReadResult(plan, job));
   return rows;
 }
 
-MaybeError WriteSummary(const BatchPlan& plan, const std::vector<SummaryRow>& rows) {
+MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   if (MaybeError error = WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(FullTable(rows)))) {
     return error;
   }
@@ -269,7 +227,7 @@ MaybeError WriteSummary(const BatchPlan& plan, const std::vector<SummaryRow>& ro
   return WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows)));
 }
 
-std::string SummaryText(const std::vector<SummaryRow>& rows) {
+std::string SummaryText(const std::vector<JobResult>& rows) {
   const TextTable failed = FailureTable(rows);
   return VariantTable(rows).ToString() + (failed.rows().size() > 1 ? "\n" + failed.ToString() : "");
 }

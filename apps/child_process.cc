@@ -67,6 +67,16 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   return child;
 }
 
+std::string ShellText(const std::vector<std::string>& command) {
+  std::string text;
+  for (const std::string& word : command) {
+    text += text.empty() ? "'" : " '";
+    for (char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    text += "'";
+  }
+  return text;
+}
+
 ChildEnd NextEnded() {
   ChildEnd end;
   int status = 0;

@@ -20,6 +20,9 @@ struct ChildSpec {
 // Errors: the program or a file cannot be opened, no process can be had.
 Result<pid_t> StartChild(const ChildSpec& spec);
 
+// A command as a shell takes it, every word quoted.
+std::string ShellText(const std::vector<std::string>& command);
+
 // How a child ended.
 struct ChildEnd {
   pid_t pid = 0;

@@ -1,6 +1,7 @@
 // apps: bodies of formations from flags to files.
 #include "apps/formation_bodies_flags.h"
 
+#include "apps/app_support.h"
 #include "apps/formation_flags.h"
 #include "apps/restoration_flags.h"
 #include "datasets/atomic_file.h"

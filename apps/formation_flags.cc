@@ -5,6 +5,7 @@
 #include <set>
 #include <sstream>
 
+#include "apps/app_support.h"
 #include "datasets/number_text.h"
 
 DECLARE_int32(people);
@@ -132,8 +133,6 @@ std::string Title(const std::vector<HipPush>& pushes) {
 }
 
 }  // namespace
-
-bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
 
 const char* GivenFormationFlag() {
   for (const char* flag : {"spacing", "pushed", "push", "push_duration", "mass", "rod_length",

@@ -25,9 +25,6 @@ Result<FormationPlan> PlanOfFlags();
 // The first given flag that means nothing without --formation; nullptr when there is none.
 const char* GivenFormationFlag();
 
-// Whether a flag was given at all, even with its default's value.
-bool Given(const char* flag);
-
 // "--spacing is -1; it must lie between ...". Written so that NaN fails.
 MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
 

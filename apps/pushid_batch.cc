@@ -5,7 +5,10 @@
 #include <filesystem>
 
 #include "apps/app_support.h"
+#include "apps/batch_run.h"
 #include "apps/batch_summary.h"
+#include "apps/child_process.h"
+#include "apps/variant_check.h"
 #include "datasets/manifest.h"
 #include "ident/report/document_files.h"
 #include "ident/text_table.h"
@@ -25,8 +28,8 @@ DEFINE_bool(summary, true,
             "write summary.csv, summary.json and summary.html; false with shards "
             "that run at the same time");
 DEFINE_bool(gather, false, "run nothing; only write the summary of what is there");
-DEFINE_double(time_limit, -1.0, "seconds for one job, instead of the plan's; 0: none");
-DEFINE_int32(memory_limit, -1, "MB of one job's address space, instead of the plan's; 0: none");
+DEFINE_double(time_limit, 0.0, "seconds for one job, instead of the plan's; 0: none");
+DEFINE_int32(memory_limit, 0, "MB of one job's address space, instead of the plan's; 0: none");
 
 namespace {
 
@@ -74,14 +77,9 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
 
 int DryRun(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
-    const auto status = ReadStatus(plan, job);
-    if (!status.ok()) return Fail(status.error());
-    if (FLAGS_resume && status.value() && status.value()->done) continue;
+    if (FLAGS_resume && ReadResult(plan, job).done()) continue;
     for (const auto& command : JobCommands(job, plan, JobFolder(plan, job), BinFolder())) {
-      for (size_t i = 0; i < command.size(); ++i) {
-        std::printf("%s'%s'", i > 0 ? " " : "", command[i].c_str());
-      }
-      std::printf("\n");
+      std::printf("%s\n", ShellText(command).c_str());
     }
   }
   return kDone;
@@ -95,7 +93,7 @@ std::string TimeText(double seconds) {
 
 // Of all jobs of the plan, whichever of them ran now.
 MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
-  const std::vector<SummaryRow> rows = CollectRows(plan, all);
+  const std::vector<JobResult> rows = ReadResults(plan, all);
   if (MaybeError error = WriteSummary(plan, rows)) return error;
   std::printf("%s", SummaryText(rows).c_str());
   return std::nullopt;
@@ -113,8 +111,8 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   options.jobs = FLAGS_jobs;
   options.resume = FLAGS_resume;
   options.keep_going = FLAGS_keep_going;
-  options.time_limit_s = FLAGS_time_limit >= 0.0 ? FLAGS_time_limit : plan.time_limit_s;
-  options.memory_limit_mb = FLAGS_memory_limit >= 0 ? FLAGS_memory_limit : plan.memory_limit_mb;
+  options.time_limit_s = Given("time_limit") ? FLAGS_time_limit : plan.time_limit_s;
+  options.memory_limit_mb = Given("memory_limit") ? FLAGS_memory_limit : plan.memory_limit_mb;
   options.bin = BinFolder();
   ProgressLine line;
   const Result<BatchOutcome> outcome =
@@ -131,6 +129,11 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   }
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
+  if (o.elsewhere > 0) {
+    Warn(std::to_string(o.elsewhere) +
+         " jobs were left to another pushid-batch that is at work on them; when it has ended, "
+         "--gather writes the table of all");
+  }
   if (o.interrupted) {
     std::fprintf(stderr, "pushid-batch: interrupted; the same command goes on from here\n");
     return kInterrupted;
@@ -143,14 +146,24 @@ int Run() {
     return Fail(*missing);
   }
   if (FLAGS_jobs < 1) return Fail("--jobs must be at least 1");
+  if (Given("time_limit") && !(FLAGS_time_limit >= 0.0)) {
+    return Fail("--time_limit must be a number of seconds, 0 for none");
+  }
+  if (Given("memory_limit") && FLAGS_memory_limit < 0) {
+    return Fail("--memory_limit must be a number of MB, 0 for none");
+  }
   const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
   if (!plan.ok()) return Fail(plan.error());
   const Result<Manifest> manifest = ReadManifest(plan.value().manifest);
-  if (!manifest.ok()) return Fail(manifest.error());
+  if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
   const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
   if (!all.ok()) return Fail(all.error());
   const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
   if (!jobs.ok()) return Fail(jobs.error());
+  if (!FLAGS_gather) {
+    const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), BinFolder());
+    if (wrong) return Fail(*wrong);
+  }
   if (FLAGS_list) return List(plan.value(), jobs.value());
   if (FLAGS_dry_run) return DryRun(plan.value(), jobs.value());
   if (FLAGS_gather) return Gather(plan.value(), all.value());

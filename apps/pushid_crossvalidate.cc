@@ -90,11 +90,6 @@ int Run() {
         std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
   }
   if (MaybeError error = CheckNames(predictors)) return Fail(*error);
-  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
-                                        {"json_out", FLAGS_json_out},
-                                        {"frontier_out", FLAGS_frontier_out}})) {
-    return Fail(*error);
-  }
   for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   for (const std::string& file : {FLAGS_json_out, FLAGS_frontier_out}) {
     if (file.empty()) continue;

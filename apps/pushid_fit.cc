@@ -26,6 +26,7 @@ DEFINE_int32(
     resample, 0,
     "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
     "k; 0: the recordings as they are");
+DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
 
 namespace {
 
@@ -51,25 +52,27 @@ std::vector<pushid::Recording> Resampled(const std::vector<pushid::Recording>& r
 int Run() {
   using namespace pushid;
   const auto begin = std::chrono::steady_clock::now();
-  const Result<FitOptions> options = FitOptionsFromFlags();
+  Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (FLAGS_resample < 0) return Fail("--resample must not be negative");
-  if (MaybeError error = CheckDistinct({{"recordings", FLAGS_recordings},
-                                        {"model_out", FLAGS_model_out},
-                                        {"bootstrap_file", FLAGS_bootstrap_file}})) {
-    return Fail(*error);
-  }
+  if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
+  if (FLAGS_check) return kDone;
   for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
+  std::vector<std::string> odd;  // about the files; a result says what it was made of
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, false, &odd);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MapRecordings(Resampled(recordings.value()), options.value().mapping);
 
+  HoldUnusedTail(pendulums, &options.value());
+  if (options.value().table.Free().empty()) {
+    return Fail("every parameter that acts on these recordings is fixed: nothing is left to fit");
+  }
   const int count = static_cast<int>(pendulums.size());
   if (MaybeError error = CheckConfidence(options.value(), count)) return Fail(*error);
   for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
@@ -90,6 +93,7 @@ int Run() {
     return kFitFailed;
   }
   if (MaybeError error = AddConfidence(pendulums, &result)) return Fail(*error);
+  result.warnings.insert(result.warnings.begin(), odd.begin(), odd.end());
   result.version = Version();
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.

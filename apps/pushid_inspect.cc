@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "apps/app_support.h"
+#include "apps/overwrite_check.h"
 #include "datasets/atomic_file.h"
 #include "datasets/inspection.h"
 #include "ident/inspection_svg.h"
@@ -22,6 +23,7 @@ int Run() {
     if (g_files.size() > 1) {
       return Fail("--svg_out draws one file, not " + std::to_string(g_files.size()));
     }
+    if (MaybeError error = CheckNoOutput("the command line", g_files[0])) return Fail(*error);
     if (MaybeError error = CheckWritable(FLAGS_svg_out)) return Fail(*error);
   }
   // A file that cannot be read does not keep the others from being told about.
@@ -34,6 +36,10 @@ int Run() {
     }
     std::printf("%s", InspectionText(found.value()).c_str());
     if (FLAGS_svg_out.empty()) continue;
+    const Inspection& seen = found.value();
+    if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
+      return Fail(file + ": a " + seen.format + " has nothing to draw; name a recording's file");
+    }
     if (MaybeError error = WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value()))) {
       return Fail(*error);
     }

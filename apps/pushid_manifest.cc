@@ -87,6 +87,7 @@ int Run() {
   const Result<MadeManifest> made = MakeManifest(options.value());
   if (!made.ok()) return Fail(made.error());
   if (MaybeError error = WriteManifest(FLAGS_out, made.value().manifest)) return Fail(*error);
+  for (const Error& error : made.value().unreadable) Warn("left out: " + error.ToString());
   for (const std::string& id : made.value().without_push) Warn("recording " + id + " has no push");
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",
               made.value().manifest.recordings.size(), made.value().files, made.value().others,

@@ -36,8 +36,6 @@ struct MadePush {
   std::string how;
 };
 
-bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
-
 // A flag of the other way would be taken and do nothing.
 MaybeError CheckFlags() {
   for (const char* flag : {"first_frame", "end_frame", "smoothing"}) {

@@ -1,10 +1,10 @@
 // apps: loading what --recordings names.
 #include "apps/recording_flags.h"
 
-#include <algorithm>
 #include <sstream>
 
 #include "apps/app_support.h"
+#include "apps/overwrite_check.h"
 
 DEFINE_string(recordings, "", "manifest.json of the recordings");
 DEFINE_string(setting, "all",
@@ -32,45 +32,55 @@ std::vector<std::string> SplitList(const std::string& text) {
   return words;
 }
 
-MaybeError LeaveOut(std::vector<Recording>* recordings) {
-  for (const std::string& id : SplitList(FLAGS_leave_out)) {
-    const auto at = std::find_if(recordings->begin(), recordings->end(),
-                                 [&id](const Recording& r) { return r.id == id; });
-    if (at == recordings->end()) {
-      return Error{
-          "--leave_out: there is no recording '" + id + "' among those that were asked for",
-          FLAGS_recordings};
-    }
-    recordings->erase(at);
-  }
-  if (!recordings->empty()) return std::nullopt;
-  return Error{"--leave_out leaves no recording", FLAGS_recordings};
-}
-
-}  // namespace
-
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
-                                                     bool keep_all_joints) {
-  if (MaybeError missing =
-          Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
-    return *missing;
-  }
+Result<LoadOptions> LoadOptionsOfFlags() {
   LoadOptions options;
   options.setting = FLAGS_setting;
-  options.keep_all_joints = keep_all_joints;
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
-  options.ids = ids.empty() ? SplitList(FLAGS_ids) : ids;
+  options.ids = SplitList(FLAGS_ids);
+  options.leave_out = SplitList(FLAGS_leave_out);
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);
     if (!options.length_unit) {
       return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
     }
   }
-  std::vector<std::string> warnings;
-  Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_recordings, options, &warnings);
-  for (const std::string& warning : warnings) Warn(warning);
-  if (!recordings.ok() || !ids.empty()) return recordings;
-  if (MaybeError error = LeaveOut(&recordings.value())) return *error;
+  if (MaybeError error = CheckPreparation(options.preparation)) return *error;
+  return options;
+}
+
+}  // namespace
+
+MaybeError CheckRecordingFlags() {
+  const Result<LoadOptions> options = LoadOptionsOfFlags();
+  return options.ok() ? std::nullopt : MaybeError(options.error());
+}
+
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
+                                                     bool keep_all_joints,
+                                                     std::vector<std::string>* warnings) {
+  if (MaybeError missing =
+          Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
+    return *missing;
+  }
+  Result<LoadOptions> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.error();
+  options.value().keep_all_joints = keep_all_joints;
+  if (!ids.empty()) {
+    options.value().ids = ids;
+    options.value().leave_out.clear();
+  }
+  std::vector<std::string> odd;
+  Result<std::vector<Recording>> recordings =
+      LoadRecordings(FLAGS_recordings, options.value(), &odd);
+  for (const std::string& warning : odd) Warn(warning);
+  if (warnings != nullptr) *warnings = odd;
+  if (!recordings.ok()) return recordings;
+  // Pushes may be written again where they were read; a motion cannot be had back.
+  for (const Recording& recording : recordings.value()) {
+    for (const RecordedPerson& person : recording.people) {
+      if (MaybeError error = CheckNoOutput("recording " + recording.id, person.file)) return *error;
+    }
+  }
   return recordings;
 }
 

@@ -15,10 +15,15 @@ DECLARE_string(ids);
 
 namespace pushid {
 
-// The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr. Other
-// ids than the flags' may be asked for, and all joints instead of hip and ankles.
+// The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
+// `warnings` too. Other ids than the flags' may be asked for, and all joints instead of hip and
+// ankles.
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
-                                                     bool keep_all_joints = false);
+                                                     bool keep_all_joints = false,
+                                                     std::vector<std::string>* warnings = nullptr);
+
+// What is wrong with their flags, before any file is read.
+MaybeError CheckRecordingFlags();
 
 // Those of another --setting, with whole bodies.
 Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);

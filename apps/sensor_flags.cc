@@ -7,6 +7,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "apps/app_support.h"
+#include "apps/overwrite_check.h"
 #include "datasets/number_text.h"
 #include "ident/report_text.h"
 #include "ident/sensor_offset.h"
@@ -33,8 +35,6 @@ DEFINE_double(max_offset_s, 0.5, "how far --estimate_offset looks on either side
 
 namespace pushid {
 namespace {
-
-bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
 
 constexpr const char* kOfOneSensor[] = {"sensor_column",  "sensor_gain",  "sensor_up",
                                         "sensor_forward", "direction",    "height",
@@ -127,6 +127,7 @@ Result<SensorPush> PushFromSensors(const PendulumRecording& recording, int perso
   std::vector<SensorRecord> records;
   std::vector<TimedForce> timed;
   for (const SensorChoice& sensor : sensors.value()) {
+    if (MaybeError error = CheckNoOutput("--sensors", sensor.file)) return *error;
     Result<SensorRecord> record = ReadSensor(sensor);
     if (!record.ok()) return record.error();
     timed.push_back(AsVectors(record.value(), sensor));

@@ -41,14 +41,6 @@ MaybeError CheckOutputs(int people) {
     return Error{"--forces_svg_out shows at most " + std::to_string(kMostPeopleInForces) +
                  " people; leave it out or lower --people"};
   }
-  if (MaybeError error = CheckDistinct({{"csv_out", FLAGS_csv_out},
-                                        {"forces_out", FLAGS_forces_out},
-                                        {"svg_out", FLAGS_svg_out},
-                                        {"forces_svg_out", FLAGS_forces_svg_out},
-                                        {"bvh_out", FLAGS_bvh_out},
-                                        {"model", FLAGS_model}})) {
-    return error;
-  }
   for (const std::string& file :
        {FLAGS_csv_out, FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out}) {
     if (file.empty()) continue;

@@ -1,9 +1,6 @@
 // datasets: mapping files.
 #include "datasets/column_mapping.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "datasets/axes.h"
 #include "datasets/bvh.h"
 #include "datasets/mapping_json.h"
@@ -12,9 +9,6 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kKeys[] = {"columns",     "joints", "time",   "frame_rate",
-                                 "length_unit", "up",     "forward"};
 
 void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
   if (!fields->Has("columns")) return;
@@ -44,15 +38,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   JsonFields fields(document.value(), document.value().content, "", "mapping");
   ColumnMapping mapping;
   if (fields.error()) return *fields.error();
-  for (const auto& [key, value] : document.value().content.items()) {
-    const bool known = std::any_of(std::begin(kKeys), std::end(kKeys),
-                                   [&name = key](const char* one) { return name == one; });
-    if (!known) {
-      fields.Fail(key,
-                  "is not known; a mapping has columns, joints, time, frame_rate, "
-                  "length_unit, up and forward");
-    }
-  }
+  fields.Only({"columns", "joints", "time", "frame_rate", "length_unit", "up", "forward"});
   ReadColumns(&fields, &mapping);
   mapping.joints = ReadJointMapping(document.value(), &fields);
   mapping.time_column = fields.OptionalText("time", "");

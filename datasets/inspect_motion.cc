@@ -19,6 +19,7 @@ constexpr double kSmallestJump = 0.05;  // m; less is noise, however high the ra
 constexpr double kStaticSpeed = 0.05;   // m/s of the hip
 constexpr double kStaticTime = 0.25;    // s
 constexpr double kOnset = 0.02;         // m
+constexpr double kFromRest = 0.6;       // speed at first over the largest before the onset
 constexpr std::size_t kNamed = 4;       // points named in a warning
 
 std::string Seconds(double s) { return Rounded(s, 3) + " s"; }
@@ -121,8 +122,8 @@ class MotionInspector {
     for (const Eigen::Vector3d& position : hip) {
       found_.hip.push_back(metres_ * (position - hip[first]));
     }
-    Start(first);
     Onset(first, rod);
+    Start(first);
   }
 
   void Places(const PendulumJoints& joints) {
@@ -205,6 +206,10 @@ class MotionInspector {
     if (last <= first || !found_.hip[last].allFinite()) return;
     const double speed =
         (found_.hip[last] - found_.hip[first]).norm() * motion_.rate_hz / (last - first);
+    if (found_.onset_frame >= 0 && found_.onset_frame <= last && PushedFromRest(first)) {
+      found_.Fact("start", "the push begins at once");
+      return;
+    }
     const bool still = speed <= kStaticSpeed;
     found_.Fact("start",
                 std::string(still ? "static" : "moving") + " (hip " + Rounded(speed, 2) + " m/s)");
@@ -213,6 +218,16 @@ class MotionInspector {
           "the person moves at the start: cut it by first_frame, or set initial_velocity "
           "to estimated or free");
     }
+  }
+
+  // Whether the hip gathers speed before the onset, as a push makes it do, rather than coming with
+  // it: whoever walks in is as fast at first as later.
+  bool PushedFromRest(int first) const {
+    const int end = found_.onset_frame, step = std::max(1, (end - first) / 4);
+    const auto way = [&](int t) { return (found_.hip[t + step] - found_.hip[t]).norm(); };
+    double longest = 0.0;
+    for (int t = first; t + step <= end; t += step) longest = std::max(longest, way(t));
+    return longest > 0.0 && way(first) < kFromRest * longest;
   }
 
   // The hip's first 2 cm across the up axis, as the propagation of pushes counts it.

@@ -17,6 +17,7 @@
 #include "datasets/push_csv.h"
 #include "datasets/recording_names.h"
 #include "datasets/sensor_csv.h"
+#include "datasets/table_points.h"
 
 namespace pushid {
 namespace {
@@ -200,13 +201,12 @@ MaybeError LookAtTable(MotionFormat format, Inspection* found) {
     if (!step.ok()) found->Warn(step.error().message);
   }
   for (std::size_t i = 0; rate > 0.0 && i < table.names.size(); ++i) {
-    if (table.names[i].find("force") != std::string::npos) {
-      AddForce(table.names[i], rate, table.data[i], found);
-    }
+    if (IsForceColumn(table.names[i])) AddForce(table.names[i], rate, table.data[i], found);
   }
   const Result<PointMotion> motion = ReadPointMotion(found->path, format, {});
-  if (motion.ok() && found->forces.empty()) {
-    LookAtPoints(motion.value(), found);
+  const PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
+  if (!points.names.empty()) {
+    LookAtPoints(points, found);
   } else {
     found->Fact("rows", std::to_string(table.num_rows()) +
                             (rate > 0.0 ? " at " + Rounded(rate, 5) + " per second" : ""));

@@ -1,7 +1,9 @@
 // datasets: typed values taken out of a JSON object, each complaint with its place in the file.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -51,6 +53,18 @@ class JsonFields {
   }
   void Fail(const MaybeError& error) {
     if (!error_) error_ = error;
+  }
+
+  // Other keys than these are mistakes, which would be read over.
+  void Only(std::initializer_list<const char*> keys) {
+    if (!object_.is_object()) return;
+    std::string list;
+    for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+    for (const auto& [key, value] : object_.items()) {
+      const bool known = std::any_of(keys.begin(), keys.end(),
+                                     [&name = key](const char* one) { return name == one; });
+      if (!known) Fail(key, "is not known; there may be " + list);
+    }
   }
 
   bool Require(const char* key, const char* what) {

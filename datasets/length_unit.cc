@@ -1,6 +1,10 @@
 // datasets: the unit of lengths in a file.
 #include "datasets/length_unit.h"
 
+#include <utility>
+
+#include "datasets/number_text.h"
+
 namespace pushid {
 namespace {
 
@@ -34,8 +38,15 @@ std::string Name(LengthUnit unit) {
 }
 
 std::optional<LengthUnit> LengthUnitFromName(std::string_view name) {
-  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
-    if (name == Name(unit)) return unit;
+  name = Trimmed(name);
+  const std::pair<const char*, LengthUnit> prefixes[] = {{"milli", LengthUnit::kMillimetre},
+                                                         {"centi", LengthUnit::kCentimetre},
+                                                         {"", LengthUnit::kMetre}};
+  for (const auto& [prefix, unit] : prefixes) {
+    if (EqualsIgnoringCase(name, Name(unit))) return unit;
+    for (const char* metre : {"meter", "metre", "meters", "metres"}) {
+      if (EqualsIgnoringCase(name, std::string(prefix) + metre)) return unit;
+    }
   }
   return std::nullopt;
 }

@@ -16,7 +16,7 @@ double MetresPer(LengthUnit unit);
 // "mm", "cm" or "m", as manifests and --length_unit spell them.
 std::string Name(LengthUnit unit);
 
-// The inverse of Name; nullopt for any other text.
+// The inverse of Name; also of longer and capital spellings ("Metres"). nullopt for other texts.
 std::optional<LengthUnit> LengthUnitFromName(std::string_view name);
 
 // `value` given in `from`, expressed in `to`; exact (no rounding at all) when the two are the same.

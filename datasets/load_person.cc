@@ -82,18 +82,36 @@ class PersonLoader {
   }
 
  private:
+  // By whoever does not have to believe the file; the first one counts.
+  std::optional<LengthUnit> UnitGiven() const {
+    for (const auto& unit :
+         {options_.length_unit, entry_.length_unit, manifest_.length_unit, mapping_.length_unit}) {
+      if (unit) return unit;
+    }
+    return std::nullopt;
+  }
+
   LengthUnit Unit(const std::optional<LengthUnit>& of_file) const {
-    if (options_.length_unit) return *options_.length_unit;
-    if (entry_.length_unit) return *entry_.length_unit;
-    if (manifest_.length_unit) return *manifest_.length_unit;
-    if (mapping_.length_unit) return *mapping_.length_unit;
-    return of_file.value_or(LengthUnit::kMillimetre);
+    return UnitGiven().value_or(of_file.value_or(LengthUnit::kMillimetre));
   }
 
   void Warn(const std::string& warning) const {
     if (warnings_ != nullptr) {
-      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + path_ + " " + warning);
+      // As the manifest names it: results keep warnings, and not where the data lay.
+      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion_files()[index_] +
+                           " " + warning);
     }
+  }
+
+  // Which of the file's `all` joints are read; where the pendulum's stand among those.
+  std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all, Motion* motion) const {
+    std::vector<int> read;
+    for (std::size_t i = 0; options_.keep_all_joints && i < all; ++i) {
+      read.push_back(static_cast<int>(i));
+    }
+    motion->places = {Among(joints.hip, &read), Among(joints.left_ankle, &read),
+                      Among(joints.right_ankle, &read)};
+    return read;
   }
 
   Result<Motion> ReadSkeleton() {
@@ -104,13 +122,7 @@ class PersonLoader {
     bvh_options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
       const Result<PendulumJoints> joints = ChoosePendulumJoints(path_, skeleton, joints_);
       if (!joints.ok()) return joints.error();
-      std::vector<int> read;
-      for (std::size_t i = 0; options_.keep_all_joints && i < skeleton.joints.size(); ++i) {
-        read.push_back(static_cast<int>(i));
-      }
-      motion.places = {Among(joints.value().hip, &read), Among(joints.value().left_ankle, &read),
-                       Among(joints.value().right_ankle, &read)};
-      return read;
+      return Wanted(joints.value(), skeleton.joints.size(), &motion);
     };
     Result<BvhPositions> bvh = ReadBvhPositions(path_, bvh_options);
     if (!bvh.ok()) return bvh.error();
@@ -132,17 +144,17 @@ class PersonLoader {
     point_options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
       const Result<PendulumJoints> joints = ChoosePendulumPoints(path_, names, joints_);
       if (!joints.ok()) return joints.error();
-      std::vector<int> read;
-      for (std::size_t i = 0; options_.keep_all_joints && i < names.size(); ++i) {
-        read.push_back(static_cast<int>(i));
-      }
-      motion.places = {Among(joints.value().hip, &read), Among(joints.value().left_ankle, &read),
-                       Among(joints.value().right_ankle, &read)};
-      return read;
+      return Wanted(joints.value(), names.size(), &motion);
     };
     Result<PointMotion> points = ReadPointMotion(path_, entry_.motion_format, point_options);
     if (!points.ok()) return points.error();
     motion.unit = Unit(points.value().unit);
+    const std::string& said = points.value().unit_text;
+    if (!points.value().unit && !Trimmed(said).empty() && !UnitGiven()) {
+      return Error{"says its lengths are in " + Quoted(said) +
+                       ", which is not known here; give length_unit (mm, cm or m) in the manifest",
+                   path_};
+    }
     if (points.value().unit && *points.value().unit != motion.unit) {
       Warn("says its lengths are " + Name(*points.value().unit) + "; they are read as " +
            Name(motion.unit));

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "datasets/load_person.h"
+#include "datasets/manifest_keys.h"
 #include "datasets/number_text.h"
 #include "datasets/push_csv.h"
 #include "datasets/select_recordings.h"
@@ -62,6 +63,10 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
 
+  for (const std::string& odd : MisspeltKeys(entry)) {
+    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + odd);
+  }
+
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
   for (std::size_t i = 0; i < entry.motion_files().size(); ++i) {
     std::string file_hash;
@@ -101,7 +106,7 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
   const Result<Manifest> manifest = ReadManifest(manifest_path);
   if (!manifest.ok()) return manifest.error();
   const Result<std::vector<int>> selected =
-      SelectRecordings(manifest.value(), options.setting, options.ids);
+      SelectRecordings(manifest.value(), options.setting, options.ids, options.leave_out);
   if (!selected.ok()) return selected.error();
   std::vector<Recording> recordings;
   for (int index : selected.value()) {

@@ -28,6 +28,8 @@ struct LoadOptions {
   std::string setting = "all";
   // Only these ids; empty: all of the setting.
   std::vector<std::string> ids;
+  // Not these ids of them.
+  std::vector<std::string> leave_out;
   // Also keep the positions of all joints (RecordedPerson::joints), for full-body work; without it
   // only hip and ankles stay in memory.
   bool keep_all_joints = false;

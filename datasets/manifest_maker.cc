@@ -77,10 +77,21 @@ class Maker {
       const Result<NamePattern> push = NamePattern::Parse(options_.push_pattern);
       if (!push.ok()) return push.error();
       push_pattern_ = push.value();
+      if (MaybeError wrong = CheckPushPattern()) return *std::move(wrong);
+    }
+    if (!options_.mapping.empty()) {
+      Result<ColumnMapping> mapping = ReadColumnMapping(options_.mapping);
+      if (!mapping.ok()) return mapping.error();
+      mapping_ = std::move(mapping.value());
     }
     if (MaybeError failed = Find()) return *std::move(failed);
     for (auto& [id, files] : recordings_) {
       if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
+    }
+    if (made_.manifest.recordings.empty()) {
+      Error first = made_.unreadable.front();
+      first.message += "; no other file can be read either";
+      return first;
     }
     if (!massless_.empty()) {
       std::string names;
@@ -92,6 +103,21 @@ class Maker {
   }
 
  private:
+  // It must name one file for each recording.
+  MaybeError CheckPushPattern() const {
+    const std::string what = "the push pattern " + Quoted(options_.push_pattern);
+    if (push_pattern_->HasStar()) {
+      return Error{what + " has a *; it names one file of each recording, by names of the pattern"};
+    }
+    for (const std::string& name : push_pattern_->names()) {
+      if (pattern_.Has(name)) continue;
+      std::string known;
+      for (const std::string& one : pattern_.names()) known += (known.empty() ? "" : ", ") + one;
+      return Error{what + " has the name {" + name + "}, but the pattern has only " + known};
+    }
+    return std::nullopt;
+  }
+
   MaybeError Find() {
     const Result<std::vector<std::string>> files = FilesBelow(options_.folder);
     if (!files.ok()) return files.error();
@@ -147,9 +173,26 @@ class Maker {
                        "pattern instead of *",
                    options_.folder};
     }
+    if (id.find(',') != std::string::npos) {
+      return Error{(*files)[0].path + " would be recording " + Quoted(id) +
+                       ", but commas separate ids in lists; give the file another name",
+                   options_.folder};
+    }
     const Values& values = files->front().values;
     ManifestRecording recording;
     recording.id = id;
+    for (std::size_t i = files->size(); i-- > 0;) {
+      const Result<double> rate = Rate((*files)[i].path);
+      if (!rate.ok()) {
+        made_.unreadable.push_back(rate.error());
+        return std::nullopt;
+      }
+      recording.fps = rate.value();  // in the end that of the first
+    }
+    if (!(recording.fps > 0.0)) {
+      return Error{"it does not say its frame rate; give --fps",
+                   (fs::path(options_.folder) / files->front().path).string()};
+    }
     recording.setting = Value(values, "setting", options_.setting);
     recording.magnitude = Value(values, "magnitude", options_.magnitude);
     recording.condition_code = Value(values, "condition_code", "");
@@ -167,9 +210,6 @@ class Maker {
       return Error{"recording " + Quoted(id) + " has " + std::to_string(files->size()) +
                    " people, so that nobody is person " + std::to_string(recording.pushed_person)};
     }
-    const Result<double> fps = Rate(files->front().path);
-    if (!fps.ok()) return fps.error();
-    recording.fps = fps.value();
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
     if (!options_.up.empty()) recording.up = options_.up;
@@ -193,6 +233,7 @@ class Maker {
     return options_.mass_kg;
   }
 
+  // Frames per second, whole where they nearly are; 0 where neither file nor option says.
   Result<double> Rate(const std::string& relative) const {
     if (options_.fps > 0.0) return options_.fps;
     const std::string path = (fs::path(options_.folder) / relative).string();
@@ -205,19 +246,15 @@ class Maker {
       rate = 1.0 / header.value().frame_time_s;
     } else {
       PointReadOptions point_options;
-      if (!options_.mapping.empty()) {
-        const Result<ColumnMapping> mapping = ReadColumnMapping(options_.mapping);
-        if (!mapping.ok()) return mapping.error();
-        if (mapping.value().frame_rate > 0.0) return mapping.value().frame_rate;
-        point_options.time_column = mapping.value().time_column;
-        point_options.columns = mapping.value().columns;
-      }
+      if (mapping_.frame_rate > 0.0) return mapping_.frame_rate;
+      point_options.time_column = mapping_.time_column;
+      point_options.columns = mapping_.columns;
       point_options.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
       const Result<PointMotion> motion = ReadPointMotion(path, format_, point_options);
       if (!motion.ok()) return motion.error();
       rate = motion.value().rate_hz;
     }
-    if (!(rate > 0.0)) return Error{"it does not say its frame rate; give --fps", path};
+    if (!(rate > 0.0)) return 0.0;
     const double whole = std::round(rate);
     return whole > 0.0 && std::fabs(rate / whole - 1.0) < kNearlyWhole ? whole : rate;
   }
@@ -236,6 +273,7 @@ class Maker {
   const ManifestOptions& options_;
   NamePattern pattern_;
   std::optional<NamePattern> push_pattern_;
+  ColumnMapping mapping_;
   MotionFormat format_ = MotionFormat::kBvh;
   std::map<std::string, std::vector<FoundFile>> recordings_;  // by id, which is their order
   std::set<std::string> massless_;
@@ -245,37 +283,5 @@ class Maker {
 }  // namespace
 
 Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
-
-Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
-  LineReader reader;
-  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  std::map<std::string, double> masses;
-  std::string_view line;
-  bool head = true;
-  while (reader.NextNonBlank(&line)) {
-    const std::size_t comma = line.find(',');
-    const std::string_view id = Trimmed(line.substr(0, comma));
-    const std::string_view mass =
-        comma == std::string_view::npos ? "" : Trimmed(line.substr(comma + 1));
-    if (head) {
-      if (id != "id" || mass != "mass_kg") {
-        return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
-      }
-      head = false;
-      continue;
-    }
-    double value = 0.0;
-    if (!ParseDouble(mass, &value)) return reader.ErrorHere("mass_kg: " + NumberProblem(mass));
-    if (!(value > 0.0 && value <= 400.0)) {
-      return reader.ErrorHere("a mass in kg is above 0 and at most 400, not " + Rounded(value));
-    }
-    if (!masses.emplace(id, value).second) {
-      return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");
-    }
-  }
-  if (reader.error()) return *reader.error();
-  if (masses.empty()) return reader.ErrorHere("the file lists no masses");
-  return masses;
-}
 
 }  // namespace pushid

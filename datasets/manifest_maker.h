@@ -46,10 +46,13 @@ struct MadeManifest {
   int files = 0;                          // that fitted the pattern
   int others = 0;                         // that did not
   std::vector<std::string> without_push;  // recordings for which push_pattern named no file
+  std::vector<Error> unreadable;          // what is wrong with the files of recordings left out
 };
 
-// Errors: no folder, a pattern that is none or fits no file, an ending of no known format, people
-// without mass (all are named), a rate that no file and no option says, two recordings of one id.
+// Errors: no folder, a pattern that is none or fits no file, an ending of no known format, a push
+// pattern with a * or a name that the pattern has not, no mapping file, people without mass (all
+// are named), a rate that no file and no option says, two recordings of one id, no file that can be
+// read. A recording with a file that cannot be read is left out.
 Result<MadeManifest> MakeManifest(const ManifestOptions& options);
 
 // Masses from a CSV file with the columns id and mass_kg.

@@ -107,6 +107,9 @@ Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json
   recording.id = fields.Text("id", "text that names the recording");
   if (!fields.error() && recording.id.empty()) fields.Fail("id", "is empty");
   if (!fields.error()) fields.set_label("recording " + Quoted(recording.id));
+  if (!fields.error() && recording.id.find(',') != std::string::npos) {
+    fields.Fail("id", "must have no comma: commas separate ids in lists");
+  }
 
   recording.setting = fields.Text("setting", "text, for instance single");
   recording.fps = fields.Number("fps", "the frames per second");

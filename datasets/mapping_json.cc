@@ -51,6 +51,7 @@ JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) 
   if (!fields->Has("joints")) return mapping;
   JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
                     fields->label() + ", joints");
+  joints.Only({"hip", "left_ankle", "right_ankle"});
   mapping.hip = ReadJoint(&joints, "hip");
   mapping.left_ankle = ReadJoint(&joints, "left_ankle");
   mapping.right_ankle = ReadJoint(&joints, "right_ankle");

@@ -13,11 +13,13 @@ constexpr double kLargestLean = 1.0;                      // rad; beyond it the 
 constexpr double kFarthest = 1e5;                         // m
 constexpr int kFewestFrames = 3;                          // an acceleration takes three
 
-// The unit in which the rod would have a person's length.
+constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
+
+// The unit in which the rod would have an adult's length.
 std::optional<LengthUnit> LikelyUnit(double rod_m, LengthUnit read_as) {
   for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kCentimetre}) {
     const double rod = rod_m / MetresPer(read_as) * MetresPer(unit);
-    if (rod >= 0.3 && rod <= 2.0) return unit;
+    if (rod >= kShortestAdult && rod <= kLongestAdult) return unit;
   }
   return std::nullopt;
 }

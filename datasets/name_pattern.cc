@@ -53,6 +53,11 @@ bool NamePattern::Has(const std::string& name) const {
   return std::find(names_.begin(), names_.end(), name) != names_.end();
 }
 
+bool NamePattern::HasStar() const {
+  return std::any_of(pieces_.begin(), pieces_.end(),
+                     [](const Piece& piece) { return piece.kind == Piece::kAnything; });
+}
+
 bool NamePattern::MatchFrom(std::size_t index, const std::string& path, std::size_t at,
                             std::map<std::string, std::string>* values, int* tries) const {
   if (++*tries > kMostTries) return false;

@@ -21,6 +21,7 @@ class NamePattern {
 
   const std::vector<std::string>& names() const { return names_; }  // each once, in order
   bool Has(const std::string& name) const;
+  bool HasStar() const;
 
   // The values of all names where `path` fits entirely.
   std::optional<std::map<std::string, std::string>> Match(const std::string& path) const;

@@ -185,7 +185,7 @@ class TableReader {
       if (IsMissing(cell)) {
         row_[count] = std::numeric_limits<double>::quiet_NaN();
       } else if (!ParseDouble(cell, &row_[count])) {
-        return reader_.ErrorHere(table_.names[count] + ": " + NumberProblem(cell));
+        return reader_.ErrorHere(table_.names[count] + ": " + NumberProblem(cell) + kMissingCell);
       }
     }
     if (count != row_.size()) {

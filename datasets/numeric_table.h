@@ -17,6 +17,9 @@
 
 namespace pushid {
 
+// After NumberProblem, where cells may be missing.
+inline constexpr const char* kMissingCell = "; a value that is missing is an empty cell or nan";
+
 enum class TableFormat { kCsv, kStorage };
 
 struct NumericTable {

@@ -33,10 +33,27 @@ std::string SomeIdsOf(const Manifest& manifest) {
   return text;
 }
 
+MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& ids,
+                    std::vector<int>* selected) {
+  for (const std::string& id : ids) {
+    const auto at = std::find_if(selected->begin(), selected->end(),
+                                 [&](int index) { return manifest.recordings[index].id == id; });
+    if (at == selected->end()) {
+      return Error{
+          "leave_out: there is no recording " + Quoted(id) + " among those that were asked for",
+          manifest.path, 0};
+    }
+    selected->erase(at);
+  }
+  if (!selected->empty() || ids.empty()) return std::nullopt;
+  return Error{"leave_out leaves no recording", manifest.path, 0};
+}
+
 }  // namespace
 
 Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
-                                          const std::vector<std::string>& ids) {
+                                          const std::vector<std::string>& ids,
+                                          const std::vector<std::string>& leave_out) {
   const std::size_t count = manifest.recordings.size();
   std::vector<bool> in_setting(count, false);
   for (std::size_t begin = 0; begin <= setting.size();) {
@@ -83,6 +100,7 @@ Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::s
                    manifest.path, 0};
     }
   }
+  if (MaybeError error = LeaveOut(manifest, leave_out, &selected)) return *error;
   return selected;
 }
 

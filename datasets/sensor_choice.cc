@@ -6,6 +6,7 @@
 #include "datasets/axes.h"
 #include "datasets/c3d.h"
 #include "datasets/force_platform.h"
+#include "datasets/inspect_manifest.h"
 #include "datasets/number_text.h"
 #include "datasets/numeric_table.h"
 #include "datasets/point_motion.h"
@@ -64,6 +65,28 @@ Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
   return record;
 }
 
+// For files that hold more than a push.
+Error WhichColumn(const SensorChoice& choice, bool c3d) {
+  std::vector<std::string> names;
+  if (c3d) {
+    const Result<C3dFile> file = ReadC3d(choice.file);
+    if (!file.ok()) return file.error();
+    for (const C3dAnalogChannel& channel : file.value().analog) names.push_back(channel.name);
+    for (std::size_t i = 0; i < file.value().platforms.size(); ++i) {
+      names.push_back(kPlatform + std::to_string(i + 1));
+    }
+  } else {
+    const Result<NumericTable> table = ReadNumericTable(choice.file, TableFormat::kStorage, {});
+    if (!table.ok()) return table.error();
+    names = table.value().names;
+  }
+  return Error{
+      "say what of it is the push by --sensor_column (in a list of sensors by \"column\"): "
+      "it has " +
+          (names.empty() ? "none" : ListOfNames(names)),
+      choice.file};
+}
+
 // The mean height of the pressure, weighted by the force, along the file's axis that points up.
 std::optional<double> HeightOfPressure(const PlatformRecord& platform, const Eigen::Vector3d& up) {
   double sum = 0.0, weight = 0.0;
@@ -87,9 +110,14 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
       return Error{Quoted(choice.column) +
                    " is no platform; it must be platform:1 or another number"};
     }
-    const Result<PlatformRecord> platform =
-        EvaluatePlatform(file, static_cast<int>(number) - 1,
-                         LengthUnitFromName(file.point_unit).value_or(LengthUnit::kMillimetre));
+    const std::optional<LengthUnit> unit = LengthUnitFromName(file.point_unit);
+    if (!unit && !Trimmed(file.point_unit).empty()) {
+      return Error{"its lengths are in " + Quoted(file.point_unit) +
+                       ", which is not known here, so that the height of a platform is not",
+                   choice.file};
+    }
+    const Result<PlatformRecord> platform = EvaluatePlatform(
+        file, static_cast<int>(number) - 1, unit.value_or(LengthUnit::kMillimetre));
     if (!platform.ok()) return platform.error();
     record.is_vector = true;
     record.force = platform.value().force;
@@ -119,11 +147,7 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
   if (!rotation.ok()) return rotation.error();
   const std::optional<MotionFormat> format = MotionFormatOfFile(choice.file);
   const bool c3d = format == MotionFormat::kC3d, storage = format == MotionFormat::kStorage;
-  if (choice.column.empty() && (c3d || storage)) {
-    return Error{std::string("say what of it is the push: ") +
-                     (c3d ? "an analog channel or platform:1" : "a column"),
-                 choice.file};
-  }
+  if (choice.column.empty() && (c3d || storage)) return WhichColumn(choice, c3d);
   if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
     return Error{"the gain of a sensor must be a number of N per unit other than 0"};
   }

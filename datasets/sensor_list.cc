@@ -39,6 +39,8 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
   for (std::size_t i = 0; i < content.size(); ++i) {
     JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
                       "sensor " + std::to_string(i));
+    fields.Only({"file", "column", "gain", "up", "forward", "direction", "height", "height_m",
+                 "start", "idle_force"});
     SensorChoice sensor;
     sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
     sensor.column = fields.OptionalText("column", "");

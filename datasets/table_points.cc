@@ -22,6 +22,10 @@ std::string WithoutSeparator(std::string stem) {
   return stem;
 }
 
+bool Holds(const std::string& name, const char* word) {
+  return name.find(word) != std::string::npos;
+}
+
 Result<std::vector<TablePoint>> NamedPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const std::vector<PointColumns>& wanted) {
@@ -65,6 +69,27 @@ std::vector<TablePoint> PointsOf(const std::vector<std::string>& names) {
     point.columns[1] = y->second;
     point.columns[2] = z->second;
     points.push_back(point);
+  }
+  return points;
+}
+
+bool IsForceColumn(const std::string& name) {
+  if (!Holds(name, "force")) return false;
+  const std::size_t end = name.size();
+  return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
+}
+
+PointMotion WithoutForces(const PointMotion& motion) {
+  PointMotion points = motion;
+  points.names.clear();
+  points.chosen.clear();
+  points.positions.clear();
+  for (std::size_t i = 0; i < motion.names.size(); ++i) {
+    const std::string& name = motion.names[i];
+    if (Holds(name, "force") || Holds(name, "torque") || Holds(name, "moment")) continue;
+    points.chosen.push_back(static_cast<int>(points.names.size()));
+    points.names.push_back(name);
+    points.positions.push_back(motion.positions[i]);
   }
   return points;
 }

@@ -17,6 +17,12 @@ struct TablePoint {
 // point is called what is left without axis and separator. Columns without a partner are no points.
 std::vector<TablePoint> PointsOf(const std::vector<std::string>& names);
 
+// By name. "ground_force_px", of OpenSim, is where a force acts: its centre of pressure.
+bool IsForceColumn(const std::string& name);
+
+// Three columns of a force or a torque look like a point: all that do not.
+PointMotion WithoutForces(const PointMotion& motion);
+
 // `format`: kCsv or kStorage. Points are those of options.columns, otherwise of PointsOf.
 Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options);

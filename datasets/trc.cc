@@ -7,6 +7,7 @@
 #include "datasets/atomic_file.h"
 #include "datasets/input_file.h"
 #include "datasets/number_text.h"
+#include "datasets/numeric_table.h"
 
 namespace pushid {
 namespace {
@@ -137,7 +138,8 @@ class TrcReader {
         if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
           row[i] = kNaN;
         } else if (!ParseDouble(cell, &row[i])) {
-          return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell));
+          return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell) +
+                                   kMissingCell);
         }
       }
       for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {

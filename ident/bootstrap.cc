@@ -2,6 +2,7 @@
 #include "ident/bootstrap.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 
@@ -107,9 +108,12 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   if (MaybeError error = file.Open(problem, options, bootstrap.names)) return *error;
   std::vector<ReplicaValues> replicas(options.replicas);
   std::mutex writing;
+  std::atomic<bool> stopped{false};
+  MaybeError failed;
   ParallelFor(
       options.replicas, options.num_threads,
       [&](int k) {
+        if (stopped) return;
         const auto kept = file.finished().find(k);
         if (kept != file.finished().end()) {
           replicas[k] = kept->second;
@@ -117,10 +121,12 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
         }
         replicas[k] = FitReplica(problem, estimate, options.seed, k, combinations);
         const std::lock_guard<std::mutex> lock(writing);
-        file.Append(k, replicas[k]);
+        if (stopped) return;
+        failed = file.Append(k, replicas[k]);
+        stopped = failed.has_value();
       },
       progress);
-  if (MaybeError error = file.Close()) return *error;
+  if (failed) return *failed;
   for (const ReplicaValues& values : replicas) {
     if (values.empty()) {
       ++bootstrap.failed;

@@ -1,6 +1,8 @@
 // ident: reading and writing finished replicas, a line of JSON each.
 #include "ident/bootstrap_file.h"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <sstream>
 
@@ -36,6 +38,9 @@ bool ReadValues(const Json& row, ReplicaValues* values) {
   return true;
 }
 
+// Of the system; streams do not keep it.
+std::string Reason() { return errno != 0 ? std::strerror(errno) : "unknown reason"; }
+
 std::string Line(int replica, const ReplicaValues& values) {
   return Json{{"replica", replica}, {"values", values}}.dump();
 }
@@ -50,7 +55,9 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
   std::string kept = header + "\n";
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored)) {
+    errno = 0;
     std::ifstream old(path_, std::ios::binary);
+    if (!old) return Error{"cannot be read: " + Reason() + "; its replicas would be lost", path_};
     std::string line;
     if (std::getline(old, line) && line != header) {
       return Error{
@@ -67,22 +74,23 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
       finished_[row["replica"].get<int>()] = values;
       kept += line + "\n";
     }
+    if (old.bad()) return Error{"cannot be read to its end: " + Reason(), path_};
   }
   if (MaybeError error = WriteFileAtomically(path_, kept)) return error;
+  errno = 0;
   stream_.open(path_, std::ios::binary | std::ios::app);
+  if (!stream_) return Error{"cannot be written: " + Reason(), path_};
   return std::nullopt;
 }
 
-void BootstrapFile::Append(int replica, const ReplicaValues& values) {
-  if (path_.empty()) return;
-  stream_ << Line(replica, values) << "\n" << std::flush;
-}
-
-MaybeError BootstrapFile::Close() {
+MaybeError BootstrapFile::Append(int replica, const ReplicaValues& values) {
   if (path_.empty()) return std::nullopt;
-  stream_.close();
-  if (stream_.fail()) return Error{"could not be written to its end", path_};
-  return std::nullopt;
+  errno = 0;
+  stream_ << Line(replica, values) << "\n" << std::flush;
+  if (stream_) return std::nullopt;
+  return Error{"replica " + std::to_string(replica) + " cannot be written: " + Reason() +
+                   "; make room, and the same command goes on from here",
+               path_};
 }
 
 }  // namespace pushid

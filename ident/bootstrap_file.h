@@ -16,17 +16,16 @@ using ReplicaValues = std::vector<double>;
 class BootstrapFile {
  public:
   // Takes over the whole lines of an existing file of the same fit and cuts off the rest. An empty
-  // path keeps nothing.
+  // path keeps nothing. Errors: a file that cannot be read, written, or is not of this fit; what
+  // it held stays.
   MaybeError Open(const FitProblem& problem, const BootstrapOptions& options,
                   const std::vector<std::string>& names);
 
   const std::map<int, ReplicaValues>& finished() const { return finished_; }
 
-  // Not from two threads at once.
-  void Append(int replica, const ReplicaValues& values);
-
-  // After the last Append: whether everything reached the file.
-  MaybeError Close();
+  // Not from two threads at once. Errors: it did not reach the file, so that more replicas would be
+  // computed for nothing.
+  MaybeError Append(int replica, const ReplicaValues& values);
 
  private:
   std::string path_;

@@ -11,8 +11,8 @@ using Json = nlohmann::ordered_json;
 
 Json PointJson(const ProfilePoint& point) {
   Json others = Json::object();
-  for (const auto& [name, value] : point.others) others[name] = value;
-  return {{"value", point.value}, {"cost", point.cost}, {"others", others}};
+  for (const auto& [name, value] : point.others) others[name] = NumberJson(value);
+  return {{"value", NumberJson(point.value)}, {"cost", NumberJson(point.cost)}, {"others", others}};
 }
 
 Json BootstrapParametersJson(const Bootstrap& b) {
@@ -47,15 +47,17 @@ StartDiagnostics StartFrom(const Json& json) {
 Json RecordingJson(const RecordingDiagnostics& r) {
   Json outliers = Json::array();
   for (const Outlier& o : r.outliers) {
-    outliers.push_back(
-        {{"frame", o.frame}, {"person", o.person}, {"error", o.error}, {"weight", o.weight}});
+    outliers.push_back({{"frame", o.frame},
+                        {"person", o.person},
+                        {"error", NumberJson(o.error)},
+                        {"weight", NumberJson(o.weight)}});
   }
   return {{"id", r.id},
           {"explained_percent", NumberJson(r.explained)},
-          {"cost", r.cost},
-          {"lag1", r.lag1},
-          {"ljung_box", r.ljung_box},
-          {"ljung_box_p", r.ljung_box_p},
+          {"cost", NumberJson(r.cost)},
+          {"lag1", NumberJson(r.lag1)},
+          {"ljung_box", NumberJson(r.ljung_box)},
+          {"ljung_box_p", NumberJson(r.ljung_box_p)},
           {"outliers", outliers}};
 }
 
@@ -63,12 +65,13 @@ RecordingDiagnostics RecordingFrom(const Json& json) {
   RecordingDiagnostics r;
   r.id = json.at("id");
   r.explained = NumberFrom(json.at("explained_percent"));
-  r.cost = json.at("cost");
-  r.lag1 = json.at("lag1");
-  r.ljung_box = json.at("ljung_box");
-  r.ljung_box_p = json.at("ljung_box_p");
+  r.cost = NumberFrom(json.at("cost"));
+  r.lag1 = NumberFrom(json.at("lag1"));
+  r.ljung_box = NumberFrom(json.at("ljung_box"));
+  r.ljung_box_p = NumberFrom(json.at("ljung_box_p"));
   for (const Json& o : json.at("outliers")) {
-    r.outliers.push_back({o.at("frame"), o.at("person"), o.at("error"), o.at("weight")});
+    r.outliers.push_back(
+        {o.at("frame"), o.at("person"), NumberFrom(o.at("error")), NumberFrom(o.at("weight"))});
   }
   return r;
 }
@@ -79,10 +82,10 @@ Json WhitenessJson(const Whiteness& w) {
           {"error", NumbersJson(w.error)},
           {"push", NumbersJson(w.push)},
           {"push_error", NumbersJson(w.push_error)},
-          {"band", w.band},
-          {"mean_band", w.mean_band},
-          {"ljung_box", w.ljung_box},
-          {"ljung_box_p", w.ljung_box_p}};
+          {"band", NumberJson(w.band)},
+          {"mean_band", NumberJson(w.mean_band)},
+          {"ljung_box", NumberJson(w.ljung_box)},
+          {"ljung_box_p", NumberJson(w.ljung_box_p)}};
 }
 
 Whiteness WhitenessFrom(const Json& json) {
@@ -92,10 +95,10 @@ Whiteness WhitenessFrom(const Json& json) {
   w.error = NumbersFrom(json.at("error"));
   w.push = NumbersFrom(json.at("push"));
   w.push_error = NumbersFrom(json.at("push_error"));
-  w.band = json.at("band");
-  w.mean_band = json.at("mean_band");
-  w.ljung_box = json.at("ljung_box");
-  w.ljung_box_p = json.at("ljung_box_p");
+  w.band = NumberFrom(json.at("band"));
+  w.mean_band = NumberFrom(json.at("mean_band"));
+  w.ljung_box = NumberFrom(json.at("ljung_box"));
+  w.ljung_box_p = NumberFrom(json.at("ljung_box_p"));
   return w;
 }
 
@@ -135,10 +138,10 @@ Json ToJson(const std::vector<Profile>& profiles) {
     for (const ProfilePoint& point : p.points) points.push_back(PointJson(point));
     rows.push_back({{"name", p.name},
                     {"unit", p.unit},
-                    {"estimate", p.estimate},
+                    {"estimate", NumberJson(p.estimate)},
                     {"class", NameOf(p.classification)},
                     {"interval_95", {NumberJson(p.lower95), NumberJson(p.upper95)}},
-                    {"cost", p.cost},
+                    {"cost", NumberJson(p.cost)},
                     {"threshold", NumberJson(p.threshold)},
                     {"ends", {p.lower_end, p.upper_end}},
                     {"points", points}});
@@ -152,20 +155,23 @@ std::vector<Profile> ProfilesFromJson(const Json& json) {
     Profile p;
     p.name = row.at("name");
     p.unit = row.at("unit");
-    p.estimate = row.at("estimate");
+    p.estimate = NumberFrom(row.at("estimate"));
     const std::string name = row.at("class");
     if (MaybeError error = ParseName("class", name, &p.classification)) {
       throw std::runtime_error(error->ToString());
     }
     p.lower95 = NumberFrom(row.at("interval_95").at(0));
     p.upper95 = NumberFrom(row.at("interval_95").at(1));
-    p.cost = row.at("cost");
+    p.cost = NumberFrom(row.at("cost"));
     p.threshold = NumberFrom(row.at("threshold"));
     p.lower_end = row.at("ends").at(0);
     p.upper_end = row.at("ends").at(1);
     for (const Json& point : row.at("points")) {
-      p.points.push_back({point.at("value"), point.at("cost"),
-                          point.at("others").get<std::map<std::string, double>>()});
+      ProfilePoint at{NumberFrom(point.at("value")), NumberFrom(point.at("cost")), {}};
+      for (const auto& [other, value] : point.at("others").items()) {
+        at.others[other] = NumberFrom(value);
+      }
+      p.points.push_back(at);
     }
     profiles.push_back(p);
   }
@@ -207,8 +213,8 @@ Json ToJson(const Diagnostics& d) {
   for (const TracePoint& t : d.trace) {
     trace.push_back({{"horizon", t.horizon},
                      {"iteration", t.iteration},
-                     {"cost", t.cost},
-                     {"gradient", t.gradient}});
+                     {"cost", NumberJson(t.cost)},
+                     {"gradient", NumberJson(t.gradient)}});
   }
   for (const Advice& a : d.advice) {
     advice.push_back({{"sentence", a.sentence}, {"command", a.command}});
@@ -225,7 +231,8 @@ Diagnostics DiagnosticsFromJson(const Json& json) {
   for (const Json& w : json.at("whiteness")) d.whiteness.push_back(WhitenessFrom(w));
   d.leverage = LeverageFrom(json.at("leverage"));
   for (const Json& t : json.at("trace")) {
-    d.trace.push_back({t.at("horizon"), t.at("iteration"), t.at("cost"), t.at("gradient")});
+    d.trace.push_back({t.at("horizon"), t.at("iteration"), NumberFrom(t.at("cost")),
+                       NumberFrom(t.at("gradient"))});
   }
   for (const Json& a : json.at("advice")) d.advice.push_back({a.at("sentence"), a.at("command")});
   return d;

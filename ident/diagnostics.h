@@ -74,6 +74,12 @@ struct Diagnostics {
 // The recordings at the point where a solve starts.
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start);
 
+// Whether every push is external, measured whole: then none has a tail.
+bool TailCannotAct(const std::vector<PendulumRecording>& recordings);
+
+// Holds the parameters of the tail where it cannot act, which no data could tell anything about.
+void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions* options);
+
 // Free parameters that change no residual of the recordings, neither at the nominal values nor near
 // them: an error that names them. To be asked before a solve.
 MaybeError CheckEffects(const FitProblem& problem);

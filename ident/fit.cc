@@ -157,14 +157,11 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " stands at its bound");
   }
-  bool unused_tail = problem.options().model.push_tail != PushTail::kNone;
-  for (const PendulumRecording& recording : problem.recordings()) {
-    for (const ScenePush& push : recording.scene.pushes) {
-      unused_tail = unused_tail && push.kind == PushKind::kExternal;
-    }
-  }
-  if (unused_tail) {
-    warnings.push_back("every push is external (measured whole): the push tail does not act");
+  const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
+  if (has_tail && TailCannotAct(problem.recordings())) {
+    warnings.push_back(
+        "every push is external (measured whole): the push tail does not act; where a push is not "
+        "all of what pushed, say so by push_kind (net) in the manifest");
   }
   return warnings;
 }

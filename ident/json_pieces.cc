@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace pushid {
 
@@ -19,7 +20,8 @@ double NumberFrom(const Json& json) {
   const std::string text = json.get<std::string>();
   if (text == "infinity") return std::numeric_limits<double>::infinity();
   if (text == "-infinity") return -std::numeric_limits<double>::infinity();
-  return std::numeric_limits<double>::quiet_NaN();
+  if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
+  throw std::runtime_error("'" + text + "' is no number");
 }
 
 Json NumbersJson(const std::vector<double>& values) {
@@ -48,16 +50,20 @@ std::vector<std::vector<double>> RowsFrom(const Json& json) {
 
 Json CombinationJson(const Combination& c) {
   return {{"name", c.name},
-          {"value", c.value},
-          {"standard_error", c.standard_error},
-          {"interval_95", {c.lower95, c.upper95}},
+          {"value", NumberJson(c.value)},
+          {"standard_error", NumberJson(c.standard_error)},
+          {"interval_95", {NumberJson(c.lower95), NumberJson(c.upper95)}},
           {"unit", c.unit}};
 }
 
 Combination CombinationFrom(const Json& json) {
   const auto& interval = json.at("interval_95");
-  return {json.at("name"),           json.at("unit"), json.at("value"),
-          json.at("standard_error"), interval.at(0),  interval.at(1)};
+  return {json.at("name"),
+          json.at("unit"),
+          NumberFrom(json.at("value")),
+          NumberFrom(json.at("standard_error")),
+          NumberFrom(interval.at(0)),
+          NumberFrom(interval.at(1))};
 }
 
 Json NullDirectionsJson(const std::vector<NullDirection>& directions) {
@@ -66,7 +72,7 @@ Json NullDirectionsJson(const std::vector<NullDirection>& directions) {
     Json identified = Json::array();
     for (const Combination& c : n.identified) identified.push_back(CombinationJson(c));
     rows.push_back({{"parameters", n.parameters},
-                    {"coefficients", n.coefficients},
+                    {"coefficients", NumbersJson(n.coefficients)},
                     {"identified", identified},
                     {"sentence", n.sentence}});
   }
@@ -78,7 +84,7 @@ std::vector<NullDirection> NullDirectionsFrom(const Json& json) {
   for (const Json& n : json) {
     NullDirection direction;
     direction.parameters = n.at("parameters").get<std::vector<std::string>>();
-    direction.coefficients = n.at("coefficients").get<std::vector<double>>();
+    direction.coefficients = NumbersFrom(n.at("coefficients"));
     for (const Json& c : n.at("identified")) direction.identified.push_back(CombinationFrom(c));
     direction.sentence = n.at("sentence");
     directions.push_back(direction);

@@ -8,7 +8,8 @@
 
 namespace pushid {
 
-// JSON knows no infinity: it is written as the text "infinity".
+// JSON knows neither infinity nor NaN, and would have a null that no reader takes: they are written
+// as the texts "infinity", "-infinity" and "nan". NumberFrom throws on any other text.
 nlohmann::ordered_json NumberJson(double value);
 double NumberFrom(const nlohmann::ordered_json& json);
 

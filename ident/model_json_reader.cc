@@ -1,4 +1,6 @@
 // ident: FitResult from JSON. model_json_writer.cc is the inverse.
+#include <algorithm>
+
 #include "datasets/json_file.h"
 #include "ident/confidence_json.h"
 #include "ident/json_pieces.h"
@@ -24,7 +26,7 @@ E EnumFrom(const Json& json, const char* key) {
 Estimate EstimateFrom(const Json& json) {
   Estimate e;
   e.name = json.at("name");
-  e.value = json.at("value");
+  e.value = NumberFrom(json.at("value"));
   e.standard_error = NumberFrom(json.at("standard_error"));
   e.standard_error_naive = NumberFrom(json.at("standard_error_naive"));
   e.lower95 = NumberFrom(json.at("interval_95").at(0));
@@ -109,15 +111,18 @@ FitOptions OptionsFrom(const Json& json) {
   return o;
 }
 
-// A model written before there was such a parameter has its nominal value: nothing it did used it.
-double ValueFrom(const Json& values, const ParameterSpec& spec) {
-  return values.contains(spec.name) ? values.at(spec.name).get<double>() : spec.nominal;
+// A model written before there was such a parameter, which its table does not name then, has its
+// nominal value: nothing it did used it.
+double ValueFrom(const Json& values, const Json& table, const ParameterSpec& spec) {
+  const bool known = std::any_of(table.begin(), table.end(),
+                                 [&spec](const Json& row) { return row.at("name") == spec.name; });
+  return known ? values.at(spec.name).get<double>() : spec.nominal;
 }
 
-EnsembleMember MemberFrom(const Json& json, const ParameterTable& table) {
+EnsembleMember MemberFrom(const Json& json, const Json& rows, const ParameterTable& table) {
   EnsembleMember member;
   for (const ParameterSpec& spec : table.specs) {
-    member.parameters[spec.id] = ValueFrom(json.at("values"), spec);
+    member.parameters[spec.id] = ValueFrom(json.at("values"), rows, spec);
   }
   member.network = SelfNetworkFromJson(json.at("self_network"));
   return member;
@@ -127,7 +132,7 @@ Behaviour BehaviourFrom(const Json& json) {
   Behaviour b;
   b.settles = json.at("settles");
   b.self_propelling = json.at("self_propelling");
-  b.fastest_growth = json.at("fastest_growth_per_s");
+  b.fastest_growth = NumberFrom(json.at("fastest_growth_per_s"));
   b.harder_moves_farther = json.at("harder_moves_farther");
   for (const Json& from : json.at("demonstrations")) {
     Demonstration d;
@@ -135,12 +140,12 @@ Behaviour BehaviourFrom(const Json& json) {
     d.people = from.at("people");
     d.mass = from.at("mass_kg");
     d.impulse = from.at("impulse_Ns");
-    d.speed = from.at("speed_m_s");
-    d.lean = from.at("lean_rad");
-    d.distance = from.at("distance_m");
+    d.speed = NumberFrom(from.at("speed_m_s"));
+    d.lean = NumberFrom(from.at("lean_rad"));
+    d.distance = NumberFrom(from.at("distance_m"));
     // Models written before these were kept.
-    d.advance = from.value("advance_m", 0.0);
-    d.pushed_advance = from.value("pushed_advance_m", 0.0);
+    d.advance = NumberFrom(from.value("advance_m", Json(0.0)));
+    d.pushed_advance = NumberFrom(from.value("pushed_advance_m", Json(0.0)));
     d.fell = from.at("fell");
     d.settled = from.at("settled");
     b.demonstrations.push_back(d);
@@ -154,8 +159,8 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.num_clusters = json.at("clusters");
   u.num_residuals = json.at("residuals");
   u.full_hessian = json.value("full_hessian", false);
-  u.sigma = json.at("sigma");
-  u.t_quantile = json.at("t_quantile");
+  u.sigma = NumberFrom(json.at("sigma"));
+  u.t_quantile = NumberFrom(json.at("t_quantile"));
   u.freedom = json.at("freedom");
   u.too_few_clusters = json.at("too_few_clusters");
   u.condition_number = NumberFrom(json.at("condition_number"));
@@ -172,17 +177,17 @@ std::vector<SolveStart> StartsFrom(const Json& json) {
     start.kind = s.at("kind");
     start.usable = s.at("usable");
     start.converged = s.at("converged");
-    start.cost = s.at("cost");
+    start.cost = NumberFrom(s.at("cost"));
     start.iterations = s.at("iterations");
     start.failed.resize(s.at("failed_rollouts"));
     // One flat row: the result knows no longer which block each number came from.
-    start.from.shared = s.at("from_fitted_scale").get<std::vector<double>>();
-    start.to.shared = s.at("to_fitted_scale").get<std::vector<double>>();
+    start.from.shared = NumbersFrom(s.at("from_fitted_scale"));
+    start.to.shared = NumbersFrom(s.at("to_fitted_scale"));
     for (const Json& stage : s.at("stages")) {
       start.stages.push_back({stage.at("horizon"),
                               stage.at("iterations"),
-                              stage.at("initial_cost"),
-                              stage.at("final_cost"),
+                              NumberFrom(stage.at("initial_cost")),
+                              NumberFrom(stage.at("final_cost")),
                               stage.at("converged"),
                               {}});
     }
@@ -257,8 +262,9 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     }
     if (json.contains("network_takeover")) {
       const Json& t = at("network_takeover");
-      result.takeover = Takeover{t.at("mu_N_s_m"), t.at("Kp_theta_N_m_rad"),
-                                 t.at("Kd_theta_N_m_s_rad"), t.at("rms_force_m_s2")};
+      result.takeover =
+          Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
+                   NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
     }
     if (json.contains("interaction_network")) {
       result.options.model.interaction_network =
@@ -282,11 +288,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     for (const ParameterSpec& spec : result.options.table.specs) {
       const Json& values = at("values");
       part = "values/" + spec.name;
-      result.parameters[spec.id] = ValueFrom(values, spec);
+      result.parameters[spec.id] = ValueFrom(values, json.at("table"), spec);
     }
     if (json.contains("ensemble")) {
       for (const Json& one : at("ensemble")) {
-        result.others.push_back(MemberFrom(one, result.options.table));
+        result.others.push_back(MemberFrom(one, json.at("table"), result.options.table));
         if (network == nullptr ||
             LearnedName(*result.others.back().network) != LearnedName(*network)) {
           throw std::runtime_error("a member's network is not that of self_network");
@@ -308,7 +314,7 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.warnings = at("warnings").get<std::vector<std::string>>();
     const Json& fit = at("fit");
     result.converged = fit.at("converged");
-    result.cost = fit.at("cost");
+    result.cost = NumberFrom(fit.at("cost"));
     result.message = fit.at("message");
     result.best_start = fit.at("best_start");
     result.starts = StartsFrom(fit.at("starts"));
@@ -316,7 +322,8 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.setting = at("data").at("setting");
     for (const Json& r : at("data").at("recordings")) {
       result.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
-                                   r.value("people", 1), r.at("cost"), r.at("failure")});
+                                   r.value("people", 1), NumberFrom(r.at("cost")),
+                                   r.at("failure")});
     }
     result.configuration = at("configuration").get<std::map<std::string, std::string>>();
     if (json.contains("changed_flags")) {

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 Json EstimateJson(const Estimate& e) {
   return {{"name", e.name},
-          {"value", e.value},
+          {"value", NumberJson(e.value)},
           {"standard_error", NumberJson(e.standard_error)},
           {"standard_error_naive", NumberJson(e.standard_error_naive)},
           {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
@@ -91,9 +91,9 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"clusters", u.num_clusters},
           {"residuals", u.num_residuals},
           {"full_hessian", u.full_hessian},
-          {"sigma", u.sigma},
+          {"sigma", NumberJson(u.sigma)},
           {"freedom", u.freedom},
-          {"t_quantile", u.t_quantile},
+          {"t_quantile", NumberJson(u.t_quantile)},
           {"too_few_clusters", u.too_few_clusters},
           {"condition_number", NumberJson(u.condition_number)},
           {"fitted", names},
@@ -115,18 +115,18 @@ Json StartsJson(const FitResult& result) {
     for (const SolveStage& stage : s.stages) {
       stages.push_back({{"horizon", stage.horizon},
                         {"iterations", stage.iterations},
-                        {"initial_cost", stage.initial_cost},
-                        {"final_cost", stage.final_cost},
+                        {"initial_cost", NumberJson(stage.initial_cost)},
+                        {"final_cost", NumberJson(stage.final_cost)},
                         {"converged", stage.converged}});
     }
     starts.push_back({{"kind", s.kind},
                       {"usable", s.usable},
                       {"converged", s.converged},
-                      {"cost", s.cost},
+                      {"cost", NumberJson(s.cost)},
                       {"iterations", s.iterations},
                       {"failed_rollouts", s.failed.size()},
-                      {"from_fitted_scale", WithoutWeights(s.from)},
-                      {"to_fitted_scale", WithoutWeights(s.to)},
+                      {"from_fitted_scale", NumbersJson(WithoutWeights(s.from))},
+                      {"to_fitted_scale", NumbersJson(WithoutWeights(s.to))},
                       {"stages", stages},
                       {"message", s.message}});
   }
@@ -148,17 +148,17 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
                               {"people", d.people},
                               {"mass_kg", d.mass},
                               {"impulse_Ns", d.impulse},
-                              {"speed_m_s", d.speed},
-                              {"lean_rad", d.lean},
-                              {"distance_m", d.distance},
-                              {"advance_m", d.advance},
-                              {"pushed_advance_m", d.pushed_advance},
+                              {"speed_m_s", NumberJson(d.speed)},
+                              {"lean_rad", NumberJson(d.lean)},
+                              {"distance_m", NumberJson(d.distance)},
+                              {"advance_m", NumberJson(d.advance)},
+                              {"pushed_advance_m", NumberJson(d.pushed_advance)},
                               {"fell", d.fell},
                               {"settled", d.settled}});
   }
   return {{"settles", b.settles},
           {"self_propelling", b.self_propelling},
-          {"fastest_growth_per_s", b.fastest_growth},
+          {"fastest_growth_per_s", NumberJson(b.fastest_growth)},
           {"harder_moves_farther", b.harder_moves_farther},
           {"demonstrations", demonstrations}};
 }
@@ -194,7 +194,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
     recordings.push_back({{"id", r.id},
                           {"frames", r.frames},
                           {"people", r.people},
-                          {"cost", r.cost},
+                          {"cost", NumberJson(r.cost)},
                           {"failure", r.failure},
                           {"content_hash", r.content_hash}});
   }
@@ -214,7 +214,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                {"warnings", result.warnings},
                {"fit",
                 {{"converged", result.converged},
-                 {"cost", result.cost},
+                 {"cost", NumberJson(result.cost)},
                  {"message", result.message},
                  {"best_start", result.best_start},
                  {"starts", StartsJson(result)}}},
@@ -236,10 +236,10 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   if (const auto& network = result.options.model.self_network) {
     json["self_network"] = ToJson(*network);
     if (const auto& t = result.takeover) {
-      json["network_takeover"] = {{"mu_N_s_m", t->mu},
-                                  {"Kp_theta_N_m_rad", t->kp_theta},
-                                  {"Kd_theta_N_m_s_rad", t->kd_theta},
-                                  {"rms_force_m_s2", t->rms_force}};
+      json["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},
+                                  {"Kp_theta_N_m_rad", NumberJson(t->kp_theta)},
+                                  {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
+                                  {"rms_force_m_s2", NumberJson(t->rms_force)}};
     }
     for (const EnsembleMember& member : result.others) {
       json["ensemble"].push_back({{"values", ValuesJson(result.options.table, member.parameters)},

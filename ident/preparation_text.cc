@@ -1,4 +1,4 @@
-// ident: how the motion was prepared.
+// ident: what was done to recordings.
 #include "ident/preparation_text.h"
 
 #include "datasets/number_text.h"
@@ -18,7 +18,13 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
     text += (text.empty() ? "" : ", ") + std::string("resampled to ") + Rounded(rate) +
             " frames per second";
   }
-  return text.empty() ? "" : "motion: " + text + "\n";
+  if (!text.empty()) text = "motion: " + text + "\n";
+  const double replica = flag("resample");
+  if (replica > 0.0) {
+    text += "recordings: drawn with replacement, as replica " + Rounded(replica) +
+            " of a bootstrap (--resample; --resample_fps changes the frame rate)\n";
+  }
+  return text;
 }
 
 }  // namespace pushid

@@ -53,6 +53,22 @@ std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint
 
 }  // namespace
 
+bool TailCannotAct(const std::vector<PendulumRecording>& recordings) {
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.kind != PushKind::kExternal) return false;
+    }
+  }
+  return true;
+}
+
+void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions* options) {
+  if (!TailCannotAct(recordings)) return;
+  for (Parameter id : {kTailGain, kTailTorque, kTailTime, kTailExponent}) {
+    options->table[id].free = options->table[id].pooled = false;
+  }
+}
+
 MaybeError CheckEffects(const FitProblem& problem) {
   std::vector<std::string> names = WithoutEffect(problem, problem.NominalPoint());
   if (names.empty()) return std::nullopt;

@@ -1,5 +1,6 @@
 // ident: what was fitted and what came of it; and where it came from.
 #include "ident/option_names.h"
+#include "ident/preparation_text.h"
 #include "ident/report/sections.h"
 #include "ident/report_tables.h"
 #include "ident/report_text.h"
@@ -54,6 +55,8 @@ ReportSection SummarySection(const FitResult& result) {
   if (const std::string network = NetworkText(result); !network.empty()) {
     section.paragraphs.push_back("Learned on top: " + network + ".");
   }
+  const std::string prepared = PreparationText(result.configuration);
+  if (!prepared.empty()) section.paragraphs.push_back(prepared);
   for (const std::string& warning : result.warnings) {
     section.paragraphs.push_back("Warning: " + warning);
   }

@@ -137,6 +137,10 @@ TEST_F(AnyRecordingTest, Inspect) {
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_TRUE(Contains(run.err, "none.trc: there is no such file"));
   EXPECT_TRUE(Contains(run.out, "12, 12 can be read, 12 have a push"));
+  run = RunApp("pushid-inspect", {manifest_, "--svg_out=" + Path("m.svg")});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_TRUE(Contains(run.err, "a manifest has nothing to draw"));
+  EXPECT_FALSE(std::filesystem::exists(Path("m.svg")));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {}), {"name one or more files"}));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {"a", "b", "--svg_out=" + Path("x.svg")}),
                       {"--svg_out draws one file"}));
@@ -152,6 +156,17 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = RunApp("pushid-fit", {"--recordings=" + Path("made.json")});
   EXPECT_EQ(run.exit_code, 0) << run.err;
+  // Measured pushes, the default, have no tail to fit.
+  ASSERT_EQ(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                       "--mass_kg=80", "--out=" + Path("measured.json")})
+                .exit_code,
+            0);
+  const std::string measured = "--recordings=" + Path("measured.json");
+  run = RunApp("pushid-fit", {measured});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
+  run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,a_x"});
+  EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
   const int files = CountFiles();
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> bad = {
       {{pattern}, {"--folder is missing"}},
@@ -231,7 +246,7 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   ASSERT_NE(at, std::string::npos) << run.out;
   EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
 
-  EXPECT_TRUE(Refused(with({c3d_flag}), {"an analog channel or platform:1"}));
+  EXPECT_TRUE(Refused(with({c3d_flag}), {"--sensor_column", "it has rod"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
   EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));

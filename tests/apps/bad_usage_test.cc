@@ -109,6 +109,50 @@ TEST_F(BadUsageTest, OutputsThatCannotBeWrittenAreRefusedBeforeTheFit) {
   }
 }
 
+// The file that is read must still be there, byte for byte.
+TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
+  const std::string model = FitModel();
+  const std::string force = WriteText("force.csv", "time,force\n0,1\n0.2,90\n0.5,1\n");
+  const std::string sensors = WriteText("sensors.json", "[{\"file\": \"force.csv\"}]");
+  const std::string masses = WriteText("masses.csv", "id,mass_kg\ns1,70\n");
+  const std::string mapping = WriteText("mapping.json", "{\"length_unit\": \"cm\"}");
+  const std::string bvh = Path(Json(manifest_)["recordings"][0]["bvh"][0]);
+  std::filesystem::create_symlink(model, Path("link.json"));
+  const std::vector<std::string> make = {"--folder=" + folder_.string(), "--pattern={take}.bvh"};
+  struct Use {
+    std::string program, input;
+    std::vector<std::string> flags;
+  };
+  const std::vector<std::string> predict = {Recordings(), "--id=" + id_, "--model=" + model};
+  const std::vector<std::string> push = {Recordings(), "--id=" + id_};
+  const auto with = [](std::vector<std::string> flags, const std::vector<std::string>& more) {
+    flags.insert(flags.end(), more.begin(), more.end());
+    return flags;
+  };
+  const std::vector<Use> uses = {
+      {"pushid-inspect", bvh, {bvh, "--svg_out=" + bvh}},
+      {"pushid-push", force, with(push, {"--sensor=" + force, "--out=" + force})},
+      {"pushid-push", force, with(push, {"--sensors=" + sensors, "--out=" + force})},
+      {"pushid-push", sensors, with(push, {"--sensors=" + sensors, "--out=" + sensors})},
+      {"pushid-push", manifest_, with(push, {"--out=" + manifest_})},
+      {"pushid-manifest", masses, with(make, {"--masses=" + masses, "--out=" + masses})},
+      {"pushid-manifest", mapping, with(make, {"--mapping=" + mapping, "--out=" + mapping})},
+      {"pushid-evaluate", model, {Recordings(), "--model=" + model, "--json_out=" + model}},
+      {"pushid-report", model, {"--model=" + model, "--html_out=" + model}},
+      {"pushid-report", model, {"--model=" + Path("link.json"), "--html_out=" + model}},
+      {"pushid-predict", model, with(predict, {"--out=" + folder_.string() + "/./model.json"})},
+      {"pushid-evaluate", bvh, {Recordings(), "--model=" + model, "--json_out=" + bvh}},
+      {"pushid-animate", model, with(predict, {"--out=" + model})},
+      {"pushid-fit", model, {Recordings(), "--self_from=" + model, "--model_out=" + model}},
+  };
+  for (const Use& use : uses) {
+    SCOPED_TRACE(use.program + " " + use.input);
+    const std::string before = ReadText(use.input);
+    EXPECT_TRUE(Refused(RunApp(use.program, use.flags), {"both name"}));
+    EXPECT_EQ(ReadText(use.input), before);
+  }
+}
+
 TEST_F(BadUsageTest, Models) {
   const std::string good = ReadText(FitModel());
   auto json = [&good](auto change) {

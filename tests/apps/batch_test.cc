@@ -1,5 +1,8 @@
 // pushid-batch: plans, ids, failures that cost one job only, kills that cost nothing.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -28,7 +31,7 @@ class BatchTest : public BatchFixture {
 TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
   const std::string plan =
       Plan("group_by = \"subject\"\nbootstrap = 1",
-           {{"physics", "\"--self_force=none\""}, {"bad", "\"--self_force=nonsense\""}});
+           {{"physics", "\"--self_force=none\""}, {"bad", "\"--lowpass_hz=1000\""}});
   const AppRun run = Batch(plan, {"--jobs=2"});
   EXPECT_EQ(run.exit_code, 2) << run.err;
   const std::vector<std::string> rows = Table("out");
@@ -37,12 +40,12 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
   for (const std::string& row : rows) {
     done += row.find(",physics,") != std::string::npos && row.find(",done,") != std::string::npos;
     failed += row.find(",bad,") != std::string::npos &&
-              row.find("--self_force is 'nonsense'") != std::string::npos;
+              row.find("--lowpass_hz=1000 is too high") != std::string::npos;
   }
   EXPECT_EQ(done, 4);
   EXPECT_EQ(failed, 4);
   EXPECT_TRUE(Contains(run.out, "4 done, 4 failed, 0 done before"));
-  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "--self_force is &#39;nonsense&#39;"));
+  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "recording &#39;"));
   EXPECT_EQ(Json(Path("out/summary.json"))["jobs"].size(), 8u);
   // What is done is not done again; what failed is tried again.
   EXPECT_TRUE(Contains(Batch(plan).out, "0 done, 4 failed, 4 done before"));
@@ -81,6 +84,11 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
     EXPECT_GT(job["held_out"]["hipADE_m"].get<double>(), 0.0);
     EXPECT_LT(job["held_out"]["hipADE_m"].get<double>(), 0.1);
   }
+  const std::string page = ReadText(Path("out/summary.html"));
+  for (const char* column : {"held-out hipADE, m", "held-out hipFDE, m", "solve s", "seconds"}) {
+    EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;
+  }
+  EXPECT_TRUE(Contains(page, " +- "));
 }
 
 TEST_F(BatchTest, IdsFollowTheContent) {
@@ -102,6 +110,16 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   }
   EXPECT_EQ(parts, ids);
   EXPECT_EQ(total, ids.size());
+  // Variants of the same flags share their jobs; no two shards do.
+  const std::string twice = Plan(jobs, {{"a", ""}, {"again", ""}}, "twice", "twice.toml");
+  std::set<std::string> seen;
+  for (const char* shard :
+       {"--shard=1/5", "--shard=2/5", "--shard=3/5", "--shard=4/5", "--shard=5/5"}) {
+    for (const std::string& id : Ids(Batch(twice, {"--list", shard}).out)) {
+      EXPECT_TRUE(seen.insert(id).second) << id;
+    }
+  }
+  EXPECT_EQ(seen.size(), 12u);
   // A changed push makes new jobs of its recording, and of no other.
   const std::string push = Json(manifest_)["recordings"][0]["push_csv"];
   WriteText(push, ReadText(Path(push)) + "\n");
@@ -109,6 +127,48 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   size_t kept = 0;
   for (const std::string& id : changed) kept += ids.count(id);
   EXPECT_EQ(kept, 22u);
+}
+
+// "done before" would otherwise be said of a fit that took its values from an older file.
+TEST_F(BatchTest, IdsFollowTheFilesThatFlagsName) {
+  const std::string model = ReadText(FitModel("fitted.json"));
+  const std::vector<std::pair<std::string, std::string>> variants = {
+      {"held", "\"--self_from=self.json\", \"--free=mu\""}};
+  const std::string plan = Plan("", variants);
+  EXPECT_TRUE(Refused(Batch(plan, {"--list"}), {"plan.toml:7", "self.json", "no such file"}));
+  WriteText("self.json", model);
+  const AppRun run = Batch(plan);  // from any folder: the file is beside the plan
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  const std::set<std::string> ids = Ids(Batch(plan, {"--list"}).out);
+  WriteText("self.json", model + "\n");
+  EXPECT_NE(Ids(Batch(plan, {"--list"}).out), ids);
+  // The same file elsewhere is the same job.
+  WriteText("moved.json", model);
+  const std::string moved =
+      Plan("", {{"held", "\"--self_from=moved.json\", \"--free=mu\""}}, "out", "moved.toml");
+  EXPECT_EQ(Ids(Batch(moved, {"--list"}).out), ids);
+}
+
+// A word misspelt would fail in every job of its variant.
+TEST_F(BatchTest, WrongFlagsAreToldBeforeAnyJob) {
+  const std::vector<std::pair<std::string, std::string>> flags = {
+      {"--self_froce=none", "there is no flag --self_froce"},
+      {"--max_iterations=many", "illegal value 'many'"},
+      {"--self_force=bogus", "--self_force is 'bogus'"},
+      {"--length_unit=inch", "--length_unit is 'inch'"},
+      {"--lowpass_hz=-1", "--lowpass_hz is -1"},
+      {"--help", "--help makes no fit"},
+      {"--version", "--version makes no fit"},
+      {"--bootstrap_file=b", "--bootstrap_file would be written by every job"},
+  };
+  for (const auto& [flag, says] : flags) {
+    SCOPED_TRACE(flag);
+    const std::string plan = Plan("", {{"good", ""}, {"it's bad", "\"" + flag + "\""}});
+    for (const char* how : {"--list", "--dry_run", "--jobs=2"}) {
+      EXPECT_TRUE(Refused(Batch(plan, {how}), {"plan.toml:", says}));
+    }
+  }
+  EXPECT_FALSE(fs::exists(Path("out")));
 }
 
 // What the workflow of apps/workflow asks for: where each job's files go, and the table alone.
@@ -132,14 +192,73 @@ TEST_F(BatchTest, ListedFoldersAreTheJobsAndGatheringRunsNothing) {
   EXPECT_TRUE(Contains(rows[2], ",open,"));
 }
 
+TEST_F(BatchTest, ADryRunIsWhatAShellTakes) {
+  const std::string plan = Plan("", {{"a", ""}}, "it's out");
+  const std::string command = Batch(plan, {"--dry_run"}).out;
+  const std::string id = *Ids(Batch(plan, {"--list"}).out).begin();
+  fs::create_directories(Path("it's out/jobs/" + id));
+  EXPECT_EQ(RunProgram("/bin/sh", {"-c", command}).exit_code, 0) << command;
+  EXPECT_TRUE(fs::exists(Path("it's out/jobs/" + id + "/model.json")));
+}
+
 TEST_F(BatchTest, LimitsEndAJobAndSaySo) {
   const std::string endless = "\"--bootstrap=100000\"";
   const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
   EXPECT_EQ(slow.exit_code, 2) << slow.err;
-  EXPECT_TRUE(Contains(slow.out, "out of time"));
+  EXPECT_TRUE(Contains(slow.out, "out of time after 0.5 s"));
   const AppRun big = Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"));
   EXPECT_EQ(big.exit_code, 2) << big.err;
   EXPECT_TRUE(Contains(big.out, "1 failed"));
+  EXPECT_TRUE(Contains(big.out, "out of memory (limit 16 MB")) << big.out;
+  // 0 on the command line lifts the plan's limit.
+  EXPECT_EQ(
+      Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"), {"--memory_limit=0"}).exit_code, 0);
+}
+
+// What is listed as failed is done by the next run; nothing but the job it stands for is lost.
+TEST_F(BatchTest, DamagedResultsCostTheirOwnJobsOnly) {
+  const std::string plan = Plan("group_by = \"subject\"\nfolds = 2", {{"a", ""}});
+  ASSERT_EQ(Batch(plan, {"--jobs=2"}).exit_code, 0);
+  const std::vector<std::string> rows = Table("out");
+  ASSERT_EQ(rows.size(), 1u + 4u);
+  const auto folder = [&rows](int job) { return "out/jobs/" + rows[job].substr(0, 32); };
+  const std::string model = ReadText(Path(folder(1) + "/model.json"));
+  WriteText(folder(1) + "/model.json", model.substr(0, model.size() / 2));
+  fs::remove(Path(folder(2) + "/scores.json"));
+  WriteText(folder(3) + "/status.json", "");
+  EXPECT_EQ(Batch(plan, {"--gather"}).exit_code, 0);
+  EXPECT_TRUE(Contains(Table("out")[1], ",failed,"));
+  EXPECT_TRUE(Contains(Table("out")[3], ",failed,"));
+  EXPECT_EQ(Lines(Batch(plan, {"--dry_run"}).out).size(), 2u * 3u);
+  const AppRun again = Batch(plan);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(Contains(again.out, "3 done, 0 failed, 1 done before")) << again.out;
+  EXPECT_EQ(Table("out"), rows);
+}
+
+TEST_F(BatchTest, TwoAtOnceInOneFolderShareTheWork) {
+  const std::string plan = Plan("group_by = \"recording\"\nbootstrap = 2", {{"a", ""}});
+  const std::string batch =
+      "'" + std::string(PUSHID_BIN_DIR) + "/pushid-batch' '" + plan + "' --quiet --jobs=2";
+  const AppRun both = RunProgram(
+      "/bin/sh", {"-c", batch + " > /dev/null & " + batch + "; one=$?; wait $! && exit $one"});
+  EXPECT_EQ(both.exit_code, 0) << both.out << both.err;
+  const AppRun last = Batch(plan);
+  EXPECT_TRUE(Contains(last.out, "0 done, 0 failed, 36 done before")) << last.out << both.err;
+}
+
+TEST_F(BatchTest, AJobThatAnotherProcessHoldsIsLeftToIt) {
+  const std::string plan = Plan("group_by = \"subject\"", {{"a", ""}});
+  const std::string id = *Ids(Batch(plan, {"--list"}).out).begin();
+  fs::create_directories(Path("out/jobs/" + id));
+  const int held = open(Path("out/jobs/" + id).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  const AppRun run = Batch(plan);
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(Contains(run.out, "1 done, 0 failed, 0 done before"));
+  EXPECT_TRUE(Contains(run.err, "1 jobs were left to another pushid-batch"));
+  close(held);
+  EXPECT_TRUE(Contains(Batch(plan).out, "1 done, 0 failed, 1 done before"));
 }
 
 // Killed outright at random moments, the batch ends with exactly the table of an unbroken run.
@@ -175,6 +294,33 @@ TEST_F(BatchTest, InterruptedItGoesOnLater) {
   EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
 }
 
+TEST_F(BatchTest, RecordingsMayBeLeftOut) {
+  const std::string rest = "[[variant]]\nname = \"a\"\n[output]\ndir = \"out\"\n";
+  const auto plan = [&](const std::string& data) {
+    return "--plan=" +
+           WriteText("plan.toml", "[data]\nrecordings = \"manifest.json\"\n" + data + "\n" + rest);
+  };
+  const std::string other = Json(manifest_)["recordings"][1]["id"];
+  EXPECT_TRUE(
+      Contains(Batch(plan("leave_out = [\"" + id_ + "\", \"" + other + "\"]"), {"--list"}).out,
+               ",all,0,10,0,"));
+  EXPECT_TRUE(Refused(Batch(plan("leave_out = [\"nobody\"]"), {"--list"}),
+                      {"plan.toml:3: leave_out", "'nobody'"}));
+  EXPECT_TRUE(
+      Refused(Batch(plan("ids = [\"nobody\"]"), {"--list"}), {"plan.toml:3: ids", "'nobody'"}));
+}
+
+TEST_F(BatchTest, WarningsOfAFitAreInTheTable) {
+  nlohmann::ordered_json json = Json(manifest_);
+  json["recordings"][0]["fps"] = 61;
+  WriteText("manifest.json", json.dump(1));
+  ASSERT_EQ(Batch(Plan("group_by = \"subject\"", {{"a", ""}})).exit_code, 0);
+  EXPECT_TRUE(Contains(Table("out")[1], "has a frame time of"));
+  EXPECT_FALSE(Contains(Table("out")[2], "has a frame time of"));
+  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "has a frame time of"));
+  EXPECT_TRUE(Contains(Json(Path("out/summary.json"))["jobs"][0]["warnings"].dump(), "frame time"));
+}
+
 struct BadPlan {
   std::string text, says;
 };
@@ -202,19 +348,23 @@ TEST_F(BatchTest, BadPlansAreToldWhereAndWhy) {
        "'x' is no flag"},
       {data + "[[variant]]\nname = \"a\"\nflags = [\"--model_out=x\"]\n[output]\ndir = \"o\"\n",
        "--model_out is set by the batch"},
-      {"[data]\nrecordings = \"missing.json\"\n" + rest, "missing.json"},
-      {data + "setting = \"moon\"\n" + rest, "moon"},
-      {data + "[jobs]\ngroup_by = \"recording\"\nfolds = 2\n" + rest, "in 2 folds"},
+      {"[data]\nrecordings = \"missing.json\"\n" + rest, "plan.toml:2: recordings: "},
+      {data + "setting = \"moon\"\n" + rest, "plan.toml:3: setting: "},
+      {data + "[jobs]\ngroup_by = \"recording\"\nfolds = 2\n" + rest, "plan.toml:5: folds: group"},
   };
   for (const BadPlan& bad : plans) {
     const AppRun run = Batch("--plan=" + WriteText("plan.toml", bad.text), {"--list"});
     EXPECT_TRUE(Refused(run, {bad.says})) << bad.text;
   }
   EXPECT_TRUE(Refused(Batch("--plan=" + Path("none.toml")), {"none.toml", "no such file"}));
+  EXPECT_TRUE(Refused(Batch("--plan=" + folder_.string()), {"is a folder; name the plan in it"}));
   const std::string good = "--plan=" + WriteText("plan.toml", data + rest);
   EXPECT_TRUE(Refused(Batch(good, {"--shard=3/2"}), {"--shard is '3/2'"}));
   EXPECT_TRUE(Refused(Batch(good, {"--job=zz"}), {"no job 'zz'"}));
   EXPECT_TRUE(Refused(Batch(good, {"--jobs=0"}), {"--jobs must be at least 1"}));
+  EXPECT_TRUE(Refused(Batch(good, {"--time_limit=-1"}), {"--time_limit must be"}));
+  EXPECT_TRUE(Refused(Batch(good, {"--time_limit=nan"}), {"--time_limit must be"}));
+  EXPECT_TRUE(Refused(Batch(good, {"--memory_limit=-5"}), {"--memory_limit must be"}));
   WriteText("file", "");
   EXPECT_TRUE(Refused(
       Batch("--plan=" + WriteText("blocked.toml", data + "[[variant]]\nname = \"a\"\n[output]\n"

@@ -160,6 +160,34 @@ TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
   EXPECT_EQ(a.dump(1), b.dump(1));
 }
 
+// What is odd about the files belongs to the result: stderr is not kept.
+TEST_F(FitAppTest, WarningsAboutFilesStayWithTheResult) {
+  const std::string recordings =
+      ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"][0]["fps"] = 61; });
+  const AppRun run = RunApp("pushid-fit", {recordings, "--model_out=" + Path("m.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string bvh = Json(manifest_)["recordings"][0]["bvh"][0];
+  const std::string says = "recording '" + id_ + "': " + bvh + " has a frame time of 0.0166667 s";
+  EXPECT_TRUE(Contains(run.err, says)) << run.err;
+  EXPECT_TRUE(Contains(run.out, "warning: " + says)) << run.out;
+  EXPECT_TRUE(Contains(Json(Path("m.json"))["warnings"].dump(), says));
+  EXPECT_TRUE(Contains(RunApp("pushid-report", {"--model=" + Path("m.json")}).out, says));
+}
+
+TEST_F(FitAppTest, WhatIsLeftOutIsNotRead) {
+  const std::string recordings = ChangedManifest(
+      [](nlohmann::ordered_json& json) { json["recordings"][0]["bvh"][0] = "lost.bvh"; });
+  EXPECT_EQ(RunApp("pushid-fit", {recordings}).exit_code, 1);
+  const AppRun run = RunApp("pushid-fit", {recordings, "--leave_out=" + id_});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {recordings, "--leave_out=nobody"}), {"'nobody'"}));
+}
+
+TEST_F(FitAppTest, AReplicaSaysSo) {
+  EXPECT_TRUE(Contains(RunApp("pushid-fit", {Recordings(), "--resample=60"}).out,
+                       "drawn with replacement, as replica 60 of a bootstrap"));
+}
+
 TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
   const std::string alone = FitModel("alone.json");
   FitModel("m.json", {"--self_from=" + alone, "--free=mu", "--pool=mu", "--pool_by=setting"});

@@ -131,6 +131,27 @@ TEST_F(SmallDiskTest, AResultThatCannotBePrintedIsAFailure) {
   EXPECT_TRUE(Contains(run.err, "stdout cannot be written: No space left on device"));
 }
 
+// Not after all replicas were computed for nothing.
+TEST_F(SmallDiskTest, ABootstrapStopsAtTheFirstReplicaItCannotKeep) {
+  if (!Mount(64)) GTEST_SKIP() << kNoMounts;
+  const std::string file = Path("disk/replicas.jsonl");
+  const std::vector<std::string> few = {Recordings(), "--bootstrap=3", "--bootstrap_file=" + file,
+                                        "--quiet"};
+  ASSERT_EQ(RunApp("pushid-fit", few).exit_code, 0);
+  const std::string kept = ReadText(file);
+  Fill(4096);
+  std::vector<std::string> many = few;
+  many[1] = "--bootstrap=100000";
+  const AppRun full = RunApp("pushid-fit", many, 60);
+  EXPECT_EQ(full.exit_code, 1) << full.out << full.err;
+  EXPECT_TRUE(Contains(full.err, file + ": "));
+  EXPECT_TRUE(Contains(full.err, "No space left on device"));
+  EXPECT_TRUE(Contains(full.err, "the same command goes on from here"));
+  EXPECT_EQ(ReadText(file).rfind(kept, 0), 0u) << "what was kept is gone";
+  fs::remove(Path("disk/filler"));
+  EXPECT_EQ(RunApp("pushid-fit", few).exit_code, 0);
+}
+
 TEST_F(SmallDiskTest, ABatchGoesOnWhenThereIsSpaceAgain) {
   if (!Mount(2048)) GTEST_SKIP() << kNoMounts;
   const std::string jobs = "group_by = \"recording\"";

@@ -63,7 +63,7 @@ TEST_F(WorkflowTest, LocallyTheSameTable) {
   if (!Installed({"snakemake"})) GTEST_SKIP() << "snakemake is not installed";
   const std::string jobs = "group_by = \"subject\"";
   const std::vector<std::pair<std::string, std::string>> variants = {
-      {"a", ""}, {"same jobs", ""}, {"bad", "\"--self_force=nonsense\""}};
+      {"a", ""}, {"same jobs", ""}, {"bad", "\"--lowpass_hz=1000\""}};
   ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml"), {"--jobs=2"}).exit_code, 2);
   const std::string plan = Plan(jobs, variants, "flow");
   const AppRun run = Shell(Snakemake(plan, "-j2"));

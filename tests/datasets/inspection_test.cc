@@ -91,6 +91,28 @@ TEST_F(InspectionTest, StartAndOnset) {
   EXPECT_TRUE(Contains(Said(), "the person moves at the start: cut it by first_frame"));
   for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.1 * t;
   EXPECT_TRUE(Contains(Said(), "the hip never moves by 2 cm: there is no push"));
+  // From rest, pushed from the first frame on: cutting the start would cut the push.
+  for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.2 * t * t;
+  const std::string pushed = Said();
+  EXPECT_TRUE(Contains(pushed, "start           the push begins at once"));
+  EXPECT_EQ(pushed.find("moves at the start"), std::string::npos) << pushed;
+}
+
+TEST_F(InspectionTest, ForcesDoNotHideTheMotion) {
+  std::string table =
+      "time,hip_x,hip_y,hip_z,left_ankle_x,left_ankle_y,left_ankle_z,right_ankle_x,"
+      "right_ankle_y,right_ankle_z,ground_force_vx,ground_force_vy,"
+      "ground_force_vz,ground_force_px,ground_force_py,ground_force_pz\n";
+  for (int t = 0; t < 100; ++t) {
+    table += std::to_string(t / 100.0) + "," + std::to_string(t < 40 ? 0 : 8 * (t - 40)) +
+             ",0,950,0,100,80,0,-100,80,90,0,700,33,0,0\n";
+  }
+  WriteText("both.csv", table);
+  const std::string said = Of("both.csv");
+  EXPECT_TRUE(Contains(said, "points          hip, left_ankle, right_ankle\n"));
+  EXPECT_TRUE(Contains(said, "the hip has moved 2 cm"));
+  EXPECT_TRUE(Contains(said, "ground_force_vz peak 700 N"));
+  EXPECT_EQ(said.find("ground_force_px peak"), std::string::npos) << said;
 }
 
 TEST_F(InspectionTest, RateAndNames) {

@@ -183,6 +183,25 @@ TEST_F(LoadPointsTest, UnitsOfTheFile) {
   EXPECT_TRUE(Contains(warnings_[0], "says its lengths are m; they are read as mm"));
 }
 
+TEST_F(LoadPointsTest, UnitsInOtherSpellings) {
+  const std::string trc = ReadText(Path("a.trc"));
+  const auto with_unit = [&](const std::string& unit) {
+    std::string text = trc;
+    WriteText("a.trc", text.replace(text.find("\tmm\t"), 4, "\t" + unit + "\t"));
+  };
+  for (const char* unit : {"MM", "millimeters", "Millimetre"}) {
+    with_unit(unit);
+    ExpectTheWalker();
+  }
+  EXPECT_EQ(LengthUnitFromName("CENTIMETERS"), LengthUnit::kCentimetre);
+  EXPECT_EQ(LengthUnitFromName("M"), LengthUnit::kMetre);
+  EXPECT_EQ(LengthUnitFromName("metres"), LengthUnit::kMetre);
+  with_unit("inch");
+  EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': says its lengths are in 'inch'"));
+  entry().length_unit = LengthUnit::kMillimetre;
+  ExpectTheWalker();
+}
+
 TEST_F(LoadPointsTest, ShortGapsAreFilledLongOnesLeftOut) {
   for (int t : {4, 5}) motion_.positions[0][t] = kHidden;
   for (int t = 9; t < 17; ++t) motion_.positions[4][t] = kHidden;

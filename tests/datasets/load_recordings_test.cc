@@ -93,8 +93,32 @@ TEST_F(LoadRecordingsTest, UnitsThatCannotBeRight) {
                 "read as m: looks like mm, pass --length_unit=mm");
   WriteBvhFile("a.bvh", Walker(20), LengthUnit::kMetre);
   EXPECT_TRUE(Contains(Message(), "looks like m, pass --length_unit=m"));
+  // 33 of some unit: no unit makes a person of it, least of all one of 0.33 m.
+  WriteBvhFile("a.bvh", Walker(20, 33.08), LengthUnit::kMetre);
+  EXPECT_TRUE(Contains(Message(options), "check the unit (--length_unit) and the joints chosen"));
   WriteBvhFile("a.bvh", Walker(20, 0.08), LengthUnit::kMetre);
   EXPECT_TRUE(Contains(Message(), "the joints chosen"));
+}
+
+TEST_F(LoadRecordingsTest, KeysNearToKnownOnesAreWarnedAbout) {
+  ASSERT_TRUE(Load().ok());
+  const std::string text = ReadText(Path("manifest.json"));
+  const auto with_key = [&](const std::string& key) {
+    WriteText("manifest.json",
+              std::string(text).replace(text.find("\"id\""), 4, "\"" + key + "\": 3, \"id\""));
+    warnings_.clear();
+    return LoadRecordings(Path("manifest.json"), {}, &warnings_).ok();
+  };
+  for (const auto& [key, meant] : {std::pair{"lenght_unit", "length_unit"},
+                                   {"First-Frame", "first_frame"},
+                                   {"push_scv", "push_csv"}}) {
+    ASSERT_TRUE(with_key(key));
+    ASSERT_EQ(warnings_.size(), 1u) << key;
+    EXPECT_TRUE(Contains(warnings_[0], std::string("has the key '") + key + "'"));
+    EXPECT_TRUE(Contains(warnings_[0], std::string("is ") + meant + " meant?"));
+  }
+  ASSERT_TRUE(with_key("anomalies"));
+  EXPECT_TRUE(warnings_.empty());
 }
 
 TEST_F(LoadRecordingsTest, AxesAreTurned) {
@@ -172,7 +196,7 @@ TEST_F(LoadRecordingsTest, FrameTimes) {
   entry().fps = 59.9;  // 0.17 % off
   EXPECT_TRUE(Load().ok());
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "recording 'a': " + Path("a.bvh")));
+  EXPECT_TRUE(Contains(warnings_[0], "recording 'a': a.bvh has"));
   EXPECT_TRUE(Contains(warnings_[0], "0.016667 s (59.9988 frames per second)"));
   EXPECT_TRUE(Contains(warnings_[0], "59.9 frames per second; the manifest's value is used"));
 }

@@ -95,6 +95,36 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   EXPECT_EQ(loaded.value()[2].people[0].mass_kg, 80.0);
 }
 
+TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
+  WriteText("data/anna_weak_2.bvh", "no motion");
+  options_.masses.clear();  // nobody's mass is asked for who is left out
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  EXPECT_EQ(made.value().manifest.recordings.size(), 2u);
+  ASSERT_EQ(made.value().unreadable.size(), 1u);
+  EXPECT_TRUE(Contains(made.value().unreadable[0].ToString(), "data/anna_weak_2.bvh:1"));
+  for (const char* name : {"ben_strong_1", "anna_weak_10"}) {
+    WriteText(std::string("data/") + name + ".bvh", "no motion");
+  }
+  EXPECT_TRUE(Contains(MakingMessage(), "no other file can be read either"));
+}
+
+TEST_F(ManifestMakerTest, PushPatternsNameOneFileEach) {
+  options_.push_pattern = "push/{subject}_{tkae}.csv";
+  EXPECT_TRUE(
+      Contains(MakingMessage(), "{tkae}, but the pattern has only subject, magnitude, take"));
+  options_.push_pattern = "push/{subject}_*.csv";
+  EXPECT_TRUE(Contains(MakingMessage(), "has a *"));
+}
+
+TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {
+  options_.mapping = Path("none.json");
+  EXPECT_TRUE(Contains(MakingMessage(), "none.json: there is no such file"));
+  options_.mapping = "";
+  WriteBvhFile("data/ann,e_weak_1.bvh", Walker(20));
+  EXPECT_TRUE(Contains(MakingMessage(), "'ann,e_weak_1', but commas separate ids"));
+}
+
 TEST_F(ManifestMakerTest, PeopleOfOneRecording) {
   std::filesystem::create_directories(folder_ / "rows");
   for (const char* name : {"r1_p10_x", "r1_p2_y", "r2_p1_x"}) {
@@ -138,6 +168,7 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   options_.mass_kg = 0.0;
   EXPECT_TRUE(Contains(MakingMessage(), "no mass is known of anna, ben"));
   options_.mass_kg = 70.0;
+  options_.push_pattern = "";
   options_.pattern = "{subject}_*.bvh";
   EXPECT_TRUE(Contains(MakingMessage(), "are both recording 'anna'"));
   options_.pattern = "{subject}.c3d";

@@ -162,6 +162,7 @@ TEST_F(PointFilesTest, BadTables) {
       {csv, "a,b\n1,2\n3\n", ":3: the row has 1 values, not 2"},
       {csv, "a,b\n1,2,3\n", ":2: the row has more than the 2 values"},
       {csv, "a,b\n1,x\n", ":2: b: 'x' is not a number"},
+      {csv, "a,b\n1,NA\n", "'NA' is not a number; a value that is missing is an empty cell or nan"},
       {csv, "a,b\n1,inf\n", ":2: b: 'inf' is not a finite number"},
       {storage, "f\nnRows=1\n", "endheader"},
       {storage, "f\nnRows=x\nendheader\na\n1\n", ":2: nRows must be a whole number"},

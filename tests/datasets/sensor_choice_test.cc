@@ -45,7 +45,9 @@ TEST_F(SensorChoiceTest, AnalogChannel) {
   EXPECT_NEAR(record.value().force[10].x(), -2.0 * 40.0 * std::sin(0.5), 1e-4);
   EXPECT_TRUE(
       Contains(Message(Choice("a.c3d", "Rod")), "there is no analog channel 'Rod'; it has Fx1"));
-  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "an analog channel or platform:1"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "by --sensor_column"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "rod"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "platform:1"));
 }
 
 TEST_F(SensorChoiceTest, Platform) {
@@ -71,6 +73,8 @@ TEST_F(SensorChoiceTest, ColumnsOfTables) {
   EXPECT_TRUE(vectors.value().is_vector);
   EXPECT_EQ(vectors.value().force[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "load")), "a.mot:8: load is missing"));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "--sensor_column"));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "it has time, ground_force_vx"));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "lode")), "there is no column 'lode'; it has time"));
   const Result<SensorRecord> csv = ReadSensor(Choice("a.csv", "force"));
   ASSERT_TRUE(csv.ok());
@@ -106,6 +110,7 @@ TEST_F(SensorChoiceTest, Lists) {
       {"[{\"file\": \"a\", \"direction\": [1, 2]}]", "direction must be [x, y, z]"},
       {"[{\"file\": \"a\", \"height\": 1, \"height_m\": 1}]", "height is given beside height_m"},
       {"[{\"file\": \"a\", \"gain\": \"2\"}]", "gain must be the N per unit"},
+      {"[{\"file\": \"a\", \"hieght\": 1}]", "hieght is not known; there may be file, column"},
       {"[{\"file\": \"a\", \"idle_force\": -1}]", "at least 0 N"},
   };
   for (const auto& [text, says] : bad) {

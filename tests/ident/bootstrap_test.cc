@@ -2,7 +2,9 @@
 #include "ident/bootstrap.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <numeric>
 
 #include "ident/confidence.h"
@@ -100,6 +102,22 @@ TEST_F(BootstrapRun, ForeignFilesAreRefused) {
   const std::string poem = WriteText("poem.txt", "a rose is a rose\n");
   EXPECT_FALSE(Run(2, 1, poem).ok());
   EXPECT_EQ(ReadText(poem), "a rose is a rose\n");
+}
+
+// Taken for empty, it would be replaced by one that holds nothing.
+TEST_F(BootstrapRun, AFileThatCannotBeReadIsKept) {
+  ASSERT_TRUE(Run(2, 1, Path("a.jsonl")).ok());
+  const std::string before = ReadText(Path("a.jsonl"));
+  const bool root = geteuid() == 0;  // modes bind everybody else
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::none);
+  ASSERT_EQ(seteuid(root ? 65534 : geteuid()), 0);
+  const Result<Bootstrap> run = Run(2, 1, Path("a.jsonl"));
+  ASSERT_EQ(seteuid(root ? 0 : geteuid()), 0);
+  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::owner_all);
+  ASSERT_FALSE(run.ok());
+  EXPECT_TRUE(Contains(run.error().ToString(), "a.jsonl: cannot be read: Permission denied"));
+  EXPECT_EQ(ReadText(Path("a.jsonl")), before);
 }
 
 TEST_F(BootstrapRun, NeedsTwoRecordings) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "datasets/json_file.h"
@@ -98,6 +99,35 @@ TEST(ResultJson, InfinitiesStayInfinite) {
   EXPECT_EQ(e.standard_error, std::numeric_limits<double>::infinity());
   EXPECT_EQ(e.lower95, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(ReportText(read), ReportText(result));
+}
+
+// Five recordings that the data of two parameters run away on: what is derived has no bounds then,
+// and a constant error has no autocorrelation. A null in their places is a model nobody can read.
+TEST(ResultJson, NumbersThatAreNoneComeBack) {
+  FitResult result = JudgedResult();
+  const double infinity = std::numeric_limits<double>::infinity(), none = std::nan("");
+  result.derived = {{"c_x", "N s/m", -infinity, infinity, -infinity, infinity}};
+  result.estimates[0].value = infinity;
+  result.profiles[0].points[0] = {infinity, infinity, {{"a_x", none}}};
+  result.profiles[0].estimate = result.profiles[0].cost = infinity;
+  Diagnostics& d = result.diagnostics;
+  d.start.null_directions[0].coefficients[0] = none;
+  d.start.null_directions[0].identified = result.derived;
+  d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
+  d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
+  d.trace[0] = {8, 0, infinity, none};
+  result.uncertainty.sigma = result.uncertainty.t_quantile = infinity;
+  result.behaviour.fastest_growth = none;
+  Demonstration& fallen = result.behaviour.demonstrations.front();
+  fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;
+  result.cost = result.recordings[0].cost = infinity;
+  SolveStart& start = result.starts.front();
+  start.cost = start.stages.front().initial_cost = start.stages.front().final_cost = infinity;
+  start.from.shared = start.to.shared = {infinity, none};
+  const Json json = ToJson(result, kRun);
+  EXPECT_FALSE(Contains(json.dump(), "null,") || Contains(json.dump(), "null]") ||
+               Contains(json.dump(), "null}"));
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
 }
 
 TEST(ResultJson, PredictionsNeedTheJsonAlone) {
