@@ -3,9 +3,9 @@
 
 #include "datasets/json_file.h"
 #include "ident/confidence_json.h"
+#include "ident/fit_options_json.h"
 #include "ident/json_pieces.h"
 #include "ident/network_json.h"
-#include "ident/option_names.h"
 #include "ident/result_json.h"
 #include "ident/self_network_io.h"
 
@@ -13,15 +13,6 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <typename E>
-E EnumFrom(const Json& json, const char* key) {
-  E value{};
-  if (MaybeError error = ParseName(key, json.at(key).get<std::string>(), &value)) {
-    throw std::runtime_error(error->ToString());
-  }
-  return value;
-}
 
 Estimate EstimateFrom(const Json& json) {
   Estimate e;
@@ -42,73 +33,6 @@ Eigen::MatrixXd MatrixFrom(const Json& json) {
     for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = NumberFrom(json.at(i).at(j));
   }
   return matrix;
-}
-
-ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
-  ParameterTable table = known;
-  for (const Json& row : json) {
-    ParameterSpec* spec = table.Find(row.at("name").get<std::string>());
-    if (spec == nullptr) {
-      throw std::runtime_error("unknown parameter '" + row.at("name").get<std::string>() + "'");
-    }
-    spec->unit = row.at("unit");
-    spec->nominal = row.at("nominal");
-    spec->lower = row.at("bounds").at(0);
-    spec->upper = row.at("bounds").at(1);
-    spec->scale = row.at("scale");
-    spec->transform = EnumFrom<Transform>(row, "transform");
-    spec->free = row.at("free");
-    spec->pooled = row.at("pooled");
-    spec->meaning = row.at("meaning");
-    spec->prior.reset();
-    if (row.contains("prior")) {
-      spec->prior = Prior{row.at("prior").at("mean"), row.at("prior").at("sigma")};
-    }
-  }
-  return table;
-}
-
-FitOptions OptionsFrom(const Json& json) {
-  FitOptions o;
-  o.preset = json.at("preset");
-  const auto self = ParseSelfForce("self_force", json.at("self_force").get<std::string>());
-  if (!self.ok()) throw std::runtime_error(self.error().ToString());
-  o.self_force = self.value().kind;
-  o.mapping = EnumFrom<SkeletonMapping>(json, "mapping");
-  o.model.posture = EnumFrom<Posture>(json, "posture");
-  o.model.gain_scaling = EnumFrom<GainScaling>(json, "gain_scaling");
-  o.model.friction = EnumFrom<FrictionKind>(json, "friction");
-  o.model.push = EnumFrom<PushUse>(json, "push");
-  o.model.push_tail = EnumFrom<PushTail>(json, "push_tail");
-  o.model.cart_derivative = EnumFrom<CartDerivative>(json, "cart_derivative");
-  if (MaybeError error = ParseName("interaction", json.at("interaction").get<std::string>(),
-                                   &o.model.interaction)) {
-    throw std::runtime_error(error->ToString());
-  }
-  const Json& sigmas = json.at("sigmas");
-  o.sigmas = {sigmas.at("hip_m"), sigmas.at("velocity_m_s"), sigmas.at("angle_rad"),
-              sigmas.at("rate_rad_s"), sigmas.at("robust")};
-  o.recording_weight = EnumFrom<RecordingWeight>(json, "recording_weight");
-  o.settling_weight = json.at("settling_weight");
-  o.mode_weight = json.at("mode_weight");
-  o.mode_margin = json.at("mode_margin_per_s");
-  o.stability_weight = json.at("stability_weight");
-  o.pool_by = EnumFrom<PoolBy>(json, "pool_by");
-  o.pooling_sigma = json.at("pooling_sigma");
-  o.network_prior = json.value("network_prior", o.network_prior);
-  o.early_stopping = json.value("early_stopping", o.early_stopping);
-  o.takeover_weight = json.value("takeover_weight", o.takeover_weight);
-  o.ensemble = json.value("ensemble", o.ensemble);
-  o.horizons = json.at("horizons").get<std::vector<int>>();
-  o.start = EnumFrom<FitStart>(json, "start");
-  o.num_starts = json.at("num_starts");
-  o.start_spread = json.at("start_spread");
-  o.seed = json.at("seed");
-  o.max_iterations = json.at("max_iterations");
-  o.function_tolerance = json.at("function_tolerance");
-  o.gradient_tolerance = json.at("gradient_tolerance");
-  o.parameter_tolerance = json.at("parameter_tolerance");
-  return o;
 }
 
 // A model written before there was such a parameter, which its table does not name then, has its

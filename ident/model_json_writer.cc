@@ -1,5 +1,6 @@
 // ident: FitResult to JSON. model_json_reader.cc is the inverse.
 #include "ident/confidence_json.h"
+#include "ident/fit_options_json.h"
 #include "ident/json_pieces.h"
 #include "ident/network_json.h"
 #include "ident/option_names.h"
@@ -29,59 +30,6 @@ Json MatrixJson(const Eigen::MatrixXd& matrix) {
     rows.push_back(row);
   }
   return rows;
-}
-
-Json TableJson(const ParameterTable& table) {
-  Json rows = Json::array();
-  for (const ParameterSpec& spec : table.specs) {
-    Json row = {{"name", spec.name},       {"unit", spec.unit},
-                {"nominal", spec.nominal}, {"bounds", {spec.lower, spec.upper}},
-                {"scale", spec.scale},     {"transform", NameOf(spec.transform)},
-                {"free", spec.free},       {"pooled", spec.pooled},
-                {"meaning", spec.meaning}};
-    if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-Json OptionsJson(const FitOptions& o) {
-  return {{"preset", o.preset},
-          {"self_force", SelfForceText(o.self_force, o.model.self_network.get())},
-          {"mapping", NameOf(o.mapping)},
-          {"posture", NameOf(o.model.posture)},
-          {"gain_scaling", NameOf(o.model.gain_scaling)},
-          {"friction", NameOf(o.model.friction)},
-          {"push", NameOf(o.model.push)},
-          {"push_tail", NameOf(o.model.push_tail)},
-          {"cart_derivative", NameOf(o.model.cart_derivative)},
-          {"interaction", NameOf(o.model.interaction)},
-          {"sigmas",
-           {{"hip_m", o.sigmas.hip},
-            {"velocity_m_s", o.sigmas.velocity},
-            {"angle_rad", o.sigmas.angle},
-            {"rate_rad_s", o.sigmas.rate},
-            {"robust", o.sigmas.robust}}},
-          {"recording_weight", NameOf(o.recording_weight)},
-          {"settling_weight", o.settling_weight},
-          {"mode_weight", o.mode_weight},
-          {"mode_margin_per_s", o.mode_margin},
-          {"stability_weight", o.stability_weight},
-          {"pool_by", NameOf(o.pool_by)},
-          {"pooling_sigma", o.pooling_sigma},
-          {"network_prior", o.network_prior},
-          {"early_stopping", o.early_stopping},
-          {"takeover_weight", o.takeover_weight},
-          {"ensemble", o.ensemble},
-          {"horizons", o.horizons},
-          {"start", NameOf(o.start)},
-          {"num_starts", o.num_starts},
-          {"start_spread", o.start_spread},
-          {"seed", o.seed},
-          {"max_iterations", o.max_iterations},
-          {"function_tolerance", o.function_tolerance},
-          {"gradient_tolerance", o.gradient_tolerance},
-          {"parameter_tolerance", o.parameter_tolerance}};
 }
 
 Json UncertaintyJson(const Uncertainty& u) {
