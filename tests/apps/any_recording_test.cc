@@ -79,7 +79,8 @@ class AnyRecordingTest : public AppTest {
 
   static std::vector<double> Values(const std::string& model) {
     std::vector<double> values;
-    for (const auto& [name, value] : Json(model)["values"].items()) values.push_back(value);
+    const auto read = Json(model);  // lives longer than a temporary in the loop's head
+    for (const auto& [name, value] : read.at("values").items()) values.push_back(value);
     return values;
   }
 };
