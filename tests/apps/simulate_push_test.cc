@@ -32,7 +32,8 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
       RunApp("pushid-fit", {"--recordings=" + manifest, "--preset_priors=false",
                             "--settling_weight=0", "--model_out=" + Path("model.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
-  for (const auto& [name, value] : Json(Path("model.json"))["values"].items()) {
+  const auto model = Json(Path("model.json"));  // lives longer than a temporary in the loop's head
+  for (const auto& [name, value] : model.at("values").items()) {
     if (name == "mu_y") continue;  // does not act: friction is isotropic
     const double expected = truth[name];
     EXPECT_NEAR(value.get<double>(), expected, 1e-6 * std::abs(expected)) << name;
