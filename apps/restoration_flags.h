@@ -13,8 +13,8 @@ DECLARE_string(restoration);
 
 namespace pushid {
 
-// What --restoration names, for a model whose rod moves or does not: bodies hang on rods of constant
-// length.
+// What --restoration names, for a model whose rod moves or does not: bodies hang on rods of
+// constant length.
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(bool rod_moves);
 
 // What --postprocess lists.

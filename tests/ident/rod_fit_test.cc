@@ -100,7 +100,7 @@ TEST(RodFit, FreeModesKnowTheRod) {
   };
   ASSERT_LT(constant, 0.0);
   EXPECT_NEAR(growth(0.0).fastest_growth, constant, 1e-9);  // switched off
-  network.weights.front() = 0.1;  // moved, and never back
+  network.weights.front() = 0.1;                            // moved, and never back
   EXPECT_NEAR(growth(0.0).fastest_growth, 0.0, 1e-9);
   EXPECT_FALSE(growth(0.0).unstable());
   network.weights.front() = 0.0;
