@@ -22,7 +22,7 @@ struct FitPoint {
   std::map<std::string, std::vector<double>>
       unit;  // deviations by subject or setting, fitted scale; empty if not pooled
   std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
-  std::vector<double> weights;                  // of the self-force network; empty without one
+  std::vector<double> weights;                  // of what is learned; empty without
 
   // All entries in one row: shared, units in order of name, velocities in order of recording,
   // weights.

@@ -5,7 +5,7 @@
 //   1 .. S   deviations of each distinct unit - subject or setting - one entry per pooled parameter
 //            (absent when none)
 //   next     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
-//   last     weights of the self-force network (only when there is one)
+//   last     weights of what is learned, self force and rod (only when there is any)
 // A person's value is natural(shared + deviation); with no deviation, natural(shared). Adding on
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
 #pragma once
@@ -73,7 +73,7 @@ struct ParameterMap {
   std::vector<FittedParameter> fitted;  // in the order of the shared block
   int num_deviations = 0;               // length of a unit's block; 0: no such blocks
   PoolBy pool_by = PoolBy::kSubject;
-  int num_weights = 0;  // of the self-force network
+  int num_weights = 0;  // of what is learned
 
   int num_shared() const { return static_cast<int>(fitted.size()); }
 
