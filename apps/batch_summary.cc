@@ -12,7 +12,7 @@
 #include "ident/json_pieces.h"
 #include "ident/report/document_files.h"
 #include "ident/report/page.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

@@ -9,7 +9,7 @@
 #include "datasets/json_file.h"
 #include "ident/body_evaluation.h"
 #include "ident/body_files.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 DEFINE_string(joints_out, "",
               "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");

@@ -16,8 +16,8 @@
 #include "ident/option_names.h"
 #include "ident/predictive_bands.h"
 #include "ident/predictors.h"
-#include "ident/report_text.h"
-#include "ident/result_json.h"
+#include "ident/scores_json.h"
+#include "ident/scores_text.h"
 
 DECLARE_uint64(seed);
 

@@ -12,8 +12,8 @@
 #include "datasets/json_file.h"
 #include "ident/body_report.h"
 #include "ident/peer.h"
-#include "ident/report_text.h"
-#include "ident/result_json.h"
+#include "ident/scores_json.h"
+#include "ident/scores_text.h"
 #include "models/self_network.h"
 
 DEFINE_string(json_out, "", "write the scores here (JSON)");

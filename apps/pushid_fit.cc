@@ -17,6 +17,7 @@
 #include "ident/large_network_stage.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
+#include "ident/text_table.h"
 
 DECLARE_uint64(seed);
 DECLARE_string(bootstrap_file);

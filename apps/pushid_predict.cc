@@ -10,7 +10,7 @@
 #include "apps/restoration_flags.h"
 #include "datasets/atomic_file.h"
 #include "ident/evaluation.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 DEFINE_string(id, "", "the recording whose first frame and push are taken");
 DEFINE_string(out, "",

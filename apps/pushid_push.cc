@@ -13,7 +13,7 @@
 #include "datasets/push_csv.h"
 #include "datasets/recording_names.h"
 #include "ident/push_estimation.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 DEFINE_string(id, "", "the recording");
 DEFINE_int32(person, 0, "who is pushed, counted from 0");

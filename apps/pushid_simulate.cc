@@ -13,7 +13,6 @@
 #include "apps/simulate_formation.h"
 #include "datasets/recording_names.h"
 #include "datasets/synthetic_recordings.h"
-#include "ident/report_text.h"
 #include "ident/text_table.h"
 
 DECLARE_string(set);

@@ -13,9 +13,9 @@
 #include "datasets/json_file.h"
 #include "ident/body_report.h"
 #include "ident/curve_svg.h"
-#include "ident/report_text.h"
 #include "ident/restoration_training_run.h"
 #include "ident/result_json.h"
+#include "ident/text_table.h"
 #include "models/self_network.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");

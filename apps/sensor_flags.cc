@@ -10,8 +10,8 @@
 #include "apps/app_support.h"
 #include "apps/overwrite_check.h"
 #include "datasets/number_text.h"
-#include "ident/report_text.h"
 #include "ident/sensor_offset.h"
+#include "ident/text_table.h"
 
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "

@@ -13,7 +13,6 @@
 #include "ident/formation_files.h"
 #include "ident/formation_pictures.h"
 #include "ident/formation_run.h"
-#include "ident/report_text.h"
 #include "ident/text_table.h"
 #include "models/self_network.h"
 

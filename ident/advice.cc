@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/confidence.h"
 #include "ident/fit_command.h"
-#include "ident/report_text.h"
+#include "ident/interval_agreement.h"
 #include "ident/self_network_io.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/report_text.h"
 #include "ident/svg.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

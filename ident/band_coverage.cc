@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "ident/predictive_bands.h"
-#include "ident/report_text.h"
 #include "ident/text_table.h"
 #include "ident/time_series.h"
 

@@ -13,10 +13,12 @@
 #include <vector>
 
 #include "datasets/result.h"
-#include "ident/fit_problem.h"
+#include "ident/fit_point.h"
 #include "ident/parallel.h"
 
 namespace pushid {
+
+class FitProblem;
 
 struct Bootstrap {
   int replicas = 0;  // asked for

@@ -8,6 +8,7 @@
 
 #include "datasets/atomic_file.h"
 #include "datasets/content_hash.h"
+#include "ident/fit_problem.h"
 #include "ident/result_json.h"
 
 namespace pushid {

@@ -1,7 +1,6 @@
-// ident: profiles and bootstrap of a finished fit, and the three kinds of intervals side by side.
+// ident: profiles and bootstrap of a finished fit.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,24 +15,5 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FitResult* result);
-
-struct Interval {
-  double standard_error = 0.0;  // a profile has none: half its width over Student's t
-  double lower = 0.0, upper = 0.0;
-};
-
-// One number as clustered covariance, profile and bootstrap see it.
-struct Agreement {
-  std::string name, unit;
-  double value = 0.0;
-  Interval clustered;
-  std::optional<Interval> profile, bootstrap;
-  std::optional<ProfileClass> classification;
-  // Largest width over smallest, of those that are finite; infinite when only some are.
-  double ratio = 1.0;
-};
-
-// Every free parameter and moving combination that a profile or the bootstrap speaks of.
-std::vector<Agreement> CompareIntervals(const FitResult& result);
 
 }  // namespace pushid

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/confidence.h"
+#include "ident/interval_agreement.h"
 #include "ident/option_names.h"
-#include "ident/report_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {

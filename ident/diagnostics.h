@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "datasets/pendulum_recording.h"
 #include "datasets/result.h"
-#include "ident/solver.h"
+#include "ident/fit_options.h"
+#include "ident/solution.h"
 #include "ident/uncertainty.h"
 
 namespace pushid {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/covariance.h"
+#include "ident/fit_problem.h"
 #include "ident/prediction.h"
-#include "ident/report_text.h"
+#include "ident/score_blocks.h"
 #include "ident/text_table.h"
 
 namespace pushid {

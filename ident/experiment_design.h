@@ -20,6 +20,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/pendulum_recording.h"
+#include "datasets/result.h"
 #include "ident/text_table.h"
 #include "ident/uncertainty.h"
 

@@ -5,7 +5,7 @@
 #include "ident/fit_result.h"
 #include "ident/large_network_stage.h"
 #include "ident/report_tables.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

@@ -22,27 +22,6 @@ constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the o
 
 }  // namespace
 
-std::vector<double> FitPoint::Flat() const {
-  std::vector<double> flat = shared;
-  for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
-  for (const auto& [index, values] : velocity)
-    flat.insert(flat.end(), values.begin(), values.end());
-  flat.insert(flat.end(), weights.begin(), weights.end());
-  return flat;
-}
-
-void FitPoint::SetFlat(const std::vector<double>& flat) {
-  auto next = flat.begin();
-  auto take = [&next](std::vector<double>* values) {
-    std::copy_n(next, values->size(), values->begin());
-    next += static_cast<std::ptrdiff_t>(values->size());
-  };
-  take(&shared);
-  for (auto& [name, values] : unit) take(&values);
-  for (auto& [index, values] : velocity) take(&values);
-  take(&weights);
-}
-
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
                        std::vector<int> counts)
     : recordings_(recordings),

@@ -13,7 +13,7 @@
 #include "ident/ensemble.h"
 #include "ident/fit_options.h"
 #include "ident/profile.h"
-#include "ident/solver.h"
+#include "ident/solution.h"
 #include "ident/uncertainty.h"
 #include "residuals/network_takeover.h"
 

@@ -7,7 +7,7 @@
 
 #include "ident/behaviour.h"
 #include "ident/propagation.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "ident/behaviour.h"
-#include "ident/report_text.h"
 #include "ident/svg.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

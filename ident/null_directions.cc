@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "ident/fit_problem.h"
+
 namespace pushid {
 namespace {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/covariance.h"
 #include "ident/solver.h"
 #include "residuals/combination_residual.h"
 #include "residuals/prior_residual.h"

@@ -1,6 +1,6 @@
 // ident: propagation as JSON and as tables.
-#include "ident/report_text.h"
-#include "ident/result_json.h"
+#include "ident/scores_json.h"
+#include "ident/scores_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ident/option_names.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 

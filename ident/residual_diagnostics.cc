@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/covariance.h"
 #include "ident/diagnostics.h"
+#include "ident/fit_problem.h"
 #include "ident/time_series.h"
 
 namespace pushid {

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/crossvalidation.h"
 #include "ident/fit_result.h"
 
 namespace pushid {
@@ -28,11 +27,5 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
 Result<FitResult> ReadFitResult(const std::string& path);
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
-nlohmann::ordered_json ToJson(const Evaluation& evaluation);
-nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
-nlohmann::ordered_json ToJson(const PropagationSummary& summary);
-nlohmann::ordered_json PeopleJson(const PropagationScore& score);  // one row per person
-nlohmann::ordered_json ToJson(const CrossValidation& validation);
-nlohmann::ordered_json ToJson(const PairedDifference& difference);
 
 }  // namespace pushid

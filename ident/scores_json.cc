@@ -1,4 +1,6 @@
-// ident: evaluations and cross-validations as JSON. Keys carry their units.
+// ident: scores as JSON.
+#include "ident/scores_json.h"
+
 #include "ident/option_names.h"
 #include "ident/result_json.h"
 

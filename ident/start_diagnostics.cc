@@ -6,6 +6,7 @@
 #include "datasets/random.h"
 #include "ident/diagnostics.h"
 #include "ident/score_blocks.h"
+#include "ident/solver.h"
 
 namespace pushid {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

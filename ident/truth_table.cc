@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "datasets/json_file.h"
-#include "ident/report_text.h"
 #include "ident/text_table.h"
 
 namespace pushid {

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ident/covariance.h"
+#include "ident/fit_problem.h"
 #include "ident/null_directions.h"
+#include "ident/score_blocks.h"
 
 namespace pushid {
 namespace {

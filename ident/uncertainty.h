@@ -10,10 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "ident/covariance.h"
-#include "ident/fit_problem.h"
+#include "ident/fit_point.h"
+#include "models/options.h"
+#include "models/parameters.h"
 
 namespace pushid {
+
+struct Covariance;
+class FitProblem;
 
 enum class EstimateStatus { kIdentified, kWeak, kUnidentifiable, kAtBound, kFixed };
 

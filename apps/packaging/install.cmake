@@ -4,14 +4,16 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(pushid_libraries models datasets residuals ident)
+set(pushid_libraries models restoration datasets residuals ident)
 install(TARGETS pushid_options EXPORT pushid_targets)
 set_target_properties(pushid_options PROPERTIES EXPORT_NAME options)
 foreach(library ${pushid_libraries})
   set_target_properties(pushid_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS pushid_${library} EXPORT pushid_targets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-  install(DIRECTORY ${library} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pushid COMPONENT development
+endforeach()
+foreach(room models datasets residuals ident)
+  install(DIRECTORY ${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pushid COMPONENT development
           FILES_MATCHING PATTERN "*.h")
 endforeach()
 

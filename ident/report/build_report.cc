@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "ident/fit_problem.h"
 #include "ident/option_names.h"
 #include "ident/report/sections.h"
 

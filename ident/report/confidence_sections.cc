@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "datasets/number_text.h"
-#include "ident/confidence.h"
 #include "ident/confidence_text.h"
+#include "ident/interval_agreement.h"
 #include "ident/report/chart.h"
 #include "ident/report/heat_map.h"
 #include "ident/report/sections.h"
 #include "ident/report_tables.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

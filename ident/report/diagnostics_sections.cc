@@ -8,8 +8,8 @@
 #include "ident/report/chart.h"
 #include "ident/report/heat_map.h"
 #include "ident/report/sections.h"
-#include "ident/report_text.h"
 #include "ident/starts_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

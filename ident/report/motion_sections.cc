@@ -7,7 +7,7 @@
 #include "ident/formation_pictures.h"
 #include "ident/report/chart.h"
 #include "ident/report/sections.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

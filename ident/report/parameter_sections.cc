@@ -3,11 +3,11 @@
 #include <cmath>
 
 #include "datasets/number_text.h"
-#include "ident/confidence.h"
+#include "ident/interval_agreement.h"
 #include "ident/report/chart.h"
 #include "ident/report/sections.h"
 #include "ident/report_tables.h"
-#include "ident/report_text.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

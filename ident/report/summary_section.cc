@@ -5,6 +5,7 @@
 #include "ident/report_tables.h"
 #include "ident/report_text.h"
 #include "ident/self_network_io.h"
+#include "ident/text_table.h"
 
 namespace pushid {
 namespace {

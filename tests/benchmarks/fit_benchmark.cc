@@ -5,7 +5,9 @@
 
 #include <memory>
 
+#include "ident/fit_problem.h"
 #include "ident/fit_result.h"
+#include "ident/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

@@ -7,16 +7,13 @@
 
 #include "datasets/atomic_file.h"
 #include "datasets/bvh.h"
-#include "datasets/json_file.h"
 #include "datasets/manifest.h"
 #include "datasets/numeric_table.h"
 #include "datasets/push_csv.h"
 #include "datasets/synthetic_recordings.h"
 #include "datasets/trc.h"
-#include "ident/fit_result.h"
-#include "ident/network_json.h"
-#include "ident/result_json.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/fuzz/model_seeds.h"
 
 namespace {
 
@@ -120,7 +117,7 @@ spare = [1979-05-27T07:32:00Z, nan, -0.5, true]
 )"));
 }
 
-// A BVH, a manifest and a model of a very small study.
+// A BVH and a manifest of a very small study.
 void StudySeeds(const std::string& out) {
   SyntheticOptions study;
   study.subjects = 2;
@@ -141,22 +138,6 @@ void StudySeeds(const std::string& out) {
       "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 0 0\n\tCHANNELS 6 Xposition Yposition Zposition "
       "Zrotation Yrotation Xrotation\n\tEnd Site\n\t{\n\t\tOFFSET 0 1 0\n\t}\n}\nMOTION\nFrames: "
       "2\nFrame Time: 0.01\n0 1 2 3 4 5\n1e1 -2 .5 6 7 8\n"));
-
-  std::vector<PendulumRecording> pendulums;
-  for (const Recording& recording : Recordings(made.value())) {
-    pendulums.push_back(MakePendulumRecording(recording, SkeletonMapping::kExact));
-  }
-  const Preset preset = MakePreset("tail").value();
-  FitOptions options;
-  options.preset = preset.name;
-  options.model = study.model;
-  options.table = preset.table;
-  options.settling_weight = preset.settling_weight;
-  Check(WriteJson(In(out, "model", "tail.json"), ToJson(Fit(pendulums, options), RunInfo{})));
-  InteractionNetwork network;
-  network.mlp.layers = {{Eigen::MatrixXd::Constant(3, 10, 0.1), Eigen::VectorXd::Ones(3)},
-                        {Eigen::MatrixXd::Constant(4, 3, 0.25), Eigen::VectorXd::Zero(4)}};
-  Check(WriteJson(In(out, "model", "network.json"), ToJson(network)));
 }
 
 }  // namespace
@@ -170,5 +151,7 @@ int main(int argc, char** argv) {
   TextSeeds(argv[1]);
   PlanSeeds(argv[1]);
   StudySeeds(argv[1]);
+  std::filesystem::create_directories(argv[1] + std::string("/model"));
+  Check(WriteModelSeeds(argv[1] + std::string("/model")));
   return 0;
 }

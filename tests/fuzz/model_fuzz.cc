@@ -1,4 +1,5 @@
-// Models and interaction networks in JSON: what is read can be reported and read again.
+// Models and interaction networks in JSON: what is read can be reported, written and read again.
+#include "datasets/json_file.h"
 #include "ident/network_json.h"
 #include "ident/report_text.h"
 #include "ident/result_json.h"
@@ -10,7 +11,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const CpuSecond limit;
   const std::string& path = file.Fill(data, size);
   const Result<FitResult> model = ReadFitResult(path);
-  if (model.ok()) Demand(!ReportText(model.value()).empty());
+  if (model.ok()) {
+    Demand(!ReportText(model.value()).empty());
+    const auto written = ToJson(model.value(), RunInfo{});
+    const Result<FitResult> again = FitResultFromJson(written, "written");
+    Demand(again.ok() && ToJson(again.value(), RunInfo{}).dump() == written.dump());
+  }
   (void)ReadInteractionNetwork(path);
   return 0;
 }

@@ -8,6 +8,9 @@
 #include <numeric>
 
 #include "ident/confidence.h"
+#include "ident/fit_problem.h"
+#include "ident/interval_agreement.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -10,6 +10,8 @@
 #include <atomic>
 #include <thread>
 
+#include "ident/fit_problem.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

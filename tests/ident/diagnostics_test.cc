@@ -8,6 +8,8 @@
 #include "ident/advice.h"
 #include "ident/confidence_text.h"
 #include "ident/fit_command.h"
+#include "ident/fit_problem.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -5,6 +5,9 @@
 
 #include <Eigen/LU>
 
+#include "ident/covariance.h"
+#include "ident/fit_problem.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

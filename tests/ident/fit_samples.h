@@ -11,6 +11,7 @@
 #include "datasets/pendulum_recording.h"
 #include "datasets/random.h"
 #include "datasets/synthetic_recordings.h"
+#include "ident/fit_problem.h"
 #include "ident/fit_result.h"
 
 namespace pushid {

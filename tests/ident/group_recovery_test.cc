@@ -2,7 +2,9 @@
 // within their intervals with it.
 #include <gtest/gtest.h>
 
+#include "ident/fit_problem.h"
 #include "ident/fit_result.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "ident/evaluation.h"
+#include "ident/fit_problem.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -8,8 +8,8 @@
 #include "datasets/load_recordings.h"
 #include "ident/evaluation.h"
 #include "ident/predictors.h"
-#include "ident/report_text.h"
-#include "ident/result_json.h"
+#include "ident/scores_json.h"
+#include "ident/scores_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

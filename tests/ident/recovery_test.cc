@@ -1,7 +1,9 @@
 // Known parameters come back from noise-free synthetic recordings, and what the defaults add.
 #include <gtest/gtest.h>
 
+#include "ident/fit_problem.h"
 #include "ident/fit_result.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -5,7 +5,9 @@
 #include <limits>
 
 #include "datasets/load_recordings.h"
+#include "ident/fit_problem.h"
 #include "ident/fit_result.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -5,7 +5,9 @@
 
 #include <Eigen/Dense>
 
+#include "ident/covariance.h"
 #include "ident/score_blocks.h"
+#include "ident/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

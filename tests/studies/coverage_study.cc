@@ -14,7 +14,9 @@
 #include <mutex>
 
 #include "ident/bootstrap.h"
+#include "ident/fit_problem.h"
 #include "ident/profile.h"
+#include "ident/solver.h"
 #include "ident/text_table.h"
 #include "tests/ident/fit_samples.h"
 

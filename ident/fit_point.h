@@ -1,0 +1,32 @@
+// ident: a point in the space of a fit, and what can go wrong there.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "models/rollout.h"
+
+namespace pushid {
+
+// A point in the space of the fit.
+struct FitPoint {
+  std::vector<double> shared;  // fitted scale
+  std::map<std::string, std::vector<double>>
+      unit;  // deviations by subject or setting, fitted scale; empty if not pooled
+  std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
+  std::vector<double> weights;                  // of what is learned; empty without
+
+  // All entries in one row: shared, units in order of name, velocities in order of recording,
+  // weights.
+  std::vector<double> Flat() const;
+  void SetFlat(const std::vector<double>& flat);
+};
+
+// A rollout that left the model's domain, by recording.
+struct FailedRollout {
+  int recording;
+  RolloutStatus status;
+};
+
+}  // namespace pushid

@@ -1,0 +1,112 @@
+// What a fit of two subjects might have found, filled in by hand: numbers that are none where a
+// model may have them.
+#include "tests/fuzz/model_seeds.h"
+
+#include <limits>
+
+#include "datasets/json_file.h"
+#include "ident/network_json.h"
+#include "ident/result_json.h"
+#include "ident/self_network_io.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+FitResult OfPreset(const std::string& name) {
+  const Preset preset = MakePreset(name).value();
+  FitResult result;
+  result.options.preset = name;
+  result.options.model = preset.model;
+  result.options.table = preset.table;
+  result.options.self_force = preset.self_force;
+  result.parameters = preset.table.Values();
+  for (const ParameterSpec& spec : preset.table.specs) {
+    const EstimateStatus status = spec.free ? EstimateStatus::kIdentified : EstimateStatus::kFixed;
+    result.estimates.push_back(
+        {spec.name, spec.unit, spec.nominal, 0.1, 0.02, spec.lower, spec.upper, status});
+    if (spec.free) result.uncertainty.estimates.push_back(result.estimates.back());
+  }
+  const int free = static_cast<int>(result.uncertainty.estimates.size());
+  result.uncertainty.covariance = Eigen::MatrixXd::Identity(free, free);
+  result.uncertainty.correlation = Eigen::MatrixXd::Identity(free, free);
+  result.derived = {{"c_x", "N s/m", 23.1, 0.7, 21.7, 24.5}};
+  result.behaviour.demonstrations = {{"", 1, 80.0, 25.0, 0.01, 0.002, 0.4, 0.4, 0.4, false, true}};
+  result.recordings = {{"one", "00ff", 45, 1, 1.5, ""}, {"two", "0f0f", 40, 5, kInfinity, "fell"}};
+  SolveStart start;
+  start.kind = "nominal";
+  start.from.shared = start.to.shared = std::vector<double>(free, 0.5);
+  start.stages = {{8, 12, 9.0, 1.5, true, {}}};
+  result.starts = {start};
+  result.best_start = 0;
+  result.warnings = {"a warning"};
+  result.version = "0.1.0";
+  result.configuration = {{"seed", "1"}, {"preset", name}};
+  result.changed_flags = {"preset"};
+  return result;
+}
+
+void AddConfidence(FitResult* result) {
+  result->subjects["anna"].mass_kg = 62.0;
+  result->subjects["anna"].pooled["mu"] = result->estimates.front();
+  result->settings["single"]["mu"] = result->estimates.front();
+  result->nuisance = {};
+  result->profiles = {{"mu",
+                       "N s/m",
+                       20.0,
+                       ProfileClass::kPracticallyNot,
+                       -kInfinity,
+                       30.0,
+                       1.0,
+                       0.3,
+                       "bound",
+                       "threshold",
+                       {{10.0, 1.3, {{"a_x", -0.1}}}}}};
+  result->bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  Diagnostics& d = result->diagnostics;
+  d.start = {kInfinity, {}, {"t_v"}, {"moved"}, {"grams"}};
+  d.start.null_directions = {{{"mu", "Kp_x"}, {1.0, -1.0}, result->derived, "cannot be told"}};
+  result->uncertainty.null_directions = d.start.null_directions;
+  d.recordings = {{"one", 97.0, 0.2, 0.9, 31.0, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.0, 0.0}};
+  d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
+  d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
+  d.advice = {{"free less", "pushid-fit --fix=mu"}};
+}
+
+void AddNetworks(FitResult* result) {
+  const auto learned = [](uint64_t seed) {
+    return InitialNetwork({NetworkKind::kGru, 2}, seed, {RodKind::kMlp, {2}});
+  };
+  result->options.model.self_network = learned(1);
+  result->takeover = Takeover{1.0, 2.0, 3.0, 0.1};
+  result->others = {{result->parameters, learned(2)}};
+}
+
+InteractionNetwork SmallInteraction() {
+  InteractionNetwork network;
+  network.mlp.layers = {{Eigen::MatrixXd::Constant(3, 10, 0.1), Eigen::VectorXd::Ones(3)},
+                        {Eigen::MatrixXd::Constant(4, 3, 0.25), Eigen::VectorXd::Zero(4)}};
+  return network;
+}
+
+}  // namespace
+
+MaybeError WriteModelSeeds(const std::string& folder) {
+  FitResult judged = OfPreset("tail"), learned = OfPreset("ldp"), group = OfPreset("group");
+  AddConfidence(&judged);
+  AddNetworks(&learned);
+  const InteractionNetwork interaction = SmallInteraction();
+  group.options.model.interaction_network = std::make_shared<InteractionNetwork>(interaction);
+  for (const auto& [name, result] :
+       {std::pair{"tail", judged}, std::pair{"learned", learned}, std::pair{"group", group}}) {
+    const std::string path = folder + "/" + name + ".json";
+    if (const MaybeError failed = WriteJson(path, ToJson(result, RunInfo{}))) return failed;
+    const Result<FitResult> readable = ReadFitResult(path);
+    if (!readable.ok()) return readable.error();
+  }
+  return WriteJson(folder + "/network.json", ToJson(interaction));
+}
+
+}  // namespace pushid

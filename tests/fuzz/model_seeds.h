@@ -1,0 +1,12 @@
+// First inputs of model-fuzz: models with every part that a model can have, without a fit.
+#pragma once
+
+#include <string>
+
+#include "datasets/result.h"
+
+namespace pushid {
+
+MaybeError WriteModelSeeds(const std::string& folder);
+
+}  // namespace pushid
