@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ident/covariance.h"
+#include "ident/profile_plan.h"
 #include "ident/solver.h"
 #include "residuals/combination_residual.h"
 #include "residuals/prior_residual.h"
@@ -13,92 +14,6 @@ namespace pushid {
 namespace {
 
 constexpr double kHold = 0.03;  // s_hold over the naive error
-
-// A number to be profiled: one fitted parameter on its fitted scale, or a combination of natural
-// values.
-struct Target {
-  std::string name, unit;
-  Transform transform = Transform::kIdentity;
-  int index = -1;                      // of the parameter; -1 for a combination
-  std::vector<double> coefficients{};  // of a combination, by fitted parameter
-  double constant = 0.0;               // what fixed parameters contribute
-};
-
-// A profile to report: a target's, or a linear function of it in natural values.
-struct Reported {
-  std::string name, unit;
-  size_t target;
-  double factor = 1.0, offset = 0.0;
-};
-
-Target CombinationTarget(const FitProblem& problem, const CombinationSpec& spec) {
-  const ParameterMap& map = problem.map();
-  Target target{spec.name, spec.unit};
-  target.coefficients.assign(map.fitted.size(), 0.0);
-  for (const Term& term : spec.terms) {
-    const auto at =
-        std::find_if(map.fitted.begin(), map.fitted.end(),
-                     [&term](const FittedParameter& f) { return f.parameter == term.parameter; });
-    if (at == map.fitted.end()) {
-      target.constant += term.coefficient * map.values[term.parameter];
-    } else {
-      target.coefficients[static_cast<size_t>(at - map.fitted.begin())] += term.coefficient;
-    }
-  }
-  return target;
-}
-
-// Everything that moves, or what is named; each target once.
-class Plan {
- public:
-  explicit Plan(const FitProblem& problem) {
-    const auto& fitted = problem.map().fitted;
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
-      targets_.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
-      all_.push_back({spec.name, spec.unit, i});
-    }
-    for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
-      Add(CombinationTarget(problem, spec));
-    }
-  }
-
-  MaybeError Choose(const std::vector<std::string>& names) {
-    std::string known;
-    for (const Reported& r : all_) known += (known.empty() ? "" : ", ") + r.name;
-    for (const std::string& name : names) {
-      const auto at = std::find_if(all_.begin(), all_.end(),
-                                   [&name](const Reported& r) { return r.name == name; });
-      if (at == all_.end()) {
-        return Error{"there is no profile of '" + name + "'; free numbers are " + known};
-      }
-      chosen_.push_back(*at);
-    }
-    if (names.empty()) chosen_ = all_;
-    return std::nullopt;
-  }
-
-  const std::vector<Target>& targets() const { return targets_; }
-  const std::vector<Reported>& chosen() const { return chosen_; }
-
- private:
-  void Add(const Target& combination) {
-    const auto& c = combination.coefficients;
-    const auto moves = [](double coefficient) { return coefficient != 0.0; };
-    const auto first = std::find_if(c.begin(), c.end(), moves);
-    if (first == c.end()) return;
-    if (std::count_if(c.begin(), c.end(), moves) == 1) {
-      all_.push_back({combination.name, combination.unit, static_cast<size_t>(first - c.begin()),
-                      *first, combination.constant});
-      return;
-    }
-    all_.push_back({combination.name, combination.unit, targets_.size()});
-    targets_.push_back(combination);
-  }
-
-  std::vector<Target> targets_;
-  std::vector<Reported> all_, chosen_;
-};
 
 class Profiler {
  public:
@@ -110,16 +25,16 @@ class Profiler {
         cost_(Refit(problem, estimate).cost) {}
 
   // In the target's own scale.
-  Profile Run(const Target& target) const;
+  Profile Run(const ProfileTarget& target) const;
 
  private:
-  ProfileSearch Search(const Target& target, const Eigen::VectorXd& gradient) const;
-  HeldFit Hold(const Target& target, double sigma, double wanted,
+  ProfileSearch Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const;
+  HeldFit Hold(const ProfileTarget& target, double sigma, double wanted,
                const std::vector<double>& from) const;
-  double Value(const Target& target, const FitPoint& point) const;
-  Eigen::VectorXd Gradient(const Target& target) const;
+  double Value(const ProfileTarget& target, const FitPoint& point) const;
+  Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
-  ProfilePoint Describe(const Target& target, const HeldFit& fit) const;
+  ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const;
 
   const FitProblem& problem_;
   const FitPoint& estimate_;
@@ -128,7 +43,7 @@ class Profiler {
   const double cost_;
 };
 
-double Profiler::Value(const Target& target, const FitPoint& point) const {
+double Profiler::Value(const ProfileTarget& target, const FitPoint& point) const {
   if (target.index >= 0) return point.shared[target.index];
   double value = target.constant;
   for (size_t i = 0; i < target.coefficients.size(); ++i) {
@@ -139,7 +54,7 @@ double Profiler::Value(const Target& target, const FitPoint& point) const {
 }
 
 // Of the target by all fitted numbers, at the estimate.
-Eigen::VectorXd Profiler::Gradient(const Target& target) const {
+Eigen::VectorXd Profiler::Gradient(const ProfileTarget& target) const {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance_.inverse_hessian.rows());
   if (target.index >= 0) {
     gradient[target.index] = 1.0;
@@ -166,7 +81,7 @@ double Profiler::MeanRatio() const {
   return count > 0 ? sum / count : covariance_.sigma * covariance_.sigma;
 }
 
-ProfileSearch Profiler::Search(const Target& target, const Eigen::VectorXd& gradient) const {
+ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {
   const Eigen::VectorXd moved = covariance_.inverse_hessian * gradient;
   const double naive = gradient.dot(moved);
   // A result keeps no covariance of a network's weights, which stand last and are in no target.
@@ -200,7 +115,7 @@ ProfileSearch Profiler::Search(const Target& target, const Eigen::VectorXd& grad
   return search;
 }
 
-HeldFit Profiler::Hold(const Target& target, double sigma, double wanted,
+HeldFit Profiler::Hold(const ProfileTarget& target, double sigma, double wanted,
                        const std::vector<double>& from) const {
   FitPoint point = estimate_;
   point.SetFlat(from);
@@ -228,7 +143,7 @@ HeldFit Profiler::Hold(const Target& target, double sigma, double wanted,
   return held;
 }
 
-ProfilePoint Profiler::Describe(const Target& target, const HeldFit& fit) const {
+ProfilePoint Profiler::Describe(const ProfileTarget& target, const HeldFit& fit) const {
   ProfilePoint point;
   point.value = fit.value;
   point.cost = fit.cost;
@@ -240,7 +155,7 @@ ProfilePoint Profiler::Describe(const Target& target, const HeldFit& fit) const 
   return point;
 }
 
-Profile Profiler::Run(const Target& target) const {
+Profile Profiler::Run(const ProfileTarget& target) const {
   const ProfileSearch search = Search(target, Gradient(target));
   const HoldFit hold = [&](double wanted, const std::vector<double>& from) {
     return Hold(target, kHold * search.naive_error, wanted, from);
@@ -280,7 +195,7 @@ Profile Profiler::Run(const Target& target) const {
 }
 
 // From the target's scale to what is reported; factors are positive.
-Profile InUnitsOf(const Reported& reported, Transform transform, Profile profile) {
+Profile InUnitsOf(const ReportedProfile& reported, Transform transform, Profile profile) {
   const auto natural = [&](double value) {
     if (!std::isfinite(value)) return reported.factor * value;
     return reported.factor * ToNatural(transform, value) + reported.offset;
@@ -300,10 +215,10 @@ Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const Fi
                                              const Uncertainty& uncertainty,
                                              const std::vector<std::string>& names, int num_threads,
                                              const JobProgress& progress) {
-  Plan plan(problem);
+  ProfilePlan plan(problem);
   if (MaybeError error = plan.Choose(names)) return *error;
   std::vector<size_t> needed;
-  for (const Reported& reported : plan.chosen()) {
+  for (const ReportedProfile& reported : plan.chosen()) {
     if (std::find(needed.begin(), needed.end(), reported.target) == needed.end()) {
       needed.push_back(reported.target);
     }
@@ -314,7 +229,7 @@ Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const Fi
       static_cast<int>(needed.size()), num_threads,
       [&](int i) { traced[needed[i]] = profiler.Run(plan.targets()[needed[i]]); }, progress);
   std::vector<Profile> profiles;
-  for (const Reported& reported : plan.chosen()) {
+  for (const ReportedProfile& reported : plan.chosen()) {
     profiles.push_back(
         InUnitsOf(reported, plan.targets()[reported.target].transform, traced[reported.target]));
   }
