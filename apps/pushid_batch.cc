@@ -130,9 +130,9 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
   if (o.elsewhere > 0) {
-    Warn(std::to_string(o.elsewhere) +
-         " jobs were left to another pushid-batch that is at work on them; when it has ended, "
-         "--gather writes the table of all");
+    Warn("left to another pushid-batch that is at work on them: " + std::to_string(o.elsewhere) +
+         (o.elsewhere == 1 ? " job" : " jobs") +
+         "; when it has ended, --gather writes the table of all");
   }
   if (o.interrupted) {
     std::fprintf(stderr, "pushid-batch: interrupted; the same command goes on from here\n");

@@ -2,6 +2,7 @@
 // in.
 #pragma once
 
+#include <set>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -35,6 +36,14 @@ class BatchFixture : public AppTest {
     more.insert(more.begin(), plan);
     more.push_back("--quiet");
     return RunApp("pushid-batch", more);
+  }
+
+  // Of the jobs in what --list prints.
+  static std::set<std::string> Ids(const std::string& listing) {
+    std::set<std::string> ids;
+    for (const std::string& line : Lines(listing)) ids.insert(line.substr(0, line.find(',')));
+    ids.erase("id");
+    return ids;
   }
 
   // summary.csv without what changes from run to run: the last two columns.

@@ -1,0 +1,117 @@
+// pushid-batch: limits, damaged results, two batches at once, kills and interruptions cost nothing
+// but what they hit.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "tests/apps/batch_fixture.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+
+using BatchFaultTest = BatchFixture;
+
+TEST_F(BatchFaultTest, LimitsEndAJobAndSaySo) {
+  const std::string endless = "\"--bootstrap=100000\"";
+  const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
+  EXPECT_EQ(slow.exit_code, 2) << slow.err;
+  EXPECT_TRUE(Contains(slow.out, "out of time after 0.5 s"));
+  const AppRun big = Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"));
+  EXPECT_EQ(big.exit_code, 2) << big.err;
+  EXPECT_TRUE(Contains(big.out, "1 failed"));
+  EXPECT_TRUE(Contains(big.out, "out of memory (limit 16 MB")) << big.out;
+  // 0 on the command line lifts the plan's limit.
+  EXPECT_EQ(
+      Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"), {"--memory_limit=0"}).exit_code, 0);
+}
+
+// What is listed as failed is done by the next run; nothing but the job it stands for is lost.
+TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
+  const std::string plan = Plan("group_by = \"subject\"\nfolds = 2", {{"a", ""}});
+  ASSERT_EQ(Batch(plan, {"--jobs=2"}).exit_code, 0);
+  const std::vector<std::string> rows = Table("out");
+  ASSERT_EQ(rows.size(), 1u + 4u);
+  const auto folder = [&rows](int job) { return "out/jobs/" + rows[job].substr(0, 32); };
+  const std::string model = ReadText(Path(folder(1) + "/model.json"));
+  WriteText(folder(1) + "/model.json", model.substr(0, model.size() / 2));
+  fs::remove(Path(folder(2) + "/scores.json"));
+  WriteText(folder(3) + "/status.json", "");
+  EXPECT_EQ(Batch(plan, {"--gather"}).exit_code, 0);
+  EXPECT_TRUE(Contains(Table("out")[1], ",failed,"));
+  EXPECT_TRUE(Contains(Table("out")[3], ",failed,"));
+  EXPECT_EQ(Lines(Batch(plan, {"--dry_run"}).out).size(), 2u * 3u);
+  const AppRun again = Batch(plan);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(Contains(again.out, "3 done, 0 failed, 1 done before")) << again.out;
+  EXPECT_EQ(Table("out"), rows);
+}
+
+TEST_F(BatchFaultTest, TwoAtOnceInOneFolderShareTheWork) {
+  const std::string plan = Plan("group_by = \"recording\"\nbootstrap = 2", {{"a", ""}});
+  const std::string batch =
+      "'" + std::string(PUSHID_BIN_DIR) + "/pushid-batch' '" + plan + "' --quiet --jobs=2";
+  const AppRun both = RunProgram(
+      "/bin/sh", {"-c", batch + " > /dev/null & " + batch + "; one=$?; wait $! && exit $one"});
+  EXPECT_EQ(both.exit_code, 0) << both.out << both.err;
+  const AppRun last = Batch(plan);
+  EXPECT_TRUE(Contains(last.out, "0 done, 0 failed, 36 done before")) << last.out << both.err;
+}
+
+TEST_F(BatchFaultTest, AJobThatAnotherProcessHoldsIsLeftToIt) {
+  const std::string plan = Plan("group_by = \"subject\"", {{"a", ""}});
+  const std::string id = *Ids(Batch(plan, {"--list"}).out).begin();
+  fs::create_directories(Path("out/jobs/" + id));
+  const int held = open(Path("out/jobs/" + id).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  ASSERT_EQ(flock(held, LOCK_EX), 0);
+  const AppRun run = Batch(plan);
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(Contains(run.out, "1 done, 0 failed, 0 done before"));
+  EXPECT_TRUE(Contains(run.err, "left to another pushid-batch that is at work on them: 1 job;"));
+  close(held);
+  EXPECT_TRUE(Contains(Batch(plan).out, "1 done, 0 failed, 1 done before"));
+}
+
+// Killed outright at random moments, the batch ends with exactly the table of an unbroken run.
+// PUSHID_BATCH_KILLS=100 does it a hundred times.
+TEST_F(BatchFaultTest, KillsCostNothing) {
+  const char* wanted = std::getenv("PUSHID_BATCH_KILLS");
+  const int kills = wanted != nullptr ? std::atoi(wanted) : 5;
+  const std::string jobs = "group_by = \"recording\"";
+  const std::vector<std::pair<std::string, std::string>> variants = {{"a", ""}};
+  ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml")).exit_code, 0);
+  const std::string plan = Plan(jobs, variants, "broken", "broken.toml");
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> moment(0.01, 0.3);
+  for (int k = 0; k < kills; ++k) {
+    // Out of time: RunApp kills it.
+    RunApp("pushid-batch", {plan, "--jobs=2", "--quiet"}, moment(random));
+    if (k % 10 == 9) fs::remove_all(Path("broken"));  // so that there is something left to break
+  }
+  const AppRun last = Batch(plan, {"--jobs=2"});
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(Table("broken"), Table("whole"));
+}
+
+TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
+  const std::string plan = Plan("bootstrap = 200", {{"a", ""}});
+  // "timeout -s INT" sends what Ctrl-C sends.
+  const AppRun run = RunProgram(
+      "/usr/bin/timeout",
+      {"-s", "INT", "1", std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
+  EXPECT_EQ(run.exit_code, 124) << run.err;  // timeout's own
+  EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
+  EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
+  EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
+}
+
+}  // namespace
+}  // namespace pushid
