@@ -42,13 +42,9 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
   WindowWeights weights;
   const RegressionSamples learnt = WindowSamples(training, &weights.inputs);
   const RegressionSamples judged = WindowSamples(held, &weights.inputs);
-  RegressionOptions regression;
-  regression.epochs = std::max(1, static_cast<int>(std::lround(kWindowEpochs * options.effort)));
-  regression.seed = options.seed;
-  regression.num_threads = options.num_threads;
   TrainedRestoration trained;
   const Result<DenseNetwork> network =
-      TrainDense(learnt, judged, regression, KeyOfTraining(training, held, options), options,
+      TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
                  progress, &trained);
   if (!network.ok()) return network.error();
   AddTensors("inputs", weights.inputs, &trained.file.tensors);
@@ -59,9 +55,13 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
 }  // namespace
 
 Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
-                                const RegressionOptions& regression, const std::string& key,
+                                int epochs, const std::string& key,
                                 const RestorationTrainingOptions& options,
                                 const TrainingProgress& progress, TrainedRestoration* trained) {
+  RegressionOptions regression;
+  regression.epochs = std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
+  regression.seed = options.seed;
+  regression.num_threads = options.num_threads;
   RegressionTrainer trainer(learnt, judged, regression);
   Checkpoint checkpoint(options.checkpoint, key, options.checkpoint_seconds);
   std::string state;

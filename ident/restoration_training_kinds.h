@@ -18,10 +18,10 @@ Result<TrainedRestoration> TrainPeer(const std::vector<RestorationSample>& train
                                      const RestorationTrainingOptions& options,
                                      const TrainingProgress& progress);
 
-// Epochs of a dense network until it is done, with checkpoints. Adds points to trained->curve;
-// returns the best weights.
+// `epochs` times the options' effort of a dense network, or until it is done, with checkpoints
+// under `key`. Adds points to trained->curve; returns the best weights.
 Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
-                                const RegressionOptions& regression, const std::string& key,
+                                int epochs, const std::string& key,
                                 const RestorationTrainingOptions& options,
                                 const TrainingProgress& progress, TrainedRestoration* trained);
 

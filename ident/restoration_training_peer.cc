@@ -1,7 +1,4 @@
 // ident: windows of the true motions for the peer.
-#include <algorithm>
-#include <cmath>
-
 #include "ident/peer.h"
 #include "ident/restoration_training_checkpoint.h"
 #include "ident/restoration_training_kinds.h"
@@ -47,13 +44,9 @@ Result<TrainedRestoration> TrainPeer(const std::vector<RestorationSample>& train
   if (learnt.inputs.cols() == 0) return Error{"the recordings are too short for --kind=simlpe"};
   const RegressionSamples judged = Windows(held, &weights.inputs);
   if (judged.inputs.cols() == 0) return Error{"the recordings are too short for --kind=simlpe"};
-  RegressionOptions regression;
-  regression.epochs = std::max(1, static_cast<int>(std::lround(kPeerEpochs * options.effort)));
-  regression.seed = options.seed;
-  regression.num_threads = options.num_threads;
   TrainedRestoration trained;
   const Result<DenseNetwork> network =
-      TrainDense(learnt, judged, regression, KeyOfTraining(training, held, options), options,
+      TrainDense(learnt, judged, kPeerEpochs, KeyOfTraining(training, held, options), options,
                  progress, &trained);
   if (!network.ok()) return network.error();
   weights.network = network.value();
