@@ -31,7 +31,7 @@ double C3dNumber(const std::vector<C3dParameter>& parameters, std::string_view g
 std::vector<std::string> C3dTexts(const std::vector<C3dParameter>& parameters,
                                   std::string_view group, const std::string& name);
 
-// The same as a whole number from `lowest` to `highest`; `fallback` for anything else.
+// C3dNumber as a whole number from `lowest` to `highest`; `fallback` for anything else.
 int C3dWhole(const std::vector<C3dParameter>& parameters, std::string_view group,
              std::string_view name, std::size_t index, int lowest, int highest, int fallback);
 

@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-// cutoff in (0, rate / 2) after the correction, see LowPassProblem; leaves tracks of fewer than
+// cutoff in (0, rate / 2) after the correction, see HighestCutoff; leaves tracks of fewer than
 // three frames alone. Every position must be finite.
 void LowPass(double cutoff_hz, double rate_hz, std::vector<Eigen::Vector3d>* track);
 
