@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "datasets/axes.h"
@@ -105,10 +106,8 @@ class PersonLoader {
 
   // Which of the file's `all` joints are read; where the pendulum's stand among those.
   std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all, Motion* motion) const {
-    std::vector<int> read;
-    for (std::size_t i = 0; options_.keep_all_joints && i < all; ++i) {
-      read.push_back(static_cast<int>(i));
-    }
+    std::vector<int> read(options_.keep_all_joints ? all : 0);
+    std::iota(read.begin(), read.end(), 0);
     motion->places = {Among(joints.hip, &read), Among(joints.left_ankle, &read),
                       Among(joints.right_ankle, &read)};
     return read;
@@ -257,7 +256,6 @@ class PersonLoader {
 
   static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
     Track mean = tracks[chosen[0]];
-    if (chosen.size() == 1) return mean;
     for (std::size_t frame = 0; frame < mean.size(); ++frame) {
       for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
       mean[frame] /= static_cast<double>(chosen.size());
