@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "datasets/atomic_file.h"
 #include "datasets/bvh.h"
@@ -13,6 +14,7 @@
 #include "datasets/synthetic_recordings.h"
 #include "datasets/trc.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/handmade_c3d.h"
 #include "tests/fuzz/model_seeds.h"
 
 namespace {
@@ -40,6 +42,13 @@ void C3dSeeds(const std::string& out) {
       if (type == 3) file.platforms[0].channels = {0, 1, 2, 3, 4, 5, 6, 6};
       Check(WriteC3d(In(out, "c3d", Name(processor) + std::to_string(type) + ".c3d"), file));
     }
+  }
+  const std::pair<const char*, HandmadeC3d> handmade[] = {
+      {"unsigned", UnsignedC3d()}, {"offset", OffsetC3d()},    {"events", HeaderEventsC3d()},
+      {"trial", TrialC3d(3)},      {"long", LongFramesC3d(3)},
+  };
+  for (const auto& [name, file] : handmade) {
+    Check(WriteFileAtomically(In(out, "c3d", name + std::string(".c3d")), file.Bytes()));
   }
 }
 
