@@ -96,15 +96,14 @@ const C3dParameter* C3dFile::Find(std::string_view group, std::string_view name)
 std::vector<C3dEvent> ReadC3dEvents(const std::vector<C3dParameter>& parameters,
                                     const C3dBytes& bytes) {
   std::vector<C3dEvent> events;
-  const C3dParameter* times = FindC3dParameter(parameters, "EVENT", "TIMES");
-  if (times != nullptr) {
+  if (FindC3dParameter(parameters, "EVENT", "TIMES") != nullptr) {
+    const std::vector<double> times = C3dNumbers(parameters, "EVENT", "TIMES");
     const std::vector<std::string> labels = C3dTexts(parameters, "EVENT", "LABELS");
     const std::vector<std::string> contexts = C3dTexts(parameters, "EVENT", "CONTEXTS");
     const std::size_t count = std::min<std::size_t>(
-        times->numbers.size() / 2, C3dWhole(parameters, "EVENT", "USED", 0, 0, 32767, 0));
+        times.size() / 2, C3dWhole(parameters, "EVENT", "USED", 0, 0, 32767, 0));
     for (std::size_t i = 0; i < count; ++i) {
-      events.push_back({60.0 * times->numbers[2 * i] + times->numbers[2 * i + 1],
-                        i < labels.size() ? labels[i] : "",
+      events.push_back({60.0 * times[2 * i] + times[2 * i + 1], i < labels.size() ? labels[i] : "",
                         i < contexts.size() ? contexts[i] : ""});
     }
     return events;

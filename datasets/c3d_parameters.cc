@@ -121,6 +121,20 @@ class ParameterReader {
   std::vector<C3dParameter> parameters_;
 };
 
+// The entries of NAME, NAME2, ... up to the first that is not there.
+template <typename Entry>
+std::vector<Entry> Joined(const std::vector<C3dParameter>& parameters, std::string_view group,
+                          const std::string& name, std::vector<Entry> C3dParameter::*entries) {
+  std::vector<Entry> joined;
+  for (int number = 1;; ++number) {
+    const C3dParameter* parameter =
+        FindC3dParameter(parameters, group, number == 1 ? name : name + std::to_string(number));
+    if (parameter == nullptr) return joined;
+    const std::vector<Entry>& part = parameter->*entries;
+    joined.insert(joined.end(), part.begin(), part.end());
+  }
+}
+
 }  // namespace
 
 Error C3dError(const std::string& path, std::size_t at, const std::string& message) {
@@ -156,15 +170,14 @@ int C3dWhole(const std::vector<C3dParameter>& parameters, std::string_view group
   return value >= lowest && value <= highest ? static_cast<int>(value) : fallback;
 }
 
+std::vector<double> C3dNumbers(const std::vector<C3dParameter>& parameters, std::string_view group,
+                               const std::string& name) {
+  return Joined(parameters, group, name, &C3dParameter::numbers);
+}
+
 std::vector<std::string> C3dTexts(const std::vector<C3dParameter>& parameters,
                                   std::string_view group, const std::string& name) {
-  std::vector<std::string> texts;
-  for (int number = 1;; ++number) {
-    const C3dParameter* parameter =
-        FindC3dParameter(parameters, group, number == 1 ? name : name + std::to_string(number));
-    if (parameter == nullptr) return texts;
-    texts.insert(texts.end(), parameter->texts.begin(), parameter->texts.end());
-  }
+  return Joined(parameters, group, name, &C3dParameter::texts);
 }
 
 }  // namespace pushid

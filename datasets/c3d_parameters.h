@@ -27,13 +27,15 @@ const C3dParameter* FindC3dParameter(const std::vector<C3dParameter>& parameters
 double C3dNumber(const std::vector<C3dParameter>& parameters, std::string_view group,
                  std::string_view name, std::size_t index, double fallback);
 
-// Its texts and those of NAME2, NAME3, ... which files use beyond 255 entries.
-std::vector<std::string> C3dTexts(const std::vector<C3dParameter>& parameters,
-                                  std::string_view group, const std::string& name);
-
 // C3dNumber as a whole number from `lowest` to `highest`; `fallback` for anything else.
 int C3dWhole(const std::vector<C3dParameter>& parameters, std::string_view group,
              std::string_view name, std::size_t index, int lowest, int highest, int fallback);
+
+// Its numbers, or its texts, and those of NAME2, NAME3, ... which files use beyond 255 entries.
+std::vector<double> C3dNumbers(const std::vector<C3dParameter>& parameters, std::string_view group,
+                               const std::string& name);
+std::vector<std::string> C3dTexts(const std::vector<C3dParameter>& parameters,
+                                  std::string_view group, const std::string& name);
 
 // The events of the group EVENT, otherwise those of the header at the start of `bytes`.
 std::vector<C3dEvent> ReadC3dEvents(const std::vector<C3dParameter>& parameters,

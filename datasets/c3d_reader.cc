@@ -174,7 +174,7 @@ class Reader {
     for (C3dAnalogChannel& channel : file_.analog) {
       channel.samples.reserve(frames * samples_per_frame_);
     }
-    PrepareAnalog();
+    if (MaybeError failed = PrepareAnalog()) return failed;
     for (std::size_t frame = 0; frame < frames; ++frame) {
       std::size_t at = data_ + frame * frame_size;
       for (auto& track : file_.points) {
@@ -208,16 +208,41 @@ class Reader {
     return position;
   }
 
-  void PrepareAnalog() {
+  // ANALOG:NAME, NAME2, ...: one number for each channel. None at all leaves `neutral`, and a value
+  // without dimensions holds for all; a list that is too short does not say what it left out.
+  Result<std::vector<double>> PerChannel(const std::string& name, double neutral) const {
+    std::vector<double> numbers = C3dNumbers(file_.parameters, "ANALOG", name);
+    const C3dParameter* parameter = FindC3dParameter(file_.parameters, "ANALOG", name);
+    const std::size_t channels = file_.analog.size();
+    if (numbers.empty()) {
+      numbers.assign(channels, neutral);
+    } else if (numbers.size() == 1 && parameter->dimensions.empty()) {
+      numbers.assign(channels, numbers[0]);
+    } else if (numbers.size() < channels) {
+      return Error{"ANALOG:" + name + " ends after " + std::to_string(numbers.size()) + " of " +
+                       std::to_string(channels) + " analog channels, before " +
+                       Quoted(file_.analog[numbers.size()].name) +
+                       "; export the file again, with one number for every channel (from the " +
+                       "256th on in ANALOG:" + name + "2)",
+                   path_};
+    }
+    return numbers;
+  }
+
+  MaybeError PrepareAnalog() {
     const C3dParameter* format = FindC3dParameter(file_.parameters, "ANALOG", "FORMAT");
     unsigned_ = format != nullptr && !format->texts.empty() &&
                 EqualsIgnoringCase(format->texts[0], "UNSIGNED");
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
-    for (int i = 0; i < num_channels_; ++i) {
-      analog_scale_.push_back(general * Number("ANALOG", "SCALE", i, 1.0));
-      const double offset = Number("ANALOG", "OFFSET", i, 0.0);
-      analog_offset_.push_back(unsigned_ ? Unsigned(offset) : offset);
-    }
+    Result<std::vector<double>> scales = PerChannel("SCALE", 1.0);
+    if (!scales.ok()) return scales.error();
+    Result<std::vector<double>> offsets = PerChannel("OFFSET", 0.0);
+    if (!offsets.ok()) return offsets.error();
+    for (double& scale : scales.value()) scale *= general;
+    for (double& offset : offsets.value()) offset = unsigned_ ? Unsigned(offset) : offset;
+    analog_scale_ = std::move(scales.value());
+    analog_offset_ = std::move(offsets.value());
+    return std::nullopt;
   }
 
   double Sample(std::size_t at, int channel) const {

@@ -115,22 +115,29 @@ class Writer {
     parameters_ += '\0';
   }
 
+  // What holds more entries than a dimension goes on in NAME2, NAME3, ...
+  template <typename Entry, typename Write>
+  static void InParts(const std::string& name, const std::vector<Entry>& entries, Write write) {
+    std::string part = name;
+    for (std::size_t begin = 0; begin == 0 || begin < entries.size(); begin += kMostEntries) {
+      const std::size_t end = std::min(entries.size(), begin + kMostEntries);
+      write(part, std::vector<Entry>(entries.begin() + begin, entries.begin() + end));
+      part = name + std::to_string(end / kMostEntries + 1);
+    }
+  }
+
   void Texts(const std::string& name, const std::vector<std::string>& texts) {
     std::size_t length = 1;
     for (const std::string& text : texts) length = std::max(length, text.size());
     length = std::min(length, kMostEntries);
-    for (std::size_t begin = 0, number = 1; begin == 0 || begin < texts.size(); ++number) {
-      const std::size_t count = std::min(texts.size() - begin, kMostEntries);
+    InParts(name, texts, [&](const std::string& part, const std::vector<std::string>& some) {
       std::string data;
-      for (std::size_t i = begin; i < begin + count; ++i) {
-        std::string padded = texts[i];
+      for (std::string padded : some) {
         padded.resize(length, ' ');
         data += padded;
       }
-      Parameter(number == 1 ? name : name + std::to_string(number), C3dType::kText, {length, count},
-                data);
-      begin += std::max<std::size_t>(count, 1);
-    }
+      Parameter(part, C3dType::kText, {length, some.size()}, data);
+    });
   }
 
   void Text(const std::string& name, const std::string& text) {
@@ -180,15 +187,19 @@ class Writer {
       names.push_back(channel.name);
       units.push_back(channel.unit);
     }
-    const std::size_t count = std::min(names.size(), kMostEntries);
     Integers("USED", {}, {static_cast<double>(names.size())});
     Reals("RATE", {}, {file_.point_rate_hz * std::max(1, file_.samples_per_frame())});
     Reals("GEN_SCALE", {}, {1.0});
     Texts("LABELS", names);
     Texts("UNITS", units);
-    scales.resize(count);
-    Reals("SCALE", {count}, scales);
-    Integers("OFFSET", {count}, std::vector<double>(count, 0.0));
+    using Numbers = std::vector<double>;
+    InParts("SCALE", scales, [this](const std::string& part, const Numbers& some) {
+      Reals(part, {some.size()}, some);
+    });
+    InParts("OFFSET", Numbers(scales.size(), 0.0),
+            [this](const std::string& part, const Numbers& some) {
+              Integers(part, {some.size()}, some);
+            });
   }
 
   void PlatformParameters() {

@@ -133,6 +133,25 @@ TEST_F(C3dTest, ManyPointsTakeLabels2) {
   EXPECT_EQ(read.points[299][3].x(), 300.0);
 }
 
+// Every channel has its own scale, those from the 256th on in SCALE2.
+TEST_F(C3dTest, ManyChannelsTakeScale2) {
+  C3dFile file = SampleC3d();
+  file.platforms.clear();
+  file.analog.clear();
+  for (int i = 0; i < 510; ++i) {
+    file.analog.push_back({"c" + std::to_string(i), "N", std::vector<double>(10, i + 1.0)});
+  }
+  for (bool floating : {true, false}) {
+    file.floating = floating;
+    const C3dFile read = Reread(file);
+    ASSERT_EQ(read.analog.size(), 510u);
+    for (int i = 0; i < 510; ++i) EXPECT_NEAR(read.analog[i].samples[9], i + 1.0, 1e-4) << i;
+    ASSERT_NE(read.Find("ANALOG", "OFFSET2"), nullptr);
+    EXPECT_EQ(read.Find("ANALOG", "SCALE2")->numbers.size(), 255u);
+    EXPECT_EQ(read.Find("ANALOG", "SCALE3"), nullptr);
+  }
+}
+
 TEST_F(C3dTest, DamagedFilesAreNamed) {
   EXPECT_TRUE(Contains(Damaged(1, "\x51"), "at byte 1: this is no C3D file"));
   EXPECT_TRUE(Contains(Damaged(0, "\xff"), "the parameters should stand here"));

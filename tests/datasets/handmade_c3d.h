@@ -1,6 +1,6 @@
 // C3D files put together byte by byte, after the public description of the format (c3d.org), for
 // what it allows and the project's writer does not make: offsets and unsigned samples, a general
-// scale, events in the header, more frames than the count holds.
+// scale, events in the header, more frames or channels than their counts hold.
 #pragma once
 
 #include <cstdint>
@@ -169,6 +169,18 @@ inline HandmadeC3d LongFramesC3d(int frames, C3dProcessor processor = C3dProcess
   file.last_frame = 65535;
   file.Integers("FRAMES", {65535}, {});
   file.Reals("LONG_FRAMES", {static_cast<double>(frames)}, {});
+  return file;
+}
+
+// 300 channels of 100 N each, all by an offset of 100 and a scale of 0.01.
+inline HandmadeC3d ManyChannelsC3d(C3dProcessor processor = C3dProcessor::kIntel) {
+  HandmadeC3d file(processor);
+  file.raw.assign(300, 10100);
+  file.Group("ANALOG");
+  for (const auto& [part, count] : {std::pair("", 255), std::pair("2", 45)}) {
+    file.Reals(std::string("SCALE") + part, std::vector<double>(count, 0.01), {count});
+    file.Integers(std::string("OFFSET") + part, std::vector<int>(count, 100), {count});
+  }
   return file;
 }
 

@@ -22,6 +22,21 @@ class HandmadeC3dTest : public TempDirTest {
     const Result<C3dFile> read = ReadC3d(WriteText("a.c3d", file.Bytes()));
     return read.ok() ? "no error" : read.error().ToString();
   }
+  // A file of three channels, 100 raw each, with whatever `add` says of them.
+  template <typename Add>
+  static HandmadeC3d ThreeChannels(Add add) {
+    HandmadeC3d file;
+    file.raw = {100, 100, 100};
+    file.Group("ANALOG");
+    add(&file);
+    return file;
+  }
+  // The first sample of each channel.
+  static std::vector<double> Samples(const C3dFile& file) {
+    std::vector<double> samples;
+    for (const C3dAnalogChannel& channel : file.analog) samples.push_back(channel.samples[0]);
+    return samples;
+  }
 };
 
 TEST_F(HandmadeC3dTest, SamplesAreRawLessOffsetTimesBothScales) {
@@ -33,6 +48,7 @@ TEST_F(HandmadeC3dTest, SamplesAreRawLessOffsetTimesBothScales) {
   const Case cases[] = {
       {"unsigned", &UnsignedC3d, {200.0}},
       {"offset and general scale", &OffsetC3d, {300.0, -900.0}},
+      {"300 channels", &ManyChannelsC3d, std::vector<double>(300, 100.0)},
   };
   for (const Case& one : cases) {
     for (C3dProcessor processor : kProcessors) {
@@ -51,6 +67,29 @@ TEST_F(HandmadeC3dTest, SamplesAreRawLessOffsetTimesBothScales) {
       }
     }
   }
+}
+
+TEST_F(HandmadeC3dTest, ScalesAreOfEveryChannelOrOfNone) {
+  using Numbers = std::vector<double>;
+  EXPECT_EQ(Samples(Read(ThreeChannels([](HandmadeC3d*) {}))), Numbers(3, 100.0));
+  EXPECT_EQ(Samples(Read(ThreeChannels([](HandmadeC3d* file) {
+              file->Reals("SCALE", {}, {0});
+              file->Reals("OFFSET", {90.0}, {});  // one value without dimensions
+            }))),
+            Numbers(3, 10.0));
+  // Programs leave room for more channels than they used.
+  EXPECT_EQ(Samples(Read(ThreeChannels([](HandmadeC3d* file) {
+              file->Reals("SCALE", {1.0, 2.0, 3.0, 4.0}, {4});
+            }))),
+            (Numbers{100.0, 200.0, 300.0}));
+  const std::string scale = Problem(ThreeChannels([](HandmadeC3d* file) {
+    file->Reals("SCALE", {1.0, 2.0}, {2});
+  }));
+  EXPECT_TRUE(Contains(scale, "a.c3d: ANALOG:SCALE ends after 2 of 3 analog channels"));
+  EXPECT_TRUE(Contains(scale, "before 'channel_3'; export the file again"));
+  EXPECT_TRUE(Contains(
+      Problem(ThreeChannels([](HandmadeC3d* file) { file->Integers("OFFSET", {1}, {1}); })),
+      "ANALOG:OFFSET ends after 1 of 3 analog channels"));
 }
 
 TEST_F(HandmadeC3dTest, EventsOfTheHeader) {
@@ -79,6 +118,18 @@ TEST_F(HandmadeC3dTest, EventsOfTheGroupComeBeforeThoseOfTheHeader) {
   const C3dFile read = Read(file);
   ASSERT_EQ(read.events.size(), 1u);
   EXPECT_EQ(read.events[0].time_s, 67.0);
+}
+
+TEST_F(HandmadeC3dTest, ManyEventsTakeTimes2) {
+  HandmadeC3d file;
+  file.Group("EVENT");
+  file.Integers("USED", {300}, {});
+  file.Reals("TIMES", std::vector<double>(510, 1.0), {2, 255});
+  file.Reals("TIMES2", std::vector<double>(90, 2.0), {2, 45});
+  const C3dFile read = Read(file);
+  ASSERT_EQ(read.events.size(), 300u);
+  EXPECT_EQ(read.events[254].time_s, 61.0);
+  EXPECT_EQ(read.events[299].time_s, 122.0);
 }
 
 // The upper half of each count is that of a negative integer.
