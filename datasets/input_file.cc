@@ -98,6 +98,7 @@ bool LineReader::Next(std::string_view* line) {
       const std::size_t length = static_cast<const char*>(newline) - start;
       *line = {start, length};
       begin_ += length + 1;
+      ended_in_newline_ = true;
       break;
     }
     searched = available;
@@ -105,6 +106,7 @@ bool LineReader::Next(std::string_view* line) {
       if (error_ || begin_ == end_) return false;
       *line = {buffer_.data() + begin_, end_ - begin_};  // a last line without its newline
       begin_ = end_;
+      ended_in_newline_ = false;
       break;
     }
   }

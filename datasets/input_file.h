@@ -52,7 +52,8 @@ class LineReader {
   // The same, passing over lines with nothing but blanks.
   bool NextNonBlank(std::string_view* line);
 
-  int line_number() const { return line_number_; }  // of the line last returned, 1-based
+  int line_number() const { return line_number_; }             // of the line last returned, 1-based
+  bool ended_in_newline() const { return ended_in_newline_; }  // false: it is the file's last
   const MaybeError& error() const { return error_; }
   Error ErrorHere(std::string message) const { return {std::move(message), path(), line_number_}; }
 
@@ -67,7 +68,7 @@ class LineReader {
   ContentHash hash_;
   std::string buffer_;
   std::size_t begin_ = 0, end_ = 0;  // the unread part of buffer_
-  bool at_end_ = false;
+  bool at_end_ = false, ended_in_newline_ = false;
   int line_number_ = 0;
   MaybeError error_;
 };

@@ -1,6 +1,7 @@
 // datasets: TRC files.
 #include "datasets/trc.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -111,8 +112,7 @@ class TrcReader {
   }
 
   MaybeError ReadRows() {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> row(3 * num_markers_);
+    row_.resize(3 * num_markers_);
     std::int64_t rows = 0;
     std::string_view line;
     while (reader_.NextNonBlank(&line)) {
@@ -120,34 +120,7 @@ class TrcReader {
         return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
                                  ", but here is one row more");
       }
-      const std::vector<std::string_view> fields = TabFields(line);
-      if (fields.size() < 2 || fields.size() > row.size() + 2) {
-        return reader_.ErrorHere("the row has " + std::to_string(fields.size()) + " cells, not " +
-                                 std::to_string(row.size() + 2));
-      }
-      double number = 0.0;
-      for (int i = 0; i < 2; ++i) {
-        if (!ParseDouble(fields[i], &number)) {
-          return reader_.ErrorHere(std::string(i == 0 ? "Frame#: " : "Time: ") +
-                                   NumberProblem(fields[i]));
-        }
-      }
-      // Markers not seen at the end of a row may leave their tabs out.
-      for (std::size_t i = 0; i < row.size(); ++i) {
-        const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
-        if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
-          row[i] = kNaN;
-        } else if (!ParseDouble(cell, &row[i])) {
-          return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell) +
-                                   kMissingCell);
-        }
-      }
-      for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
-        const double* at = row.data() + 3 * motion_.chosen[i];
-        const Eigen::Vector3d position(at[0], at[1], at[2]);
-        const bool seen = position.allFinite() && !position.isZero(0.0);
-        motion_.positions[i].push_back(seen ? position : Eigen::Vector3d::Constant(kNaN));
-      }
+      if (MaybeError failed = ReadRow(line)) return failed;
     }
     if (reader_.error()) return reader_.error();
     if (rows < num_frames_) {
@@ -158,10 +131,66 @@ class TrcReader {
     return std::nullopt;
   }
 
+  MaybeError ReadRow(std::string_view line) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t expected = row_.size() + 2;
+    const std::size_t cells = 1 + std::count(line.begin(), line.end(), '\t');
+    // Rows may leave out the tabs of markers not seen, so the newline alone tells that it is all.
+    if (!reader_.ended_in_newline() && cells < expected) {
+      return reader_.ErrorHere(
+          "the file ends after " + std::to_string(cells) + " of the " + std::to_string(expected) +
+          " cells of its last row, without a newline: it is truncated; export it again, "
+          "or end the row with a newline if it only leaves out markers not seen");
+    }
+    const std::vector<std::string_view> fields = TabFields(line);
+    if (fields.size() < 2 || fields.size() > expected) {
+      return reader_.ErrorHere("the row has " + std::to_string(fields.size()) + " cells, not " +
+                               std::to_string(expected));
+    }
+    double number = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      if (!ParseDouble(fields[i], &number)) {
+        return reader_.ErrorHere(std::string(i == 0 ? "Frame#: " : "Time: ") +
+                                 NumberProblem(fields[i]));
+      }
+    }
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
+      if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
+        row_[i] = kNaN;
+      } else if (!ParseDouble(cell, &row_[i])) {
+        return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell) + kMissingCell);
+      }
+    }
+    return TakeRow();
+  }
+
+  MaybeError TakeRow() {
+    for (std::int64_t marker = 0; marker < num_markers_; ++marker) {
+      const double* at = row_.data() + 3 * marker;
+      const int missing = std::isnan(at[0]) + std::isnan(at[1]) + std::isnan(at[2]);
+      if (missing == 1 || missing == 2) {
+        return reader_.ErrorHere(motion_.names[marker] + ": " + std::to_string(missing) +
+                                 " of its 3 cells " + (missing == 1 ? "is" : "are") +
+                                 " missing: the row is cut or damaged; export the file again, or " +
+                                 "leave all 3 empty where the marker was not seen");
+      }
+    }
+    for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
+      const double* at = row_.data() + 3 * motion_.chosen[i];
+      const Eigen::Vector3d position(at[0], at[1], at[2]);
+      // NaN where it was not seen; some programs leave zeros instead.
+      motion_.positions[i].push_back(position.isZero(0.0) ? Eigen::Vector3d::Constant(std::nan(""))
+                                                          : position);
+    }
+    return std::nullopt;
+  }
+
   const PointReadOptions& options_;
   LineReader reader_;
   PointMotion motion_;
   std::int64_t num_frames_ = 0, num_markers_ = 0;
+  std::vector<double> row_;  // x, y, z of every marker
 };
 
 }  // namespace

@@ -7,7 +7,8 @@
 //                 X1 Y1 Z1  X2 Y2 Z2
 //   1  0.00  ...
 //
-// Cells that are empty or NaN are markers not seen.
+// Markers whose three cells are empty or NaN are not seen; at the end of a row their tabs may be
+// left out.
 #pragma once
 
 #include "datasets/point_motion.h"
@@ -15,7 +16,8 @@
 namespace pushid {
 
 // Errors name the line: a head that is none, more or fewer markers than announced, a row with other
-// than its numbers, wrong frame count.
+// than its numbers, a marker with one or two of its three, a last row that is cut, wrong frame
+// count.
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options = {});
 
 // Writes all points of the motion (positions in motion.unit, millimetres when unset), atomically;

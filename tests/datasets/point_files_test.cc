@@ -99,6 +99,9 @@ TEST_F(PointFilesTest, BadTrc) {
       {"1\t0.000\t0.1", "1\t0.000\tabc", ":6: L.ASIS: 'abc' is not a number"},
       {"1\t0.000\t0.1", "1\tnow\t0.1", ":6: Time: 'now' is not a number"},
       {"3\t\n", "3\t4\n", ":6: the row has 9 cells, not 8"},
+      {"0.2\t0.3\n", "0.2\n", ":7: L.ASIS: 1 of its 3 cells is missing"},
+      {"0.2\t0.3\n", "0.2\t0.3\t1\n", ":7: R.Heel: 2 of its 3 cells are missing"},
+      {"0.1\t0.2\t0.3\t1", "\t0.2\tnan\t1", ":6: L.ASIS: 2 of its 3 cells are missing"},
   };
   for (const Case& one : cases) {
     std::string text = kTrc;
@@ -108,6 +111,27 @@ TEST_F(PointFilesTest, BadTrc) {
     EXPECT_TRUE(Contains(read.error().ToString(), one.says));
   }
   EXPECT_TRUE(Contains(ReadTrc(WriteText("e.trc", "")).error().ToString(), "truncated"));
+}
+
+// Wherever a file is cut, the last row shows it, up to its last number.
+TEST_F(PointFilesTest, CutTrc) {
+  const std::string text = kTrc;
+  const std::size_t last_number = text.size() - 3;
+  for (std::size_t size = 0; size <= last_number; ++size) {
+    const Result<PointMotion> read = ReadTrc(WriteText("cut.trc", text.substr(0, size)));
+    ASSERT_FALSE(read.ok()) << size;
+    EXPECT_TRUE(Contains(read.error().ToString(), "cut.trc:")) << size;
+  }
+  const std::string between = text.substr(0, text.rfind("\t0\t0\t0"));
+  EXPECT_TRUE(
+      Contains(ReadTrc(WriteText("cut.trc", between)).error().ToString(),
+               ":8: the file ends after 5 of the 8 cells of its last row, without a newline"));
+  // A last row without its newline is whole when all its cells are there, or all their tabs.
+  for (const std::string end : {"\t0\t0\t0", "\t1\t2\t3", "\t\t\t", "\n", "\t1\t2\t3\t"}) {
+    const Result<PointMotion> read = ReadTrc(WriteText("whole.trc", between + end));
+    ASSERT_TRUE(read.ok()) << read.error().ToString();
+    EXPECT_EQ(read.value().positions[1][2].allFinite(), end[1] == '1');
+  }
 }
 
 TEST_F(PointFilesTest, TableRoundTrip) {
