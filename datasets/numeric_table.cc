@@ -9,41 +9,13 @@
 #include "datasets/atomic_file.h"
 #include "datasets/input_file.h"
 #include "datasets/number_text.h"
+#include "datasets/table_cells.h"
 
 namespace pushid {
 namespace {
 
 constexpr std::size_t kMostColumns = 100000;
 constexpr double kEvenness = 0.01;  // of a time step
-
-// Takes cells off a row one after the other.
-class Cells {
- public:
-  // separator '\0': runs of blanks.
-  Cells(std::string_view row, char separator) : rest_(row), separator_(separator) {
-    if (separator_ == '\0') rest_ = Trimmed(rest_);
-    more_ = separator_ != '\0' || !rest_.empty();
-  }
-  bool Next(std::string_view* cell) {
-    if (!more_) return false;
-    if (separator_ == '\0') {
-      *cell = NextToken(&rest_);
-      rest_ = Trimmed(rest_);
-      more_ = !rest_.empty();
-      return true;
-    }
-    const std::size_t end = rest_.find(separator_);
-    more_ = end != std::string_view::npos;
-    *cell = Trimmed(rest_.substr(0, end));
-    rest_.remove_prefix(more_ ? end + 1 : rest_.size());
-    return true;
-  }
-
- private:
-  std::string_view rest_;
-  char separator_;
-  bool more_;
-};
 
 bool IsMissing(std::string_view cell) { return cell.empty() || EqualsIgnoringCase(cell, "nan"); }
 
@@ -122,13 +94,8 @@ class TableReader {
   }
 
   MaybeError ReadNames(std::string_view line) {
-    separator_ = '\0';
-    if (format_ == TableFormat::kCsv) {
-      separator_ = line.find(';') != std::string_view::npos   ? ';'
-                   : line.find(',') != std::string_view::npos ? ','
-                                                              : '\t';
-    }
-    Cells cells(line, separator_);
+    separator_ = format_ == TableFormat::kCsv ? SeparatorOf(line) : kBlanks;
+    TableCells cells(line, separator_);
     std::unordered_set<std::string> seen;
     for (std::string_view cell; cells.Next(&cell);) {
       const std::string name(Unquoted(cell));
@@ -173,30 +140,43 @@ class TableReader {
   }
 
   MaybeError ReadRow(std::string_view line) {
-    Cells cells(line, separator_);
+    TableCells cells(line, separator_);
     std::size_t count = 0;
     for (std::string_view cell; cells.Next(&cell); ++count) {
       if (count == row_.size()) {
         if (trailing_ && cell.empty() && !cells.Next(&cell)) break;
-        return reader_.ErrorHere("the row has more than the " + std::to_string(row_.size()) +
-                                 " values that the columns ask for");
+        return WrongLength(count + 1);
       }
       cell = Unquoted(cell);
       if (IsMissing(cell)) {
         row_[count] = std::numeric_limits<double>::quiet_NaN();
       } else if (!ParseDouble(cell, &row_[count])) {
-        return reader_.ErrorHere(table_.names[count] + ": " + NumberProblem(cell) + kMissingCell);
+        // A row separated otherwise than the names is one long cell, and no number either.
+        const std::string problem = table_.names[count] + ": " + NumberProblem(cell) + kMissingCell;
+        while (++count < row_.size()) {
+          if (!cells.Next(&cell)) return WrongLength(count);
+        }
+        return reader_.ErrorHere(problem);
       }
     }
-    if (count != row_.size()) {
-      return reader_.ErrorHere("the row has " + std::to_string(count) + " values, not " +
-                               std::to_string(row_.size()) + ": the file is truncated or damaged");
-    }
+    if (count != row_.size()) return WrongLength(count);
     for (std::size_t i = 0; i < table_.chosen.size(); ++i) {
       table_.data[i].push_back(row_[table_.chosen[i]]);
     }
     if (options_.keep_lines) table_.lines.push_back(reader_.line_number());
     return std::nullopt;
+  }
+
+  // count: no more than one beyond the columns.
+  Error WrongLength(std::size_t count) const {
+    const std::string columns = std::to_string(row_.size());
+    return reader_.ErrorHere(
+        "the row has " +
+        (count > row_.size() ? "more than the " + columns + " values of the columns"
+                             : std::to_string(count) + " values, not " + columns) +
+        ", separated by " + SeparatorName(separator_) +
+        " as in the line of names: the file is truncated or damaged" +
+        (separator_ == kBlanks ? "" : ", or a name with a separator in it is not in quotes"));
   }
 
   const TableFormat format_;

@@ -1,7 +1,8 @@
 // datasets: tables of numbers as text: CSV, and OpenSim's storage files (.sto, .mot).
 //
-//   CSV: one line of column names, then rows; separated by commas, semicolons or tabs, as the line
-//   of names is. Lines that start with # are comments.
+//   CSV: one line of column names, then rows; separated by commas, semicolons or tabs, whichever
+//   the line of names holds most of. Names with a separator in them stand in quotes. Lines that
+//   start with # are comments.
 //   Storage: a head with `name=value` lines and `endheader`, then a line of column names and rows,
 //   separated by blanks.
 //

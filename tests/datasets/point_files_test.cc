@@ -1,11 +1,9 @@
-// Trajectories and tables as text: round trips, files as other programs write them, bad input.
+// Trajectories as text: round trips, files as other programs write them, bad input.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "datasets/column_mapping.h"
-#include "datasets/numeric_table.h"
 #include "datasets/point_motion.h"
 #include "datasets/table_points.h"
 #include "datasets/trc.h"
@@ -16,7 +14,6 @@ namespace pushid {
 namespace {
 
 using PointFilesTest = TempDirTest;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 PointMotion SamplePoints() {
   PointMotion motion;
@@ -131,72 +128,6 @@ TEST_F(PointFilesTest, CutTrc) {
     const Result<PointMotion> read = ReadTrc(WriteText("whole.trc", between + end));
     ASSERT_TRUE(read.ok()) << read.error().ToString();
     EXPECT_EQ(read.value().positions[1][2].allFinite(), end[1] == '1');
-  }
-}
-
-TEST_F(PointFilesTest, TableRoundTrip) {
-  NumericTable table;
-  table.names = {"time", "a", "b"};
-  table.chosen = {0, 1, 2};
-  table.data = {{0.0, 0.01, 0.02}, {0.1, kNaN, -1e-30}, {1e300, 2.0 / 3.0, 0.0}};
-  for (TableFormat format : {TableFormat::kCsv, TableFormat::kStorage}) {
-    ASSERT_FALSE(WriteNumericTable(Path("t"), format, table));
-    const Result<NumericTable> read = ReadNumericTable(Path("t"), format);
-    ASSERT_TRUE(read.ok()) << read.error().ToString();
-    EXPECT_EQ(read.value().names, table.names);
-    for (int i = 0; i < 3; ++i) {
-      for (int row = 0; row < 3; ++row) {
-        if (std::isnan(table.data[i][row])) {
-          EXPECT_TRUE(std::isnan(read.value().data[i][row]));
-        } else {
-          EXPECT_EQ(read.value().data[i][row], table.data[i][row]);
-        }
-      }
-    }
-  }
-}
-
-TEST_F(PointFilesTest, TablesOfOtherPrograms) {
-  const char* semicolons = "\xEF\xBB\xBF# made by hand\n\"t\";\"x\";\n0;1;\n0.5;;\n";
-  Result<NumericTable> read = ReadNumericTable(WriteText("a.csv", semicolons), TableFormat::kCsv);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().names, (std::vector<std::string>{"t", "x"}));
-  EXPECT_TRUE(std::isnan(read.value().data[1][1]));
-  // An old motion file.
-  const char* mot =
-      "forces\ndatacolumns 3\ndatarows 2\nrange 0 1\nendheader\n"
-      "time ground_force_vx\tground_force_vy\n 0.0  1 2 \n 1.0\tnan\t4\n";
-  read = ReadNumericTable(WriteText("a.mot", mot), TableFormat::kStorage);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_TRUE(std::isnan(read.value().data[1][1]));
-  EXPECT_EQ(read.value().data[2][1], 4.0);
-}
-
-TEST_F(PointFilesTest, BadTables) {
-  struct Case {
-    TableFormat format;
-    std::string text, says;
-  };
-  const TableFormat csv = TableFormat::kCsv, storage = TableFormat::kStorage;
-  const std::vector<Case> cases = {
-      {csv, "", "truncated"},
-      {csv, "a,b\n", "no rows"},
-      {csv, "1,2\n3,4\n", ":1: a column is called '1'"},
-      {csv, "a,a\n3,4\n", ":1: two columns are called 'a'"},
-      {csv, "a,b\n1,2\n3\n", ":3: the row has 1 values, not 2"},
-      {csv, "a,b\n1,2,3\n", ":2: the row has more than the 2 values"},
-      {csv, "a,b\n1,x\n", ":2: b: 'x' is not a number"},
-      {csv, "a,b\n1,NA\n", "'NA' is not a number; a value that is missing is an empty cell or nan"},
-      {csv, "a,b\n1,inf\n", ":2: b: 'inf' is not a finite number"},
-      {storage, "f\nnRows=1\n", "endheader"},
-      {storage, "f\nnRows=x\nendheader\na\n1\n", ":2: nRows must be a whole number"},
-      {storage, "f\nnRows=3\nendheader\na\n1\n", "announces 3 rows, the file has 1"},
-      {storage, "f\nnColumns=3\nendheader\na\n1\n", ":4: the head announces 3 columns"},
-  };
-  for (const Case& one : cases) {
-    const Result<NumericTable> read = ReadNumericTable(WriteText("bad", one.text), one.format);
-    ASSERT_FALSE(read.ok()) << one.text;
-    EXPECT_TRUE(Contains(read.error().ToString(), one.says));
   }
 }
 
