@@ -131,16 +131,23 @@ class TrcReader {
     return std::nullopt;
   }
 
+  // Rows may leave out the tabs of markers not seen, so only its newline tells that a shorter one
+  // is whole.
+  MaybeError CheckLastRow(std::string_view line) const {
+    const std::size_t expected = row_.size() + 2;
+    const std::size_t cells = 1 + std::count(line.begin(), line.end(), '\t');
+    if (cells >= expected) return std::nullopt;
+    return reader_.ErrorHere(
+        "the file ends after " + std::to_string(cells) + " of the " + std::to_string(expected) +
+        " cells of its last row, without a newline: it is truncated; export it again, or end the "
+        "row with a newline if it only leaves out markers not seen");
+  }
+
   MaybeError ReadRow(std::string_view line) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const std::size_t expected = row_.size() + 2;
-    const std::size_t cells = 1 + std::count(line.begin(), line.end(), '\t');
-    // Rows may leave out the tabs of markers not seen, so the newline alone tells that it is all.
-    if (!reader_.ended_in_newline() && cells < expected) {
-      return reader_.ErrorHere(
-          "the file ends after " + std::to_string(cells) + " of the " + std::to_string(expected) +
-          " cells of its last row, without a newline: it is truncated; export it again, "
-          "or end the row with a newline if it only leaves out markers not seen");
+    if (!reader_.ended_in_newline()) {
+      if (MaybeError failed = CheckLastRow(line)) return failed;
     }
     const std::vector<std::string_view> fields = TabFields(line);
     if (fields.size() < 2 || fields.size() > expected) {
