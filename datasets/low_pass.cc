@@ -18,8 +18,10 @@ struct Biquad {
   double b, a1, a2;
 };
 
+// Of which two passes have lost 3 dB at the cut-off.
 Biquad Butterworth(double cutoff_hz, double rate_hz) {
-  const double k = std::tan(kPi * cutoff_hz / rate_hz), q = std::sqrt(2.0) * k;
+  const double k = std::tan(kPi * cutoff_hz / rate_hz) / TwoPassCorrection();
+  const double q = std::sqrt(2.0) * k;
   const double norm = 1.0 / (1.0 + q + k * k);
   return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
 }
@@ -39,15 +41,14 @@ void Pass(const Biquad& filter, std::vector<Vector3>* x) {
 
 }  // namespace
 
-double HighestCutoff(double rate_hz) { return 0.499 * rate_hz * TwoPassCorrection(); }
+double HighestCutoff(double rate_hz) { return 0.499 * rate_hz; }
 
 void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3>* track) {
   const int frames = static_cast<int>(track->size());
   if (frames < 3) return;
-  const double single = cutoff_hz / TwoPassCorrection();
-  const Biquad filter = Butterworth(single, rate_hz);
+  const Biquad filter = Butterworth(cutoff_hz, rate_hz);
   // Long enough for the filter to forget its start.
-  const int wing = std::min(frames - 1, static_cast<int>(std::ceil(2.0 * rate_hz / single)));
+  const int wing = std::min(frames - 1, static_cast<int>(std::ceil(2.0 * rate_hz / cutoff_hz)));
   std::vector<Vector3> x;
   x.reserve(frames + 2 * wing);
   const Vector3 first = track->front(), last = track->back();

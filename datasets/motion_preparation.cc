@@ -13,6 +13,8 @@ namespace {
 
 using Track = std::vector<Eigen::Vector3d>;
 
+constexpr double kSlowestCutoff = 0.5;  // Hz
+
 // change(track) for hip, ankles and, where they were kept, every joint.
 template <typename Change>
 void ForEachTrack(RecordedPerson* person, const Change& change) {
@@ -39,9 +41,11 @@ MaybeError CheckPreparation(const PreparationOptions& options) {
   if (!(options.max_gap_s >= 0.0 && options.max_gap_s <= 10.0)) {
     return Error{"--max_gap_s is " + Rounded(options.max_gap_s) + "; it must be from 0 to 10 s"};
   }
-  if (options.lowpass_hz != 0.0 && !(options.lowpass_hz > 0.0 && options.lowpass_hz <= 1e4)) {
+  if (options.lowpass_hz != 0.0 &&
+      !(options.lowpass_hz >= kSlowestCutoff && options.lowpass_hz <= 1e4)) {
     return Error{"--lowpass_hz is " + Rounded(options.lowpass_hz) +
-                 "; it must be a cut-off above 0 Hz, or 0 for none"};
+                 "; it must be a cut-off of at least " + Rounded(kSlowestCutoff) +
+                 " Hz, below which nothing of a push is left, or 0 for none"};
   }
   if (options.resample_fps != 0.0 && !IsRate(options.resample_fps)) {
     return Error{"--resample_fps is " + Rounded(options.resample_fps) +
