@@ -13,6 +13,7 @@
 namespace pushid {
 namespace {
 
+constexpr double kRateTolerance = 0.01;
 constexpr std::int64_t kMostMarkers = 100000;
 
 std::vector<std::string_view> TabFields(std::string_view line) {
@@ -128,7 +129,19 @@ class TrcReader {
                                ", but the file ends after " + std::to_string(rows) +
                                ": it is truncated, or the count is wrong");
     }
-    return std::nullopt;
+    return CheckRate(rows);
+  }
+
+  // Times may be rounded to a millisecond.
+  MaybeError CheckRate(std::int64_t rows) const {
+    const double span = last_time_s_ - motion_.first_time_s;
+    if (rows < 3 || !(span > 0.0)) return std::nullopt;
+    const double step = span / static_cast<double>(rows - 1);
+    if (std::fabs(step * motion_.rate_hz - 1.0) <= kRateTolerance + 1e-3 / span)
+      return std::nullopt;
+    return reader_.ErrorHere("Time grows by " + Rounded(step) + " s a row, " + Rounded(1.0 / step) +
+                             " rows a second, but DataRate is " + Rounded(motion_.rate_hz) +
+                             "; correct the one that is wrong");
   }
 
   // Rows may leave out the tabs of markers not seen, so only its newline tells that a shorter one
@@ -161,6 +174,8 @@ class TrcReader {
                                  NumberProblem(fields[i]));
       }
     }
+    if (std::isnan(last_time_s_)) motion_.first_time_s = number;
+    last_time_s_ = number;
     for (std::size_t i = 0; i < row_.size(); ++i) {
       const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
       if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
@@ -197,6 +212,7 @@ class TrcReader {
   LineReader reader_;
   PointMotion motion_;
   std::int64_t num_frames_ = 0, num_markers_ = 0;
+  double last_time_s_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> row_;  // x, y, z of every marker
 };
 

@@ -96,6 +96,7 @@ TEST_F(PointFilesTest, BadTrc) {
       {"1\t0.000\t0.1", "1\t0.000\tabc", ":6: L.ASIS: 'abc' is not a number"},
       {"1\t0.000\t0.1", "1\tnow\t0.1", ":6: Time: 'now' is not a number"},
       {"3\t\n", "3\t4\n", ":6: the row has 9 cells, not 8"},
+      {"3\t0.033", "3\t0.066", ":8: Time grows by 0.033 s a row, 30.303 rows a second, but"},
       {"0.2\t0.3\n", "0.2\n", ":7: L.ASIS: 1 of its 3 cells is missing"},
       {"0.2\t0.3\n", "0.2\t0.3\t1\n", ":7: R.Heel: 2 of its 3 cells are missing"},
       {"0.1\t0.2\t0.3\t1", "\t0.2\tnan\t1", ":6: L.ASIS: 2 of its 3 cells are missing"},
