@@ -62,8 +62,8 @@ std::string PathFromManifest(const std::string& file) {
   return failed ? fs::absolute(file).string() : path.string();
 }
 
-Result<MadePush> FromSensor(const PendulumRecording& recording) {
-  const Result<SensorPush> made = PushFromSensors(recording, FLAGS_person);
+Result<MadePush> FromSensor(const Recording& recorded, const PendulumRecording& recording) {
+  const Result<SensorPush> made = PushFromSensors(recorded, recording, FLAGS_person);
   if (!made.ok()) return made.error();
   for (const std::string& warning : made.value().warnings) Warn(warning);
   return MadePush{made.value().push, PushKind::kExternal, made.value().how};
@@ -134,8 +134,8 @@ int Run() {
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), SkeletonMapping::kExact);
-  const Result<MadePush> made =
-      SensorGiven() ? FromSensor(recording) : ByInverseDynamics(recording);
+  const Result<MadePush> made = SensorGiven() ? FromSensor(recordings.value().front(), recording)
+                                              : ByInverseDynamics(recording);
   if (!made.ok()) return Fail(made.error());
   if (MaybeError error = WritePushCsv(FLAGS_out, made.value().push.force)) return Fail(*error);
   PrintPush(made.value(), recording.scene.dt);

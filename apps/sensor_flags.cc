@@ -21,13 +21,22 @@ DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
 DEFINE_double(sensor_gain, 1.0, "force sensor: N per unit of the column");
-DEFINE_string(sensor_up, "z", "force sensor: its axis that points up, for vectors");
-DEFINE_string(sensor_forward, "x", "force sensor: its axis that points forward, for vectors");
+DEFINE_string(
+    sensor_up, "",
+    "force sensor: its axis that points up, for vectors; empty: that of the motion when it "
+    "is the same file, otherwise z");
+DEFINE_double(sensor_zero, 0.0,
+              "force sensor: what it reads at rest, in N, taken off; for sensors of one number");
+DEFINE_string(sensor_forward, "",
+              "force sensor: its axis that points forward, for vectors; empty: that of the motion, "
+              "or x");
 DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the person, x,y,z");
 DEFINE_double(height, 1.0, "force sensor: contact height as a fraction of the rod (1: the hip)");
 DEFINE_double(height_m, 0.0,
               "force sensor: contact height in m above the recording's zero instead");
-DEFINE_double(sensor_start, 0.0, "force sensor: its clock at frame 0, s");
+DEFINE_double(sensor_start, 0.0,
+              "force sensor: its clock at frame 0, s; unless given, that of the motion when it is "
+              "the same file, otherwise 0");
 DEFINE_double(idle_force, 0.0, "force sensor: forces up to this many N are idling");
 DEFINE_bool(estimate_offset, false,
             "force sensors: estimate how far their clocks are off from the motion");
@@ -36,9 +45,9 @@ DEFINE_double(max_offset_s, 0.5, "how far --estimate_offset looks on either side
 namespace pushid {
 namespace {
 
-constexpr const char* kOfOneSensor[] = {"sensor_column",  "sensor_gain",  "sensor_up",
-                                        "sensor_forward", "direction",    "height",
-                                        "height_m",       "sensor_start", "idle_force"};
+constexpr const char* kOfOneSensor[] = {
+    "sensor_zero", "sensor_column", "sensor_gain", "sensor_up",    "sensor_forward",
+    "direction",   "height",        "height_m",    "sensor_start", "idle_force"};
 
 Result<std::vector<SensorChoice>> SensorsFromFlags() {
   if (!FLAGS_sensors.empty()) return ReadSensorList(FLAGS_sensors);
@@ -46,11 +55,12 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   sensor.file = FLAGS_sensor;
   sensor.column = FLAGS_sensor_column;
   sensor.gain = FLAGS_sensor_gain;
+  sensor.zero_n = FLAGS_sensor_zero;
   sensor.up = FLAGS_sensor_up;
   sensor.forward = FLAGS_sensor_forward;
   sensor.height_fraction = FLAGS_height;
   if (Given("height_m")) sensor.height_m = FLAGS_height_m;
-  sensor.start_s = FLAGS_sensor_start;
+  if (Given("sensor_start")) sensor.start_s = FLAGS_sensor_start;
   sensor.idle_force = FLAGS_idle_force;
   std::istringstream text(FLAGS_direction);
   char comma1 = 0, comma2 = 0, rest = 0;
@@ -61,6 +71,8 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   }
   return std::vector<SensorChoice>{sensor};
 }
+
+constexpr double kOddGain = 3.0;  // beyond what friction and recovery blur
 
 // Rows of several pushes on one person, added frame by frame.
 void AddPush(const Push& more, Push* sum) {
@@ -82,7 +94,7 @@ void AddPush(const Push& more, Push* sum) {
 
 // As PushFromSensor takes it, but for the offset: vectors along the direction.
 TimedForce AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
-  TimedForce timed{record, sensor.start_s};
+  TimedForce timed{record, sensor.start_s.value_or(0.0)};
   if (record.is_vector) return timed;
   const Eigen::Vector3d along = sensor.direction.normalized();
   for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
@@ -120,14 +132,16 @@ MaybeError CheckSensorFlags() {
   return std::nullopt;
 }
 
-Result<SensorPush> PushFromSensors(const PendulumRecording& recording, int person) {
+Result<SensorPush> PushFromSensors(const Recording& recorded, const PendulumRecording& recording,
+                                   int person) {
   Result<std::vector<SensorChoice>> sensors = SensorsFromFlags();
   if (!sensors.ok()) return sensors.error();
   SensorPush result;
   std::vector<SensorRecord> records;
   std::vector<TimedForce> timed;
-  for (const SensorChoice& sensor : sensors.value()) {
+  for (SensorChoice& sensor : sensors.value()) {
     if (MaybeError error = CheckNoOutput("--sensors", sensor.file)) return *error;
+    for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
     Result<SensorRecord> record = ReadSensor(sensor);
     if (!record.ok()) return record.error();
     timed.push_back(AsVectors(record.value(), sensor));
@@ -136,12 +150,23 @@ Result<SensorPush> PushFromSensors(const PendulumRecording& recording, int perso
   result.how = records.size() == 1 ? "from the sensor, averaged over the frames"
                                    : "from " + std::to_string(records.size()) +
                                          " sensors together, averaged over the frames";
-  double offset_s = 0.0;
+  for (const SensorChoice& sensor : sensors.value()) {
+    if (!sensor.start_s || Given("sensor_start") || !FLAGS_sensors.empty()) continue;
+    result.how +=
+        "; recorded with the motion, its clock at frame 0 is " + Rounded(*sensor.start_s, 4) + " s";
+  }
+  double offset_s = 0.0, clock_error_s = 0.0;
   if (FLAGS_estimate_offset) {
     const Result<SensorOffset> offset =
         EstimateSensorOffset(timed, recording, person, FLAGS_max_offset_s);
     if (!offset.ok()) return offset.error();
     offset_s = offset.value().offset_s;
+    clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
+    const double gain = offset.value().gain;
+    if (gain < 1.0 / kOddGain || gain > kOddGain) {
+      result.warnings.push_back("the motion fits " + Significant(gain, 2) +
+                                " times the force best: check its unit and gain, and the mass");
+    }
     result.how += "; clock at frame 0 moved by " + Rounded(offset_s, 4) + " +- " +
                   Significant(offset.value().standard_error_s, 2) + " s (estimated)";
   }
@@ -152,7 +177,8 @@ Result<SensorPush> PushFromSensors(const PendulumRecording& recording, int perso
     options.direction = sensor.direction;
     options.height_fraction = sensor.height_fraction;
     options.height_m = sensor.height_m ? sensor.height_m : records[i].height_m;
-    options.frame_zero_time_s = sensor.start_s + offset_s;
+    options.clock_error_s = clock_error_s;
+    options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset_s;
     options.idle_force = sensor.idle_force;
     const Result<Push> push = PushFromSensor(records[i], recording, options);
     if (!push.ok()) return push.error();

@@ -23,6 +23,8 @@ struct SensorPush {
 };
 
 // The sum of the sensors' pushes on a person.
-Result<SensorPush> PushFromSensors(const PendulumRecording& recording, int person);
+// `recorded` is the recording as it was read.
+Result<SensorPush> PushFromSensors(const Recording& recorded, const PendulumRecording& recording,
+                                   int person);
 
 }  // namespace pushid

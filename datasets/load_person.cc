@@ -30,6 +30,7 @@ struct Motion {
   std::vector<std::string> names;
   std::vector<int> parents;   // of BVH joints; otherwise -1 each
   double frame_time_s = 0.0;  // 0: the file does not say
+  double first_time_s = 0.0;  // by the file's clock
   LengthUnit unit = LengthUnit::kMillimetre;
   std::string content_hash;
 };
@@ -74,9 +75,12 @@ class PersonLoader {
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.file = path_;
+    person.file_clock_s =
+        motion.first_time_s +
+        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / entry_.fps);
     if (MaybeError failed = Cut(&motion)) return *std::move(failed);
     if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
-    if (MaybeError failed = Turn(&motion)) return *std::move(failed);
+    if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
     Take(motion, &person);
     if (MaybeError failed = CheckMotion(person, motion.unit)) return *std::move(failed);
     return person;
@@ -164,6 +168,7 @@ class PersonLoader {
     }
     const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.value().rate_hz;
     motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
+    motion.first_time_s = points.value().first_time_s;
     motion.content_hash = points.value().content_hash;
     for (int point : points.value().chosen) motion.names.push_back(points.value().names[point]);
     motion.parents.assign(motion.names.size(), -1);
@@ -242,11 +247,12 @@ class PersonLoader {
     return false;
   }
 
-  MaybeError Turn(Motion* motion) const {
+  MaybeError Turn(Motion* motion, RecordedPerson* person) const {
     const bool own =
         mapping_.up.empty() || entry_.json.contains("up") || entry_.json.contains("forward");
-    const Result<Eigen::Matrix3d> rotation =
-        AxesRotation(own ? entry_.up : mapping_.up, own ? entry_.forward : mapping_.forward);
+    person->file_up = own ? entry_.up : mapping_.up;
+    person->file_forward = own ? entry_.forward : mapping_.forward;
+    const Result<Eigen::Matrix3d> rotation = AxesRotation(person->file_up, person->file_forward);
     if (!rotation.ok()) return rotation.error();
     for (Track& track : motion->tracks) {
       for (Eigen::Vector3d& position : track) position = rotation.value() * position;

@@ -24,6 +24,7 @@ std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
 struct PointMotion {
   std::string path;
   double rate_hz = 0.0;            // frames per second; 0 when the file does not say
+  double first_time_s = 0.0;       // of a table with times; C3D files count from their first frame
   std::optional<LengthUnit> unit;  // as the file says
   std::string unit_text;           // what the file says, when it is no unit known here
   std::string up;                  // the axis the file calls up, "+z"; empty when it does not say

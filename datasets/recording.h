@@ -31,7 +31,10 @@ struct Push {
 struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
-  std::string file;  // of the motion, for messages
+  std::string file;  // of the motion
+  // That file's own clock at frame 0, s, and its axes: for forces that were recorded in it.
+  double file_clock_s = 0.0;
+  std::string file_up = "z", file_forward = "x";
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
   // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles

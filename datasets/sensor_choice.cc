@@ -2,6 +2,7 @@
 #include "datasets/sensor_choice.h"
 
 #include <cmath>
+#include <filesystem>
 
 #include "datasets/axes.h"
 #include "datasets/c3d.h"
@@ -142,8 +143,18 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
 
 }  // namespace
 
+void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
+  std::error_code failed;
+  if (!std::filesystem::equivalent(person.file, choice->file, failed) || failed) return;
+  if (!choice->start_s) choice->start_s = person.file_clock_s;
+  if (!choice->up.empty() || !choice->forward.empty()) return;
+  choice->up = person.file_up;
+  choice->forward = person.file_forward;
+}
+
 Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
-  const Result<Eigen::Matrix3d> rotation = AxesRotation(choice.up, choice.forward);
+  const Result<Eigen::Matrix3d> rotation = AxesRotation(
+      choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
   if (!rotation.ok()) return rotation.error();
   const std::optional<MotionFormat> format = MotionFormatOfFile(choice.file);
   const bool c3d = format == MotionFormat::kC3d, storage = format == MotionFormat::kStorage;
@@ -158,8 +169,12 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
           : FromTable(choice, storage ? TableFormat::kStorage : TableFormat::kCsv);
   if (!record.ok()) return record;
   record.value().file = choice.file;
+  if (choice.zero_n != 0.0 && record.value().is_vector) {
+    return Error{"a force at rest can only be taken off a sensor of one number", choice.file};
+  }
   for (Eigen::Vector3d& force : record.value().force) {
     force *= choice.gain;
+    force.x() -= choice.zero_n;
     if (record.value().is_vector) force = rotation.value() * force;
   }
   return record;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/recording.h"
 #include "datasets/result.h"
 #include "datasets/sensor_csv.h"
 
@@ -19,16 +20,21 @@ struct SensorChoice {
   // part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel; or
   // platform:1, counted from 1.
   std::string column;
-  double gain = 1.0;  // N per unit of the column; negative where it counts the other way
-  // Axes of the file that point up and forward, for forces that are vectors.
-  std::string up = "z", forward = "x";
+  double gain = 1.0;    // N per unit of the column; negative where it counts the other way
+  double zero_n = 0.0;  // what it reads at rest, N; of a sensor of one number
+  // Axes of the file that point up and forward, for forces that are vectors; empty: z and x.
+  std::string up, forward;
   // The rest is what PushFromSensor needs.
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
   double height_fraction = 1.0;
   std::optional<double> height_m;
-  double start_s = 0.0;     // its clock at frame 0
-  double idle_force = 0.0;  // N
+  std::optional<double> start_s;  // its clock at frame 0; unset: 0
+  double idle_force = 0.0;        // N
 };
+
+// Where the sensor was recorded in the file of a person's motion, what the choice does not say is
+// that file's: clock at frame 0 and axes.
+void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
 
 // Errors besides those of the files' readers: no such column, channel or platform (some that exist
 // are listed), missing values, uneven times.

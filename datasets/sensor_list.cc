@@ -40,21 +40,22 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
                       "sensor " + std::to_string(i));
     fields.Only({"file", "column", "gain", "up", "forward", "direction", "height", "height_m",
-                 "start", "idle_force"});
+                 "start", "idle_force", "zero"});
     SensorChoice sensor;
     sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
     sensor.column = fields.OptionalText("column", "");
     sensor.gain = OptionalNumber(&fields, "gain", "the N per unit", 1.0);
-    sensor.up = fields.OptionalText("up", sensor.up);
-    sensor.forward = fields.OptionalText("forward", sensor.forward);
+    sensor.up = fields.OptionalText("up", "");
+    sensor.forward = fields.OptionalText("forward", "");
     ReadDirection(&fields, &sensor);
     sensor.height_fraction = OptionalNumber(&fields, "height", "a fraction of the rod", 1.0);
     if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
     if (fields.Has("height") && fields.Has("height_m")) {
       fields.Fail("height", "is given beside height_m; one of them says where it pushes");
     }
-    sensor.start_s = OptionalNumber(&fields, "start", "its clock at frame 0 in s", 0.0);
+    if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
     sensor.idle_force = OptionalNumber(&fields, "idle_force", "a force in N", 0.0);
+    sensor.zero_n = OptionalNumber(&fields, "zero", "what it reads at rest in N", 0.0);
     if (!fields.error() && !(sensor.idle_force >= 0.0)) {
       fields.Fail("idle_force", "must be a force of at least 0 N");
     }

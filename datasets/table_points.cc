@@ -138,6 +138,7 @@ Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format
     const Result<double> step = EvenTimeStep(table.value(), time_column);
     if (!step.ok()) return step.error();
     motion.rate_hz = 1.0 / step.value();
+    motion.first_time_s = table.value().data.back().front();
   }
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   const std::vector<std::vector<double>>& data = table.value().data;

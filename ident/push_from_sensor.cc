@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include "datasets/number_text.h"
 
 namespace pushid {
 namespace {
 
+constexpr double kReadsAtRest = 0.02;  // of the peak: the median sample, where a sensor has no zero
 constexpr double kLostImpulse = 0.01;  // of the whole, tolerated outside the recording
 
 // Integral of the samples' broken line from `from` to `to` (s), by the trapezoids in between.
@@ -31,6 +36,21 @@ Error Wrong(const PendulumRecording& recording, const std::string& what) {
 // Fraction of the rod at which a horizontal plane `height` metres up crosses it.
 double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
   return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
+}
+
+// A scalar sensor that reads something most of the time has no zero of its own.
+std::string AtRest(const SensorRecord& record) {
+  if (record.is_vector) return "";
+  std::vector<double> force, size;
+  for (const Vector3<double>& sample : record.force) {
+    force.push_back(sample.x());
+    size.push_back(std::fabs(sample.x()));
+  }
+  const auto middle = force.begin() + force.size() / 2;
+  std::nth_element(force.begin(), middle, force.end());
+  const double peak = *std::max_element(size.begin(), size.end());
+  if (!(std::fabs(*middle) > kReadsAtRest * peak)) return "";
+  return ", or take off what it reads at rest, about " + Rounded(*middle, 3) + " N (--sensor_zero)";
 }
 
 }  // namespace
@@ -60,21 +80,22 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   const auto first = std::find_if_not(rows.begin(), rows.end(), idle);
   const auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
   const double end = zero + static_cast<double>(rows.size()) * dt;
-  const Vector3<double> before = Impulse(record, record.time_s.front(), zero);
-  const Vector3<double> after = Impulse(record, end, record.time_s.back());
+  const double margin = options.clock_error_s;
+  const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
+  const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
   const Vector3<double> inside = Impulse(record, zero, end);
   // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
   const double span = record.time_s.back() - record.time_s.front();
   const double lost = before.norm() + after.norm() - options.idle_force * span;
   if (lost > kLostImpulse * inside.norm() || (first == rows.end() && lost > 0.0)) {
-    return Error{std::to_string(lost) + " N s of the push lie outside recording " + recording.id +
-                     " (" + std::to_string(inside.norm()) +
-                     " N s inside); check the sensor's time at frame 0",
+    return Error{Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
+                     Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
+                     " s of the sensor's clock; check that time" + AtRest(record),
                  record.file};
   }
   if (first == rows.end()) {
-    return Error{"no force greater than " + std::to_string(options.idle_force) +
-                     " N within recording " + recording.id,
+    return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
+                     recording.id,
                  record.file};
   }
 

@@ -23,6 +23,7 @@ struct SensorPushOptions {
   double height_fraction = 1.0;
   std::optional<double> height_m;
   double frame_zero_time_s = 0.0;  // on the sensor's clock
+  double clock_error_s = 0.0;      // of that: so far outside the recording a force is not lost
   // Forces up to this size (N) before and after the push are the sensor's idling: rows whose mean
   // is no greater are cut off at both ends.
   double idle_force = 0.0;

@@ -97,7 +97,25 @@ class OffsetFit {
 
   // What the linear parameters leave; its derivative by tau, with them following.
   VectorXd Residual(double tau, VectorXd* derivative = nullptr) const {
-    VectorXd left = target_, slope(target_.size());
+    VectorXd way(target_.size()), velocity(target_.size());
+    ByTheForce(tau, &way, &velocity);
+    if (derivative != nullptr) *derivative = Projected(-velocity);
+    return Projected(target_ - way);
+  }
+
+  // The multiple of the force that would leave least.
+  double Gain(double tau) const {
+    VectorXd way(target_.size()), velocity(target_.size());
+    ByTheForce(tau, &way, &velocity);
+    const VectorXd along = Projected(way);
+    return along.dot(Projected(target_)) / along.squaredNorm();
+  }
+
+  double Count() const { return weight_.squaredNorm(); }
+
+ private:
+  // How far, and how fast, the force alone would have moved the person.
+  void ByTheForce(double tau, VectorXd* way, VectorXd* velocity) const {
     for (int t = 0; t < target_.size(); ++t) {
       double once = 0.0, twice = 0.0, sum_once = 0.0, sum_twice = 0.0;
       for (const Integrals& integral : integrals_) {
@@ -105,16 +123,11 @@ class OffsetFit {
         sum_once += once;
         sum_twice += twice;
       }
-      left[t] -= sum_twice / mass_;
-      slope[t] = -sum_once / mass_;
+      (*way)[t] = sum_twice / mass_;
+      (*velocity)[t] = sum_once / mass_;
     }
-    if (derivative != nullptr) *derivative = Projected(slope);
-    return Projected(left);
   }
 
-  double Count() const { return weight_.squaredNorm(); }
-
- private:
   VectorXd Projected(const VectorXd& value) const {
     const VectorXd weighted = weight_.cwiseProduct(value);
     return weighted - weight_.asDiagonal() * (regressors_ * qr_.solve(weighted));
@@ -150,6 +163,18 @@ double PushEnd(const std::vector<TimedForce>& forces, Eigen::Vector2d* direction
   return impulse.norm() > 0.0 ? end : -1.0;
 }
 
+// The way back after a push would otherwise do for a push the other way.
+bool MovesAgainst(const std::vector<Vector3<double>>& hip, int frames,
+                  const Eigen::Vector2d& direction) {
+  double forth = 0.0, back = 0.0;
+  for (int t = 0; t < frames; ++t) {
+    const double way = (hip[t] - hip[0]).head<2>().dot(direction);
+    forth = std::max(forth, way);
+    back = std::max(back, -way);
+  }
+  return back > forth;
+}
+
 }  // namespace
 
 Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
@@ -170,6 +195,10 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
                               static_cast<int>(std::ceil((end + max_offset_s + kAfterPush) / dt)));
   if (frames < kFewestFrames) {
     return Error{"recording " + recording.id + ": the push ends too early to find its time"};
+  }
+  if (MovesAgainst(recording.hip[person], frames, direction)) {
+    return Error{"recording " + recording.id +
+                 ": the person moves against the force; its sign or its direction is wrong"};
   }
   const OffsetFit fit(forces, recording, person, direction, frames);
   const int steps = std::max(4, static_cast<int>(std::ceil(4.0 * max_offset_s / dt)));
@@ -200,6 +229,12 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
   const double r = std::clamp(after / std::max(residual.squaredNorm(), 1e-300), 0.0, 0.99);
   result.standard_error_s = std::sqrt(variance / slope.squaredNorm() * (1.0 + r) / (1.0 - r));
   result.rms_m = std::sqrt(residual.squaredNorm() / n);
+  result.gain = fit.Gain(result.offset_s);
+  if (!(result.standard_error_s <= 0.25 * max_offset_s)) {
+    return Error{"recording " + recording.id + ": the motion does not tell the sensor's time (" +
+                 Rounded(result.offset_s, 3) + " +- " + Rounded(result.standard_error_s, 2) +
+                 " s); is the force in N?"};
+  }
   return result;
 }
 

@@ -255,5 +255,32 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
 
+// A push in the file of the motion, of which the recording leaves the first ten frames out.
+TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
+  const std::string recordings = As(MotionFormat::kC3d, ".c3d");
+  nlohmann::ordered_json json = Json(Path("other.json"));
+  nlohmann::ordered_json& entry = json["recordings"][0];
+  const std::string file = Path(entry["c3d"][0].get<std::string>());
+  Result<C3dFile> c3d = ReadC3d(file);
+  ASSERT_TRUE(c3d.ok()) << c3d.error().ToString();
+  const int frames = static_cast<int>(c3d.value().points[0].size());
+  c3d.value().analog_rate_hz = 20.0 * c3d.value().point_rate_hz;
+  c3d.value().analog = {{"rod", "N", {}}};
+  for (int i = 0; i < 20 * frames; ++i) {
+    c3d.value().analog[0].samples.push_back(i / 20 >= 25 && i / 20 < 30 ? 100.0 : 0.0);
+  }
+  ASSERT_FALSE(WriteC3d(file, c3d.value()));
+  entry.erase("push_csv");
+  entry.erase("frames");
+  entry["first_frame"] = 10;
+  WriteText("other.json", json.dump(1));
+  const AppRun run = RunApp(
+      "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--sensor=" + file,
+                      "--sensor_column=rod", "--idle_force=5", "--out=" + Path("p.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "5 rows from frame 15")) << run.out;
+  EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
+}
+
 }  // namespace
 }  // namespace pushid

@@ -52,11 +52,11 @@ class LoadPointsTest : public RecordingFolderTest {
     ASSERT_FALSE(WriteC3d(Path(file), c3d));
   }
 
-  void UseTable(const std::string& file, MotionFormat format) {
+  void UseTable(const std::string& file, MotionFormat format, double first_time = 0.0) {
     NumericTable table;
     table.names = {"time"};
     table.data.resize(1);
-    for (int t = 0; t < 20; ++t) table.data[0].push_back(t / 60.0);
+    for (int t = 0; t < 20; ++t) table.data[0].push_back(first_time + t / 60.0);
     for (std::size_t i = 0; i < motion_.names.size(); ++i) {
       for (int axis = 0; axis < 3; ++axis) {
         table.names.push_back(motion_.names[i] + "_" + "xyz"[axis]);
@@ -94,6 +94,21 @@ TEST_F(LoadPointsTest, EveryFormatWithDefaultMarkers) {
   ExpectTheWalker();
   UseTable("motion.sto", MotionFormat::kStorage);
   ExpectTheWalker();
+}
+
+// For forces recorded in the same file.
+TEST_F(LoadPointsTest, TheFilesClockAtFrameZero) {
+  const auto clock = [this] {
+    const auto loaded = Load();
+    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
+    return loaded.ok() ? loaded.value()[0].people[0].file_clock_s : -1.0;
+  };
+  Use("a.c3d", MotionFormat::kC3d);
+  entry().first_frame = 6;
+  entry().end_frame = 20;
+  EXPECT_NEAR(clock(), 0.1, 1e-12);
+  UseTable("motion.sto", MotionFormat::kStorage, 2.5);
+  EXPECT_NEAR(clock(), 2.6, 1e-9);
 }
 
 TEST_F(LoadPointsTest, ManifestRoundTrip) {

@@ -88,6 +88,25 @@ TEST_F(SensorChoiceTest, ColumnsOfTables) {
   EXPECT_TRUE(Contains(Message(axes), "lie along the same axis"));
 }
 
+// What is recorded in the file of the motion has its clock and axes; what is said, wins.
+TEST_F(SensorChoiceTest, FilledFromTheMotion) {
+  RecordedPerson person;
+  person.file = Path("a.c3d");
+  person.file_clock_s = 0.4;
+  person.file_up = "y";
+  person.file_forward = "z";
+  SensorChoice same = Choice("./a.c3d", "rod"), other = Choice("a.csv", ""), said = same;
+  said.start_s = 0.1;
+  said.up = "z";
+  for (SensorChoice* choice : {&same, &other, &said}) FillFromMotion(person, choice);
+  EXPECT_EQ(same.start_s, 0.4);
+  EXPECT_EQ(same.up + same.forward, "yz");
+  EXPECT_FALSE(other.start_s);
+  EXPECT_EQ(other.up, "");
+  EXPECT_EQ(said.start_s, 0.1);
+  EXPECT_EQ(said.up + said.forward, "z");
+}
+
 TEST_F(SensorChoiceTest, Lists) {
   const Result<std::vector<SensorChoice>> list = ReadSensorList(WriteText(
       "s.json",

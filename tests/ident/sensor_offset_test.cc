@@ -110,6 +110,14 @@ TEST(SensorOffsetTest, Errors) {
   EXPECT_TRUE(Contains(message(0, 0.1), "do not fit together within 0.1 s"));
   EXPECT_TRUE(Contains(message(1, 0.5), "there is no person 1"));
   EXPECT_TRUE(Contains(message(0, 0.0), "largest offset"));
+  const auto times = [&](double factor) {
+    Pushed scaled = pushed;
+    for (Eigen::Vector3d& force : scaled.force.record.force) force *= factor;
+    return EstimateSensorOffset({scaled.force}, pushed.recording, 0, 0.5);
+  };
+  EXPECT_NEAR(times(1.0).value().gain, 1.0, 0.02);
+  EXPECT_TRUE(Contains(times(0.001).error().ToString(), "does not tell the sensor's time"));
+  EXPECT_TRUE(Contains(times(-1.0).error().ToString(), "against the force"));
   for (Eigen::Vector3d& force : pushed.force.record.force) force = {0.0, 0.0, 700.0};
   EXPECT_TRUE(Contains(message(0, 0.5), "no horizontal force"));
 }
