@@ -2,9 +2,12 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <string>
 #include <tuple>
+#include <vector>
 
 #include "apps/app_support.h"
+#include "apps/overwrite_check.h"
 #include "datasets/atomic_file.h"
 #include "datasets/manifest_maker.h"
 #include "datasets/recording_names.h"
@@ -73,6 +76,19 @@ Result<ManifestOptions> OptionsFromFlags() {
   return options;
 }
 
+// No flag names the files that the patterns find.
+MaybeError CheckFilesKept(const Manifest& manifest) {
+  for (const ManifestRecording& recording : manifest.recordings) {
+    std::vector<std::string> files = recording.motion_files();
+    files.push_back(recording.push_csv);
+    for (const std::string& file : files) {
+      if (file.empty()) continue;
+      if (MaybeError error = CheckNoOutput("--folder", ResolvePath(FLAGS_out, file))) return error;
+    }
+  }
+  return std::nullopt;
+}
+
 int Run() {
   for (const auto& [flag, value, what] :
        {std::tuple{"folder", FLAGS_folder, "name the folder of the recordings"},
@@ -86,7 +102,9 @@ int Run() {
   if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
   const Result<MadeManifest> made = MakeManifest(options.value());
   if (!made.ok()) return Fail(made.error());
+  if (MaybeError error = CheckFilesKept(made.value().manifest)) return Fail(*error);
   if (MaybeError error = WriteManifest(FLAGS_out, made.value().manifest)) return Fail(*error);
+  for (const std::string& warning : made.value().odd) Warn(warning);
   for (const Error& error : made.value().unreadable) Warn("left out: " + error.ToString());
   for (const std::string& id : made.value().without_push) Warn("recording " + id + " has no push");
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",

@@ -76,9 +76,15 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   if (warnings != nullptr) *warnings = odd;
   if (!recordings.ok()) return recordings;
   // Pushes may be written again where they were read; a motion cannot be had back.
-  for (const Recording& recording : recordings.value()) {
-    for (const RecordedPerson& person : recording.people) {
-      if (MaybeError error = CheckNoOutput("recording " + recording.id, person.file)) return *error;
+  const Result<Manifest> manifest = ReadManifest(FLAGS_recordings);
+  if (!manifest.ok()) return manifest.error();
+  for (const ManifestRecording& entry : manifest.value().recordings) {
+    std::vector<std::string> files = entry.motion_files();
+    if (!entry.mapping.empty()) files.push_back(entry.mapping);
+    for (const std::string& file : files) {
+      const MaybeError error =
+          CheckNoOutput("recording " + entry.id, ResolvePath(FLAGS_recordings, file));
+      if (error) return *error;
     }
   }
   return recordings;

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-constexpr const char* kKeys[] = {
+const std::vector<std::string> kKeys = {
     "id",      "setting",     "fps",         "subjects",      "pushed_person",
     "bvh",     "c3d",         "trc",         "csv",           "sto",
     "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
@@ -39,21 +39,24 @@ std::string Plain(std::string key) {
 
 }  // namespace
 
+std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return "";
+  for (const std::string& one : known) {
+    // Short words are near to too much.
+    const std::size_t most = one.size() < 5 ? 0 : 2;
+    if (Distance(Plain(word), one) <= most) return one;
+  }
+  return "";
+}
+
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
   std::vector<std::string> found;
   if (!entry.json.is_object()) return found;
   for (const auto& [key, value] : entry.json.items()) {
-    const std::string* const name = &key;
-    const auto is = [name](const char* known) { return *name == known; };
-    if (std::any_of(std::begin(kKeys), std::end(kKeys), is)) continue;
-    for (const std::string known : kKeys) {
-      // Short keys are near to too much.
-      const std::size_t most = known.size() < 5 ? 0 : 2;
-      if (Distance(Plain(key), known) > most) continue;
-      found.push_back("has the key " + Quoted(key) + ", which is not known and not used; is " +
-                      known + " meant?");
-      break;
-    }
+    const std::string meant = MeantBy(key, kKeys);
+    if (meant.empty()) continue;
+    found.push_back("has the key " + Quoted(key) + ", which is not known and not used; is " +
+                    meant + " meant?");
   }
   return found;
 }

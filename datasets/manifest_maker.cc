@@ -10,6 +10,7 @@
 #include "datasets/bvh_header.h"
 #include "datasets/column_mapping.h"
 #include "datasets/input_file.h"
+#include "datasets/manifest_keys.h"
 #include "datasets/name_pattern.h"
 #include "datasets/number_text.h"
 #include "datasets/point_motion.h"
@@ -20,6 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 using Values = std::map<std::string, std::string>;
 
+// What names of a pattern mean something; others tell recordings apart.
+const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
+                                              "person"};
 constexpr double kNearlyWhole = 1e-3;  // of a frame rate
 
 struct FoundFile {
@@ -84,6 +88,7 @@ class Maker {
       if (!mapping.ok()) return mapping.error();
       mapping_ = std::move(mapping.value());
     }
+    WarnOfNames();
     if (MaybeError failed = Find()) return *std::move(failed);
     for (auto& [id, files] : recordings_) {
       if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
@@ -116,6 +121,16 @@ class Maker {
       return Error{what + " has the name {" + name + "}, but the pattern has only " + known};
     }
     return std::nullopt;
+  }
+
+  // A misspelt {subject} would make one person of everybody.
+  void WarnOfNames() {
+    for (const std::string& name : pattern_.names()) {
+      const std::string meant = MeantBy(name, kUnderstood);
+      if (meant.empty() || pattern_.Has(meant)) continue;
+      made_.odd.push_back("the pattern has {" + name +
+                          "}, which only tells recordings apart; is {" + meant + "} meant?");
+    }
   }
 
   MaybeError Find() {
@@ -163,16 +178,32 @@ class Maker {
     return failed ? file.generic_string() : path.generic_string();
   }
 
-  MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
-    if (pattern_.Has("person")) {
-      std::sort(files->begin(), files->end(), &PersonBefore);
-    } else if (files->size() > 1) {
-      return Error{(*files)[0].path + " and " + (*files)[1].path + " are both recording " +
-                       Quoted(id) +
-                       "; give what differs a name in the "
-                       "pattern instead of *",
+  // Files of one recording differ in their person, and besides in the subject alone.
+  MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files) const {
+    const auto rest = [](Values values) {
+      values.erase("person");
+      values.erase("subject");
+      return values;
+    };
+    for (std::size_t i = 1; i < files.size(); ++i) {
+      const FoundFile &a = files[i - 1], &b = files[i];
+      const bool people = pattern_.Has("person");
+      const bool same = !people || a.values.at("person") == b.values.at("person");
+      if (!same && rest(a.values) == rest(b.values)) continue;
+      return Error{a.path + " and " + b.path + " are both " +
+                       (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
+                       "recording " + Quoted(id) +
+                       (rest(a.values) == rest(b.values)
+                            ? "; give what differs a name in the pattern instead of *"
+                            : "; give one of them another name"),
                    options_.folder};
     }
+    return std::nullopt;
+  }
+
+  MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
+    if (pattern_.Has("person")) std::sort(files->begin(), files->end(), &PersonBefore);
+    if (MaybeError mixed = CheckTogether(id, *files)) return mixed;
     if (id.find(',') != std::string::npos) {
       return Error{(*files)[0].path + " would be recording " + Quoted(id) +
                        ", but commas separate ids in lists; give the file another name",
@@ -212,11 +243,18 @@ class Maker {
     }
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
-    if (!options_.up.empty()) recording.up = options_.up;
-    if (!options_.forward.empty()) recording.forward = options_.forward;
+    SetAxes(&recording);
     recording.length_unit = options_.length_unit;
     made_.manifest.recordings.push_back(recording);
     return std::nullopt;
+  }
+
+  // Written even where they are the default, so that a mapping's do not win.
+  void SetAxes(ManifestRecording* recording) const {
+    if (options_.up.empty() && options_.forward.empty()) return;
+    if (!options_.up.empty()) recording->up = options_.up;
+    if (!options_.forward.empty()) recording->forward = options_.forward;
+    recording->json = {{"up", recording->up}, {"forward", recording->forward}};
   }
 
   // The mapping is named from where the program runs.

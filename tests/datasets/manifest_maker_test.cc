@@ -117,6 +117,16 @@ TEST_F(ManifestMakerTest, PushPatternsNameOneFileEach) {
   EXPECT_TRUE(Contains(MakingMessage(), "has a *"));
 }
 
+TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
+  options_.push_pattern = "";
+  options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_EQ(made.value().odd.size(), 1u);
+  EXPECT_TRUE(
+      Contains(made.value().odd[0], "{subjct}, which only tells recordings apart; is {subject}"));
+}
+
 TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {
   options_.mapping = Path("none.json");
   EXPECT_TRUE(Contains(MakingMessage(), "none.json: there is no such file"));
@@ -143,6 +153,39 @@ TEST_F(ManifestMakerTest, PeopleOfOneRecording) {
   EXPECT_EQ(r1.bvh[0], "../rows/r1_p2_y.bvh");
   options_.pushed_person = 1;
   EXPECT_TRUE(Contains(MakingMessage(), "recording 'r2' has 1 people"));
+}
+
+// Two takes that the pattern does not tell apart are no neighbours in one.
+TEST_F(ManifestMakerTest, PeopleOfTwoRecordingsStayApart) {
+  options_.folder = Path("rows");
+  options_.push_pattern = "";
+  const auto make = [this](const std::vector<std::string>& names, const std::string& pattern) {
+    std::filesystem::remove_all(folder_ / "rows");
+    std::filesystem::create_directories(folder_ / "rows");
+    for (const std::string& name : names) WriteBvhFile("rows/" + name, Walker(20));
+    options_.pattern = pattern;
+    return MakingMessage();
+  };
+  EXPECT_EQ(make({"r1_a_p1.bvh", "r1_b_p2.bvh"}, "{take}_*_p{person}.bvh"), "no error");
+  EXPECT_TRUE(
+      Contains(make({"r1_a_p1.bvh", "r1_a_p2.bvh", "r1_b_p1.bvh"}, "{take}_*_p{person}.bvh"),
+               "r1_a_p1.bvh and r1_b_p1.bvh are both person '1' of recording 'r1'; give what"));
+  EXPECT_TRUE(Contains(make({"g_1-2,1.bvh", "g-1_2,2.bvh"}, "{take}-{more},{person}.bvh"),
+                       "both recording 'g_1_2'; give one of them another name"));
+}
+
+// A mapping says y is up; the maker is told z, which happens to be the default.
+TEST_F(ManifestMakerTest, AxesGivenWinOverAMapping) {
+  WriteText("map.json", "{\"up\": \"y\", \"forward\": \"z\"}");
+  options_.mapping = Path("map.json");
+  options_.up = "z";
+  options_.forward = "x";
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  const auto loaded = LoadRecordings(options_.manifest_path);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].people[0].file_up, "z");
 }
 
 TEST_F(ManifestMakerTest, RateOfC3d) {
