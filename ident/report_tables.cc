@@ -96,7 +96,7 @@ std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
   const std::string few = u.too_few_clusters
-                              ? "fewer recordings than free parameters: clustered errors are "
+                              ? "no more recordings than free parameters: clustered errors are "
                                 "rough, no parameter counts "
                                 "as identified, and correlations are those of independent frames\n"
                               : "";

@@ -18,6 +18,9 @@ constexpr uint64_t kNearbySeed = 7;                  // fixed: the check is part
 constexpr double kMinMass = 15.0, kMaxMass = 250.0;  // kg
 constexpr double kMinRod = 0.3, kMaxRod = 1.6;       // m
 constexpr double kMinPush = 0.01, kMaxPush = 100.0;  // m/s^2, peak force over mass
+constexpr double kSoonAfter = 0.25;                  // s
+constexpr double kSeenToMove = 0.05;                 // m
+constexpr double kAlong = 0.5;                       // of the way: within 60 degrees
 constexpr double kMaxSpeed = 10.0;                   // m/s, of the hip
 constexpr double kMinFps = 10.0, kMaxFps = 2000.0;
 
@@ -92,6 +95,31 @@ MaybeError CheckEffects(const FitProblem& problem) {
                list};
 }
 
+namespace {
+
+// How far the hip of a pushed person has gone when it is farthest from where the push found it,
+// until shortly after the push, and along the push of that: where that is little, the axes, the
+// push's sign or its start are wrong.
+std::string AgainstThePush(const PendulumRecording& r, const ScenePush& push) {
+  Eigen::Vector2d impulse = Eigen::Vector2d::Zero(), farthest = Eigen::Vector2d::Zero();
+  for (const Vector4<double>& row : push.force) impulse += r.scene.dt * row.head<2>();
+  if (!(impulse.norm() > 0.0)) return "";
+  const int end = push.start_frame + static_cast<int>(push.force.size() + kSoonAfter / r.scene.dt);
+  for (int t = push.start_frame; t < std::min(end + 1, r.num_frames()); ++t) {
+    const Eigen::Vector2d way =
+        (r.hip[push.person][t] - r.hip[push.person][push.start_frame]).head<2>();
+    if (way.norm() > farthest.norm()) farthest = way;
+  }
+  const double along = farthest.dot(impulse.normalized());
+  if (farthest.norm() < kSeenToMove || along >= kAlong * farthest.norm()) return "";
+  return "recording " + r.id + ": pushed, the hip of person " + std::to_string(push.person) +
+         " goes " + DoubleText(std::round(100.0 * farthest.norm()) / 100.0) + " m, but " +
+         (along < 0.0 ? "against the push" : "not along the push") +
+         "; are up, forward and the push's sign and start right?";
+}
+
+}  // namespace
+
 std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& recordings) {
   std::vector<std::string> warnings;
   for (const PendulumRecording& r : recordings) {
@@ -121,6 +149,8 @@ std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& reco
       for (const Vector4<double>& row : push.force) peak = std::max(peak, row.head<2>().norm());
       warn(peak / r.scene.people[push.person].body.mass, kMinPush, kMaxPush,
            "the push's peak over the mass in m/s^2", "is the push in N?");
+      const std::string against = AgainstThePush(r, push);
+      if (!against.empty()) warnings.push_back(against);
     }
   }
   return warnings;

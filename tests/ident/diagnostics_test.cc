@@ -57,6 +57,17 @@ TEST(StartDiagnostics, WrongUnitsAreSuspected) {
   EXPECT_TRUE(Contains(all, recordings[2].id));
 }
 
+TEST(StartDiagnostics, MotionAgainstThePushIsSuspected) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  for (Vector3<double>& hip : recordings[0].hip[0]) hip.head<2>() *= -1.0;    // backwards
+  for (Vector3<double>& hip : recordings[1].hip[0]) hip.y() = 3.0 * hip.x();  // sideways
+  const std::vector<std::string> warnings = UnitWarnings(recordings);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_TRUE(Contains(warnings[0], recordings[0].id));
+  EXPECT_TRUE(Contains(warnings[0], "against the push"));
+  EXPECT_TRUE(Contains(warnings[1], "not along the push"));
+}
+
 TEST(Diagnostics, TheStartKnowsItsNullDirections) {
   const SyntheticOptions study = TinyStudy();
   FitOptions options = UnbiasedFit(study);
