@@ -9,6 +9,7 @@
 #include "datasets/inspection.h"
 #include "ident/inspection_svg.h"
 
+DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
 
 namespace {
@@ -26,10 +27,16 @@ int Run() {
     if (MaybeError error = CheckNoOutput("the command line", g_files[0])) return Fail(*error);
     if (MaybeError error = CheckWritable(FLAGS_svg_out)) return Fail(*error);
   }
+  ColumnMapping mapping;
+  if (!FLAGS_mapping.empty()) {
+    Result<ColumnMapping> read = ReadColumnMapping(FLAGS_mapping);
+    if (!read.ok()) return Fail(read.error());
+    mapping = std::move(read.value());
+  }
   // A file that cannot be read does not keep the others from being told about.
   int outcome = kDone;
   for (const std::string& file : g_files) {
-    const Result<Inspection> found = Inspect(file);
+    const Result<Inspection> found = Inspect(file, mapping);
     if (!found.ok()) {
       outcome = Fail(found.error());
       continue;
@@ -56,6 +63,7 @@ int main(int argc, char** argv) {
       "pushid-inspect tells what files hold (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and warns "
       "of "
       "what will matter: units, axes, rate, gaps, jumps, standing height, start, onset.\n\n  "
-      "pushid-inspect trial.c3d other.trc\n  pushid-inspect trial.c3d --svg_out=trial.svg",
+      "pushid-inspect trial.c3d other.trc\n  pushid-inspect table.csv --mapping=mapping.json\n  "
+      "pushid-inspect trial.c3d --svg_out=trial.svg",
       Run, &g_files);
 }

@@ -45,24 +45,26 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
   }
 }
 
-// The joints of a recording that says nothing about them; a warning where they cannot be found.
-void LookAtPoints(const PointMotion& motion, Inspection* found) {
+// A warning where hip and ankles cannot be found.
+void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
   found->Fact("points", ListOfNames(motion.names));
-  const Result<PendulumJoints> joints = ChoosePendulumPoints(motion.path, motion.names, {});
+  const Result<PendulumJoints> joints =
+      ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
   if (!joints.ok()) found->Warn(joints.error().message);
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
 
 // A joint of a BVH file is never hidden, so that only hip and ankles are kept: files of a gigabyte
 // fit.
-MaybeError LookAtBvh(Inspection* found) {
+MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
   std::vector<std::string> names;
   BvhPositionOptions options;
   options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
   options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
     for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
-    const Result<PendulumJoints> joints = ChoosePendulumJoints(found->path, skeleton, {});
+    const Result<PendulumJoints> joints =
+        ChoosePendulumJoints(found->path, skeleton, mapping.joints);
     if (!joints.ok()) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
@@ -132,7 +134,7 @@ void LookAtPlatforms(const C3dFile& file, Inspection* found) {
   }
 }
 
-MaybeError LookAtC3d(Inspection* found) {
+MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   const Result<C3dFile> read = ReadC3d(found->path, {true});
   if (!read.ok()) return read.error();
   const C3dFile& file = read.value();
@@ -146,7 +148,7 @@ MaybeError LookAtC3d(Inspection* found) {
     options.accept_truncated = true;
     const Result<PointMotion> motion = ReadPointMotion(found->path, MotionFormat::kC3d, options);
     if (!motion.ok()) return motion.error();
-    LookAtPoints(motion.value(), found);
+    LookAtPoints(motion.value(), mapping, found);
   }
   if (!file.analog.empty()) LookAtAnalog(file, found);
   LookAtPlatforms(file, found);
@@ -186,27 +188,31 @@ MaybeError LookAtSensor(Inspection* found) {
 }
 
 // A table: points where columns come in threes, and forces by their names.
-MaybeError LookAtTable(MotionFormat format, Inspection* found) {
+MaybeError LookAtTable(MotionFormat format, const ColumnMapping& mapping, Inspection* found) {
   const TableFormat table_format =
       format == MotionFormat::kCsv ? TableFormat::kCsv : TableFormat::kStorage;
   const Result<NumericTable> read = ReadNumericTable(found->path, table_format, {});
   if (!read.ok()) return read.error();
   const NumericTable& table = read.value();
   found->Fact("columns", ListOfNames(table.names));
-  const int time = FindTimeColumn(table.names, "");
-  double rate = 0.0;
+  const int time = FindTimeColumn(table.names, mapping.time_column);
+  double rate = mapping.frame_rate;
   if (time >= 0) {
     const Result<double> step = EvenTimeStep(table, time);
-    if (step.ok()) rate = 1.0 / step.value();
+    if (step.ok() && rate == 0.0) rate = 1.0 / step.value();
     if (!step.ok()) found->Warn(step.error().message);
   }
   for (std::size_t i = 0; rate > 0.0 && i < table.names.size(); ++i) {
     if (IsForceColumn(table.names[i])) AddForce(table.names[i], rate, table.data[i], found);
   }
-  const Result<PointMotion> motion = ReadPointMotion(found->path, format, {});
-  const PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
+  PointReadOptions options;
+  options.columns = mapping.columns;
+  options.time_column = mapping.time_column;
+  const Result<PointMotion> motion = ReadPointMotion(found->path, format, options);
+  PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
+  points.rate_hz = rate;
   if (!points.names.empty()) {
-    LookAtPoints(points, found);
+    LookAtPoints(points, mapping, found);
   } else {
     found->Fact("rows", std::to_string(table.num_rows()) +
                             (rate > 0.0 ? " at " + Rounded(rate, 5) + " per second" : ""));
@@ -223,7 +229,7 @@ std::string FirstLine(const std::string& path) {
   return std::string(Trimmed(line));
 }
 
-MaybeError Look(Inspection* found) {
+MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   const std::string& path = found->path;
   const std::optional<MotionFormat> format = MotionFormatOfFile(path);
   if (!format) {
@@ -240,13 +246,13 @@ MaybeError Look(Inspection* found) {
   found->format = Title(*format);
   switch (*format) {
     case MotionFormat::kBvh:
-      return LookAtBvh(found);
+      return LookAtBvh(mapping, found);
     case MotionFormat::kC3d:
-      return LookAtC3d(found);
+      return LookAtC3d(mapping, found);
     case MotionFormat::kTrc: {
       const Result<PointMotion> motion = ReadPointMotion(path, *format, {});
       if (!motion.ok()) return motion.error();
-      LookAtPoints(motion.value(), found);
+      LookAtPoints(motion.value(), mapping, found);
       return std::nullopt;
     }
     case MotionFormat::kCsv:
@@ -256,17 +262,17 @@ MaybeError Look(Inspection* found) {
   const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
   if (first.rfind("frame,fx,fy,ftheta", 0) == 0) return LookAtPush(found);
   if (first == "time,force" || first == "time,fx,fy,fz") return LookAtSensor(found);
-  return LookAtTable(*format, found);
+  return LookAtTable(*format, mapping, found);
 }
 
 }  // namespace
 
-Result<Inspection> Inspect(const std::string& path) {
+Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping) {
   InputFile file;  // what cannot be opened is said first
   if (MaybeError failed = file.Open(path)) return *std::move(failed);
   Inspection found;
   found.path = path;
-  if (MaybeError failed = Look(&found)) return *std::move(failed);
+  if (MaybeError failed = Look(mapping, &found)) return *std::move(failed);
   return found;
 }
 

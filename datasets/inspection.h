@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/column_mapping.h"
 #include "datasets/result.h"
 
 namespace pushid {
@@ -38,9 +39,10 @@ struct Inspection {
   void Warn(const std::string& text) { warnings.push_back(text); }
 };
 
-// By the file's ending and its first line. An Error where it cannot be read at all; a C3D file cut
-// short is read as far as it goes, with a warning.
-Result<Inspection> Inspect(const std::string& path);
+// By the file's ending and its first line; joints, columns, times and rate as the mapping says. An
+// Error where it cannot be read at all; a C3D file cut short is read as far as it goes, with a
+// warning.
+Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
 
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);

@@ -115,6 +115,32 @@ TEST_F(InspectionTest, ForcesDoNotHideTheMotion) {
   EXPECT_EQ(said.find("ground_force_px peak"), std::string::npos) << said;
 }
 
+// A table of columns that nobody could guess, with the file that explains them to a fit.
+TEST_F(InspectionTest, ThroughAMapping) {
+  std::string text = "clock,wx,wy,wz,lx,ly,lz,rx,ry,rz\n";
+  for (int t = 0; t < 60; ++t) {
+    text += std::to_string(0.01 * t);
+    for (const auto& track : motion_.positions) {
+      for (int axis = 0; axis < 3; ++axis) text += "," + std::to_string(track[t][axis]);
+    }
+    text += "\n";
+  }
+  WriteText("a.csv", text);
+  EXPECT_TRUE(Contains(Of("a.csv"), "no point could be recognised as hip"));
+  const Result<ColumnMapping> mapping = ReadColumnMapping(WriteText(
+      "map.json",
+      "{\"columns\": {\"waist\": [\"wx\", \"wy\", \"wz\"], \"l\": [\"lx\", \"ly\", \"lz\"], "
+      "\"r\": [\"rx\", \"ry\", \"rz\"]}, \"time\": \"clock\", "
+      "\"joints\": {\"hip\": \"waist\", \"left_ankle\": \"l\", \"right_ankle\": \"r\"}}"));
+  ASSERT_TRUE(mapping.ok()) << mapping.error().ToString();
+  const Result<Inspection> found = Inspect(Path("a.csv"), mapping.value());
+  ASSERT_TRUE(found.ok()) << found.error().ToString();
+  const std::string said = InspectionText(found.value());
+  EXPECT_TRUE(Contains(said, "hip             waist"));
+  EXPECT_TRUE(Contains(said, "60 at 100 per second"));
+  EXPECT_TRUE(Contains(said, "hip 0.87 m above the ankles"));
+}
+
 TEST_F(InspectionTest, RateAndNames) {
   motion_.rate_hz = 25.0;
   motion_.names[1] = "foo";
