@@ -39,6 +39,14 @@ MaybeError HashFiles(const nlohmann::ordered_json& json, const std::string& mani
   return std::nullopt;
 }
 
+// What the manifest says of all its recordings.
+Result<std::string> CommonHash(const Manifest& manifest) {
+  ContentHash hash;
+  AddPiece(manifest.json.dump(), &hash);
+  if (MaybeError error = HashFiles(manifest.json, manifest.path, &hash)) return *error;
+  return hash.Hex();
+}
+
 Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecording& entry) {
   ContentHash hash;
   AddPiece(entry.json.dump(), &hash);
@@ -127,6 +135,18 @@ std::string JoinIds(const std::vector<std::string>& ids) {
   return list;
 }
 
+// Flags that say how recordings are read: those that are held out are read as those that were
+// fitted.
+std::vector<std::string> ReadingFlags(const std::vector<std::string>& flags) {
+  std::vector<std::string> reading;
+  for (const std::string& flag : flags) {
+    for (const char* name : {"length_unit", "max_gap_s", "lowpass_hz", "resample_fps"}) {
+      if (flag.rfind("--" + std::string(name) + "=", 0) == 0) reading.push_back(flag);
+    }
+  }
+  return reading;
+}
+
 class Expander {
  public:
   Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
@@ -134,6 +154,9 @@ class Expander {
   Result<std::vector<BatchJob>> Expand() {
     const Result<std::vector<int>> chosen = Chosen();
     if (!chosen.ok()) return chosen.error();
+    const Result<std::string> common = CommonHash(manifest_);
+    if (!common.ok()) return common.error();
+    common_hash_ = common.value();
     hashes_.resize(manifest_.recordings.size());
     std::vector<std::pair<std::string, std::vector<int>>> groups;
     for (int i : chosen.value()) {
@@ -184,6 +207,7 @@ class Expander {
       ContentHash hash;
       AddPiece(Version(), &hash);
       AddPiece(flags_hash, &hash);
+      AddPiece(common_hash_, &hash);
       AddPiece(std::to_string(plan_.seed) + "/" + std::to_string(replica), &hash);
       for (int i : part.train) AddPiece(hashes_[i], &hash);
       AddPiece("held out", &hash);
@@ -195,6 +219,7 @@ class Expander {
 
   const BatchPlan& plan_;
   const Manifest& manifest_;
+  std::string common_hash_;
   std::vector<std::string> hashes_;
   std::vector<BatchJob> jobs_;
 };
@@ -215,9 +240,15 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
   fit.insert(fit.end(), job.fit_flags.begin(), job.fit_flags.end());
   std::vector<std::vector<std::string>> commands = {fit};
   if (!job.held_out.empty()) {
-    commands.push_back({bin + "/pushid-evaluate", "--model=" + model,
-                        "--recordings=" + plan.manifest, "--ids=" + JoinIds(job.held_out),
-                        "--json_out=" + folder + "/scores.json", "--quiet"});
+    std::vector<std::string> evaluate = {bin + "/pushid-evaluate",
+                                         "--model=" + model,
+                                         "--recordings=" + plan.manifest,
+                                         "--ids=" + JoinIds(job.held_out),
+                                         "--json_out=" + folder + "/scores.json",
+                                         "--quiet"};
+    const std::vector<std::string> reading = ReadingFlags(job.fit_flags);
+    evaluate.insert(evaluate.end(), reading.begin(), reading.end());
+    commands.push_back(evaluate);
   }
   return commands;
 }

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "apps/overwrite_check.h"
@@ -29,10 +30,18 @@ namespace {
 // Flags that name files to read: as all paths of a plan they are relative to it.
 const std::set<std::string> kFileFlags = {"self_from", "interaction_network"};
 
-// Set by the batch for every job.
-const std::set<std::string> kOwnFlags = {"recordings", "setting",  "ids",   "leave_out",
-                                         "model_out",  "resample", "quiet", "num_threads",
-                                         "seed",       "flagfile"};
+// Flags that no variant has, and what to do instead.
+const std::map<std::string, std::string> kOwnFlags = {
+    {"recordings", "say it in [data]"},
+    {"setting", "say it in [data]"},
+    {"ids", "say it in [data]"},
+    {"leave_out", "say it in [data]"},
+    {"seed", "say it in [jobs]"},
+    {"resample", "bootstrap in [jobs] sets it"},
+    {"num_threads", "a job has one thread; pushid-batch --jobs runs several at a time"},
+    {"model_out", "every job has its own"},
+    {"quiet", "every job is"},
+    {"flagfile", "write its flags into the plan"}};
 
 class PlanReader {
  public:
@@ -209,8 +218,9 @@ class PlanReader {
       return Fail(table, "'" + flag + "' is no flag; write \"--name=value\"");
     }
     const std::string name = flag.substr(2, flag.find('=') - 2);
-    if (kOwnFlags.count(name) == 1) {
-      Fail(table, "--" + name + " is set by the batch itself for every job");
+    const auto own = kOwnFlags.find(name);
+    if (own != kOwnFlags.end()) {
+      Fail(table, "--" + name + " is set by the batch itself: " + own->second);
     }
     if (IsOutputFlag(name)) {
       Fail(table, "--" + name + " would be written by every job of the variant; leave it out");

@@ -1,10 +1,6 @@
 // apps: the pool of jobs.
 #include "apps/batch_run.h"
 
-#include <poll.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -16,6 +12,8 @@
 #include "apps/app_support.h"
 #include "apps/child_process.h"
 #include "apps/folder_lock.h"
+#include "apps/signal_reader.h"
+#include "datasets/atomic_file.h"
 #include "datasets/json_file.h"
 #include "datasets/number_text.h"
 
@@ -29,43 +27,12 @@ double Since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// Takes SIGINT, SIGTERM and SIGCHLD as things to read, so that nothing happens between two looks.
-class Signals {
- public:
-  Signals() {
-    sigemptyset(&taken_);
-    for (int number : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&taken_, number);
-    sigprocmask(SIG_BLOCK, &taken_, &before_);
-    descriptor_ = signalfd(-1, &taken_, SFD_NONBLOCK | SFD_CLOEXEC);
-  }
-  ~Signals() {
-    close(descriptor_);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
-
-  // Until a child ends, somebody interrupts, or the time is up.
-  void Wait(int milliseconds) {
-    pollfd waiting{descriptor_, POLLIN, 0};
-    poll(&waiting, 1, milliseconds);
-    signalfd_siginfo info;
-    while (read(descriptor_, &info, sizeof info) == sizeof info) {
-      if (info.ssi_signo != SIGCHLD) interrupted_ = true;
-    }
-  }
-  bool interrupted() const { return interrupted_; }
-
- private:
-  sigset_t taken_, before_;
-  int descriptor_ = -1;
-  bool interrupted_ = false;
-};
-
-// The last line that says something.
+// The last line that says why: a warning is of no such moment.
 std::string LastLine(const std::string& path) {
   std::ifstream file(path);
   std::string last;
   for (std::string line; std::getline(file, line);) {
-    if (!line.empty()) last = line;
+    if (!line.empty() && line.find(": warning: ") == std::string::npos) last = line;
   }
   constexpr size_t kMost = 400;
   return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
@@ -128,10 +95,7 @@ class Pool {
     running.job = &job;
     running.folder = JobFolder(plan_, job);
     const Result<bool> mine = TakeFolder(running.folder, &running.lock);
-    if (!mine.ok()) {
-      error_ = mine.error();
-      return;
-    }
+    if (!mine.ok()) return Fail(running, mine.error().ToString());
     if (!mine.value()) {
       ++outcome_.elsewhere;
       return;
@@ -142,12 +106,22 @@ class Pool {
       return;
     }
     // Half-written, or failed. The folder itself stays: it is what is locked.
-    for (const fs::directory_entry& entry : fs::directory_iterator(running.folder)) {
-      fs::remove_all(entry.path());
-    }
+    if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
     running.commands = JobCommands(job, plan_, running.folder, options_.bin);
     running.begin = Clock::now();
-    if (Start(&running)) running_.push_back(std::move(running));
+    if (const MaybeError failed = Start(&running)) return Fail(running, failed->ToString());
+    running_.push_back(std::move(running));
+  }
+
+  static MaybeError Empty(const std::string& folder) {
+    std::error_code failed;
+    for (fs::directory_iterator it(folder, failed); !failed && it != fs::directory_iterator();
+         it.increment(failed)) {
+      fs::remove_all(it->path(), failed);
+      if (failed) return Error{"cannot be removed: " + failed.message(), it->path().string()};
+    }
+    if (failed) return Error{"cannot be read: " + failed.message(), folder};
+    return std::nullopt;
   }
 
   static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
@@ -157,20 +131,17 @@ class Pool {
     return lock->Take(folder);
   }
 
-  // Its next command; false when that cannot even be started.
-  bool Start(Running* running) {
+  // Its next command.
+  MaybeError Start(Running* running) {
     ChildSpec spec;
     spec.command = running->commands[running->step];
     spec.out = running->folder + "/stdout.txt";
     spec.err = running->folder + "/stderr.txt";
     spec.memory_limit_mb = options_.memory_limit_mb;
     const Result<pid_t> child = StartChild(spec);
-    if (!child.ok()) {
-      error_ = child.error();
-      return false;
-    }
+    if (!child.ok()) return child.error();
     running->pid = child.value();
-    return true;
+    return std::nullopt;
   }
 
   void Collect() {
@@ -178,11 +149,12 @@ class Pool {
       const auto at = std::find_if(running_.begin(), running_.end(),
                                    [&end](const Running& r) { return r.pid == end.pid; });
       if (at == running_.end()) continue;
-      if (end.exit_code == 0 && ++at->step < at->commands.size()) {
-        if (!Start(&*at)) return;
-        continue;
+      MaybeError failed;
+      if (end.exit_code == 0 && !at->out_of_time && ++at->step < at->commands.size()) {
+        failed = Start(&*at);
+        if (!failed) continue;
       }
-      Finish(*at, end);
+      failed ? Fail(*at, failed->ToString()) : Finish(*at, end);
       running_.erase(at);
     }
     if (options_.time_limit_s <= 0.0) return;
@@ -213,19 +185,43 @@ class Pool {
   }
 
   void Finish(const Running& running, const ChildEnd& end) {
-    const bool written = fs::exists(running.folder + "/model.json");
-    const bool done = end.exit_code == 0 && written;
-    ++(done ? outcome_.done : outcome_.failed);
-    if (!done && !options_.keep_going) outcome_.stopped = true;
+    std::error_code ignored;
+    const bool written = fs::exists(running.folder + "/model.json", ignored);
+    const bool done = end.exit_code == 0 && !running.out_of_time && written;
+    if (!done) return Fail(running, ReasonOf(running, end));
+    ++outcome_.done;
+    if (MaybeError error = WriteStatus(running, "")) CheckOutput(*error);
+  }
+
+  // Costs this job only, unless nothing can be written at all.
+  void Fail(const Running& running, const std::string& reason) {
+    ++outcome_.failed;
+    if (!options_.keep_going) outcome_.stopped = true;
+    if (!WriteStatus(running, reason)) return;
+    outcome_.unrecorded.push_back(reason);
+    CheckOutput(Error{reason});
+  }
+
+  // Whether an error that hit one job's folder would hit them all: then the batch ends with it.
+  void CheckOutput(const Error& error) {
+    const std::string probe = plan_.dir + "/jobs/.probe";
+    if (WriteFileAtomically(probe, "x")) error_ = error;
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+  }
+
+  // reason: empty when it is done.
+  static MaybeError WriteStatus(const Running& running, const std::string& reason) {
+    const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
     nlohmann::ordered_json json = {{"id", running.job->id},
                                    {"variant", running.job->variant},
                                    {"group", running.job->group},
                                    {"replica", running.job->replica},
-                                   {"status", done ? "done" : "failed"},
-                                   {"reason", done ? "" : ReasonOf(running, end)},
+                                   {"status", reason.empty() ? "done" : "failed"},
+                                   {"reason", reason},
                                    {"commands", running.commands},
-                                   {"run", {{"seconds", Since(running.begin)}}}};
-    if (MaybeError error = WriteJson(running.folder + "/status.json", json)) error_ = error;
+                                   {"run", {{"seconds", seconds}}}};
+    return WriteJson(running.folder + "/status.json", json);
   }
 
   // What runs is ended and will be redone: it has no status.
@@ -254,7 +250,7 @@ class Pool {
   const BatchRunOptions& options_;
   const std::function<void(const BatchProgress&)>& progress_;
   const Clock::time_point begin_;
-  Signals signals_;
+  SignalReader signals_;
   std::vector<Running> running_;
   BatchOutcome outcome_;
   int left_ = 0;

@@ -32,9 +32,11 @@ struct BatchOutcome {
   int elsewhere = 0;         // left to another process that was at work on them
   bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
   bool stopped = false;      // by the first failure
+  std::vector<std::string> unrecorded;  // why jobs failed whose folders could not take a status
 };
 
-// Errors: the output folder or a status cannot be written; nothing is lost by trying again.
+// Errors: nothing can be written below the output folder; nothing is lost by trying again. What
+// hits one job's folder costs that job.
 Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                               const BatchRunOptions& options,
                               const std::function<void(const BatchProgress&)>& progress);

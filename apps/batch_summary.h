@@ -15,7 +15,8 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
 // held_out_hip_ade_m,held_out_hip_fde_m,warnings,solve_s,seconds
 MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
-// By variant: jobs done and failed, mean and spread over groups and replicas of each parameter.
+// By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
+// each group where those are few; failures.
 std::string SummaryText(const std::vector<JobResult>& rows);
 
 }  // namespace pushid

@@ -9,12 +9,16 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <cstring>
+
+#include "datasets/atomic_file.h"
 
 namespace pushid {
 namespace {
 
 constexpr int kCannotStart = 127;
+constexpr std::size_t kLongestArgument = 128 * 1024 - 1;  // Linux: MAX_ARG_STRLEN
 
 // Between fork and exec: only calls that are safe there.
 [[noreturn]] void RunInChild(const ChildSpec& spec, char* const* argv, pid_t parent, int out,
@@ -35,7 +39,20 @@ constexpr int kCannotStart = 127;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   execv(argv[0], argv);
+  dprintf(STDERR_FILENO, "%s cannot be started: %s\n", argv[0], std::strerror(errno));
   _exit(kCannotStart);
+}
+
+// A flag that is longer goes by way of a file beside the outputs, --flagfile.
+Result<std::vector<std::string>> Shortened(const ChildSpec& spec) {
+  std::vector<std::string> words = spec.command;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i].size() < kLongestArgument) continue;
+    const std::string file = spec.out + "." + std::to_string(i) + ".flags";
+    if (MaybeError failed = WriteFileAtomically(file, words[i] + "\n")) return *failed;
+    words[i] = "--flagfile=" + file;
+  }
+  return words;
 }
 
 }  // namespace
@@ -44,6 +61,8 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   if (access(spec.command[0].c_str(), X_OK) != 0) {
     return Error{"cannot be run: " + std::string(std::strerror(errno)), spec.command[0]};
   }
+  Result<std::vector<std::string>> words = Shortened(spec);
+  if (!words.ok()) return words.error();
   const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
   const int out = open(spec.out.c_str(), flags, 0644);
   if (out < 0) return Error{"cannot be written: " + std::string(std::strerror(errno)), spec.out};
@@ -54,7 +73,7 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
     return Error{"cannot be written: " + reason, spec.err};
   }
   std::vector<char*> argv;
-  for (const std::string& word : spec.command) argv.push_back(const_cast<char*>(word.c_str()));
+  for (std::string& word : words.value()) argv.push_back(word.data());
   argv.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include "apps/app_support.h"
 #include "apps/batch_run.h"
@@ -22,7 +23,8 @@ DEFINE_bool(dry_run, false, "only print the commands of every job that is not do
 DEFINE_int32(jobs, 1, "jobs at a time");
 DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
 DEFINE_string(job, "", "only the job of this id (or the start of one)");
-DEFINE_bool(resume, true, "skip jobs that are done; false does all of them again");
+DEFINE_bool(resume, true,
+            "skip jobs that are done; false does all of them again, and drops what was there");
 DEFINE_bool(keep_going, true, "go on after a job that failed");
 DEFINE_bool(summary, true,
             "write summary.csv, summary.json and summary.html; false with shards "
@@ -78,8 +80,11 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
 int DryRun(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
     if (FLAGS_resume && ReadResult(plan, job).done()) continue;
-    for (const auto& command : JobCommands(job, plan, JobFolder(plan, job), BinFolder())) {
-      std::printf("%s\n", ShellText(command).c_str());
+    const std::string folder = JobFolder(plan, job);
+    std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
+    for (const auto& command : JobCommands(job, plan, folder, BinFolder())) {
+      std::printf("%s%s\n", before.c_str(), ShellText(command).c_str());
+      before.clear();
     }
   }
   return kDone;
@@ -101,7 +106,10 @@ MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
 
 int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   if (MaybeError error = Summarize(plan, all)) return Fail(*error);
-  std::printf("results in %s\n", plan.dir.c_str());
+  std::map<std::string, int> rows;
+  for (const JobResult& row : ReadResults(plan, all)) ++rows[row.status];
+  std::printf("%d done, %d failed, %d open; results in %s\n", rows["done"], rows["failed"],
+              rows["open"], plan.dir.c_str());
   return kDone;
 }
 
@@ -134,6 +142,7 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
          (o.elsewhere == 1 ? " job" : " jobs") +
          "; when it has ended, --gather writes the table of all");
   }
+  for (const std::string& reason : o.unrecorded) Warn("a job failed: " + reason);
   if (o.interrupted) {
     std::fprintf(stderr, "pushid-batch: interrupted; the same command goes on from here\n");
     return kInterrupted;

@@ -120,7 +120,9 @@ int Run() {
     if (MaybeError error = WriteJson(FLAGS_model_out, ToJson(result, run))) return Fail(*error);
     std::printf("model written to %s\n", FLAGS_model_out.c_str());
   }
-  return result.converged ? kDone : kFitFailed;
+  if (result.converged) return kDone;
+  std::fprintf(stderr, "pushid-fit: the fit did not converge: %s\n", result.message.c_str());
+  return kFitFailed;
 }
 
 }  // namespace

@@ -34,6 +34,38 @@ TEST_F(BatchFaultTest, LimitsEndAJobAndSaySo) {
       Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"), {"--memory_limit=0"}).exit_code, 0);
 }
 
+TEST_F(BatchFaultTest, OneFolderThatCannotBeUsedCostsItsOwnJob) {
+  const std::string good = Plan("group_by = \"subject\"", {{"a", ""}});
+  const std::string id = *Ids(Batch(good, {"--list"}).out).begin();
+  fs::create_directories(Path("out/jobs"));
+  WriteText("out/jobs/" + id, "no folder");
+  const AppRun run = Batch(good);
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(Contains(run.out, "1 done, 1 failed, 0 done before")) << run.out;
+  EXPECT_TRUE(Contains(run.err, "a job failed: " + Path("out/jobs/" + id))) << run.err;
+}
+
+TEST_F(BatchFaultTest, AWarningIsNoReason) {
+  nlohmann::ordered_json json = Json(manifest_);
+  json["recordings"][0]["fps"] = 61;  // warned of
+  WriteText("manifest.json", json.dump(1));
+  ASSERT_EQ(Batch(Plan("", {{"a", "\"--max_iterations=1\""}})).exit_code, 2);
+  EXPECT_TRUE(Contains(Table("out")[1], "the fit did not converge")) << Table("out")[1];
+}
+
+// A list of recordings longer than Linux takes in one argument.
+TEST_F(BatchFaultTest, LongListsOfRecordingsReachTheFit) {
+  nlohmann::ordered_json json = Json(manifest_);
+  const nlohmann::ordered_json one = json["recordings"][0];
+  for (int i = 0; i < 600; ++i) {
+    json["recordings"].push_back(one);
+    json["recordings"].back()["id"] = std::string(230, 'x') + std::to_string(i);
+  }
+  WriteText("manifest.json", json.dump(1));
+  const AppRun run = Batch(Plan("", {{"a", "\"--starts=1\", \"--max_iterations=1\""}}));
+  EXPECT_TRUE(Contains(run.out, "the fit did not converge")) << run.out << run.err;
+}
+
 // What is listed as failed is done by the next run; nothing but the job it stands for is lost.
 TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
   const std::string plan = Plan("group_by = \"subject\"\nfolds = 2", {{"a", ""}});
@@ -111,6 +143,31 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
   EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
   EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
+  const int done = std::atoi(run.out.c_str() + run.out.rfind('\n', run.out.size() - 2) + 1);
+  const AppRun rest = Batch(plan, {"--jobs=2"});
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_TRUE(Contains(rest.out, std::to_string(done) + " done before")) << run.out << rest.out;
+  ASSERT_EQ(
+      Batch(Plan("bootstrap = 200", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code,
+      0);
+  EXPECT_EQ(Table("out"), Table("whole"));
+}
+
+// Killed outright, it leaves no fit running.
+TEST_F(BatchFaultTest, ChildrenDieWithTheBatch) {
+  const std::string plan = Plan("", {{"endless", "\"--bootstrap=1000000\""}});
+  RunApp("pushid-batch", {plan, "--quiet"}, 1.5);
+  ASSERT_TRUE(fs::exists(Path("out/jobs")));
+  const auto running = [this] {
+    std::error_code gone;
+    for (const auto& process : fs::directory_iterator("/proc", gone)) {
+      const std::string command = ReadText(process.path().string() + "/cmdline");
+      if (Contains(command, "--model_out=" + Path("out"))) return true;
+    }
+    return false;
+  };
+  for (int i = 0; i < 20 && running(); ++i) usleep(100000);
+  EXPECT_FALSE(running());
 }
 
 }  // namespace

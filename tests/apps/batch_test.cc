@@ -1,7 +1,9 @@
 // pushid-batch: plans, ids, tables, what goes into a job.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -62,6 +64,32 @@ TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
   }
 }
 
+// Replicas are spread of the estimate they belong to, and no estimates of their own.
+TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
+  ASSERT_EQ(
+      Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}).exit_code, 0);
+  const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
+  std::map<std::string, std::vector<double>> mu;
+  for (const auto& job : summary["jobs"]) {
+    const double value = job["parameters"]["mu"]["value"];
+    if (job["replica"] > 0) mu[job["group"]].push_back(value);
+  }
+  int found = 0;
+  for (const auto& row : summary["bootstrap"]) {
+    if (row["parameter"] != "mu") continue;
+    ++found;
+    const std::vector<double>& drawn = mu[row["group"]];
+    ASSERT_EQ(drawn.size(), 3u);
+    double mean = 0.0, squares = 0.0;
+    for (double value : drawn) mean += value / 3.0;
+    for (double value : drawn) squares += (value - mean) * (value - mean);
+    EXPECT_NEAR(row["standard_error"].get<double>(), std::sqrt(squares / 2.0),
+                1e-9 * std::abs(mean));
+  }
+  EXPECT_EQ(found, 2);
+  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "each group over its replicas"));
+}
+
 TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
   const AppRun run = Batch(Plan("folds = 3", {{"physics", ""}}), {"--jobs=2"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -76,6 +104,20 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
     EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;
   }
   EXPECT_TRUE(Contains(page, " +- "));
+}
+
+// Those held out are filtered and resampled as those that were fitted.
+TEST_F(BatchTest, FoldsAreReadAlike) {
+  const std::string plan = Plan(
+      "folds = 2", {{"slow", "\"--lowpass_hz=6\", \"--resample_fps=30\", \"--length_unit=mm\""}});
+  ASSERT_EQ(Batch(plan).exit_code, 0);
+  const std::string folder = Path("out/jobs/" + *Ids(Batch(plan, {"--list"}).out).begin());
+  const nlohmann::ordered_json fitted = Json(folder + "/model.json")["configuration"];
+  const nlohmann::ordered_json scored = Json(folder + "/scores.json")["configuration"];
+  for (const char* flag : {"lowpass_hz", "resample_fps", "length_unit", "max_gap_s"}) {
+    EXPECT_EQ(fitted[flag], scored[flag]) << flag;
+  }
+  EXPECT_EQ(scored["resample_fps"], "30");
 }
 
 TEST_F(BatchTest, IdsFollowTheContent) {
@@ -114,6 +156,11 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   size_t kept = 0;
   for (const std::string& id : changed) kept += ids.count(id);
   EXPECT_EQ(kept, 22u);
+  // What the manifest says of all its recordings makes all of them new.
+  nlohmann::ordered_json json = Json(manifest_);
+  json["length_unit"] = "cm";
+  WriteText("manifest.json", json.dump(1));
+  for (const std::string& id : Ids(Batch(plan, {"--list"}).out)) EXPECT_EQ(changed.count(id), 0u);
 }
 
 // "done before" would otherwise be said of a fit that took its values from an older file.
