@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs a build into an empty folder, then configures, builds and runs the consumer project against it.
+# Installs a build into an empty folder, then configures, builds and runs the consumer project against it; makes the
+# Debian packages, and runs a program out of one.
 #   consumer_test.sh BUILD
 set -euo pipefail
 source_dir="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
@@ -30,4 +31,12 @@ name = "tail"
 dir = "out"
 END
 "$scratch/moved/bin/pushid-batch" --plan="$scratch/plan.toml" --quiet | tail -n 1
+grep -q ',done,' "$scratch/out/summary.csv"
 test -x "$scratch/moved/share/pushid/workflow/profiles/slurm/status.sh"
+
+if ! command -v dpkg-deb >/dev/null; then exit 0; fi
+(cd "$build" && cpack -G DEB -B "$scratch/packages" >/dev/null)
+for package in "$scratch"/packages/*.deb; do dpkg-deb -x "$package" "$scratch/unpacked"; done
+"$scratch/unpacked/usr/bin/pushid-batch" --version
+"$scratch/unpacked/usr/bin/pushid-fit" --recordings="$scratch/recordings/manifest.json" --quiet >/dev/null
+test -f "$scratch/unpacked/usr/lib/"*/cmake/pushid/pushidConfig.cmake
