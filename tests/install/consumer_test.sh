@@ -39,4 +39,4 @@ if ! command -v dpkg-deb >/dev/null; then exit 0; fi
 for package in "$scratch"/packages/*.deb; do dpkg-deb -x "$package" "$scratch/unpacked"; done
 "$scratch/unpacked/usr/bin/pushid-batch" --version
 "$scratch/unpacked/usr/bin/pushid-fit" --recordings="$scratch/recordings/manifest.json" --quiet >/dev/null
-test -f "$scratch/unpacked/usr/lib/"*/cmake/pushid/pushidConfig.cmake
+find "$scratch/unpacked" -name pushidConfig.cmake | grep -q .
