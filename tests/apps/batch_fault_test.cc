@@ -134,11 +134,11 @@ TEST_F(BatchFaultTest, KillsCostNothing) {
 }
 
 TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
-  const std::string plan = Plan("bootstrap = 80", {{"a", ""}});
+  const std::string plan = Plan("bootstrap = 30", {{"a", ""}});
   // "timeout -s INT" sends what Ctrl-C sends.
   const AppRun run = RunProgram(
       "/usr/bin/timeout",
-      {"-s", "INT", "0.7", std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
+      {"-s", "INT", "0.5", std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
   EXPECT_EQ(run.exit_code, 124) << run.err;  // timeout's own
   EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
   EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
@@ -148,7 +148,7 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_EQ(rest.exit_code, 0) << rest.err;
   EXPECT_TRUE(Contains(rest.out, std::to_string(done) + " done before")) << run.out << rest.out;
   ASSERT_EQ(
-      Batch(Plan("bootstrap = 80", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code,
+      Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code,
       0);
   EXPECT_EQ(Table("out"), Table("whole"));
 }
