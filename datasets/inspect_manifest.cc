@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-constexpr std::size_t kListed = 12;
+constexpr std::size_t kListed = 60;
 
 }  // namespace
 
