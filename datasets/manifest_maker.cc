@@ -9,6 +9,7 @@
 #include "datasets/axes.h"
 #include "datasets/bvh_header.h"
 #include "datasets/column_mapping.h"
+#include "datasets/found_files.h"
 #include "datasets/input_file.h"
 #include "datasets/manifest_keys.h"
 #include "datasets/name_pattern.h"
@@ -19,43 +20,12 @@ namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
-using Values = std::map<std::string, std::string>;
+using Values = NameValues;
 
 // What names of a pattern mean something; others tell recordings apart.
 const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
                                               "person"};
 constexpr double kNearlyWhole = 1e-3;  // of a frame rate
-
-struct FoundFile {
-  std::string path;  // relative to the folder
-  Values values;
-};
-
-// Every regular file below the folder, as sorted paths relative to it.
-Result<std::vector<std::string>> FilesBelow(const std::string& folder) {
-  std::error_code failed;
-  if (!fs::is_directory(folder, failed)) return Error{"there is no such folder", folder};
-  std::vector<std::string> files;
-  fs::recursive_directory_iterator it(folder, fs::directory_options::skip_permission_denied,
-                                      failed);
-  for (; !failed && it != fs::recursive_directory_iterator(); it.increment(failed)) {
-    std::error_code ignored;
-    if (it->is_regular_file(ignored)) {
-      files.push_back(it->path().lexically_relative(folder).generic_string());
-    }
-  }
-  if (failed) return Error{"cannot look through it: " + failed.message(), folder};
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-// "7" before "10", and both before "a".
-bool PersonBefore(const FoundFile& a, const FoundFile& b) {
-  std::int64_t x = 0, y = 0;
-  const std::string &p = a.values.at("person"), &q = b.values.at("person");
-  const bool numbers = ParseInteger(p, &x) && ParseInteger(q, &y);
-  return numbers && x != y ? x < y : p < q;
-}
 
 class Maker {
  public:
@@ -143,7 +113,7 @@ class Maker {
         continue;
       }
       ++made_.files;
-      recordings_[Id(*values)].push_back({path, *values});
+      recordings_[IdOf(pattern_, *values)].push_back({path, *values});
     }
     if (made_.files == 0) {
       return Error{"none of its " + std::to_string(files.value().size()) +
@@ -152,16 +122,6 @@ class Maker {
                    options_.folder};
     }
     return std::nullopt;
-  }
-
-  std::string Id(const Values& values) const {
-    const bool several = pattern_.Has("person");
-    std::string id;
-    for (const std::string& name : pattern_.names()) {
-      if (name == "person" || (several && name == "subject")) continue;
-      id += (id.empty() ? "" : "_") + values.at(name);
-    }
-    return id.empty() ? "recording" : id;
   }
 
   std::string Value(const Values& values, const char* name, const std::string& fallback) const {
@@ -178,32 +138,10 @@ class Maker {
     return failed ? file.generic_string() : path.generic_string();
   }
 
-  // Files of one recording differ in their person, and besides in the subject alone.
-  MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& files) const {
-    const auto rest = [](Values values) {
-      values.erase("person");
-      values.erase("subject");
-      return values;
-    };
-    for (std::size_t i = 1; i < files.size(); ++i) {
-      const FoundFile &a = files[i - 1], &b = files[i];
-      const bool people = pattern_.Has("person");
-      const bool same = !people || a.values.at("person") == b.values.at("person");
-      if (!same && rest(a.values) == rest(b.values)) continue;
-      return Error{a.path + " and " + b.path + " are both " +
-                       (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
-                       "recording " + Quoted(id) +
-                       (rest(a.values) == rest(b.values)
-                            ? "; give what differs a name in the pattern instead of *"
-                            : "; give one of them another name"),
-                   options_.folder};
-    }
-    return std::nullopt;
-  }
-
   MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
     if (pattern_.Has("person")) std::sort(files->begin(), files->end(), &PersonBefore);
-    if (MaybeError mixed = CheckTogether(id, *files)) return mixed;
+    if (MaybeError mixed = CheckTogether(id, *files, pattern_.Has("person"), options_.folder))
+      return mixed;
     if (id.find(',') != std::string::npos) {
       return Error{(*files)[0].path + " would be recording " + Quoted(id) +
                        ", but commas separate ids in lists; give the file another name",

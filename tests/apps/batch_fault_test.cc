@@ -148,8 +148,7 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_EQ(rest.exit_code, 0) << rest.err;
   EXPECT_TRUE(Contains(rest.out, std::to_string(done) + " done before")) << run.out << rest.out;
   ASSERT_EQ(
-      Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code,
-      0);
+      Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code, 0);
   EXPECT_EQ(Table("out"), Table("whole"));
 }
 
