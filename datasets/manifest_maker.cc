@@ -20,7 +20,6 @@ namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
-using Values = NameValues;
 
 // What names of a pattern mean something; others tell recordings apart.
 const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
@@ -107,7 +106,7 @@ class Maker {
     const Result<std::vector<std::string>> files = FilesBelow(options_.folder);
     if (!files.ok()) return files.error();
     for (const std::string& path : files.value()) {
-      const std::optional<Values> values = pattern_.Match(path);
+      const std::optional<NameValues> values = pattern_.Match(path);
       if (!values) {
         ++made_.others;
         continue;
@@ -124,7 +123,7 @@ class Maker {
     return std::nullopt;
   }
 
-  std::string Value(const Values& values, const char* name, const std::string& fallback) const {
+  std::string Value(const NameValues& values, const char* name, const std::string& fallback) const {
     const auto found = values.find(name);
     return found == values.end() ? fallback : found->second;
   }
@@ -147,7 +146,7 @@ class Maker {
                        ", but commas separate ids in lists; give the file another name",
                    options_.folder};
     }
-    const Values& values = files->front().values;
+    const NameValues& values = files->front().values;
     ManifestRecording recording;
     recording.id = id;
     for (std::size_t i = files->size(); i-- > 0;) {
@@ -235,7 +234,7 @@ class Maker {
     return whole > 0.0 && std::fabs(rate / whole - 1.0) < kNearlyWhole ? whole : rate;
   }
 
-  void SetPush(const Values& values, ManifestRecording* recording) {
+  void SetPush(const NameValues& values, ManifestRecording* recording) {
     if (!push_pattern_) return;
     const std::optional<std::string> path = push_pattern_->Fill(values);
     std::error_code ignored;
