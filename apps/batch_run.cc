@@ -72,8 +72,7 @@ class Pool {
     outcome_.skipped = skipped;
     size_t next = 0;
     while (!error_) {
-      const bool open = !outcome_.stopped && !signals_.interrupted();
-      while (open && !error_ && next < waiting.size() &&
+      while (!outcome_.stopped && !signals_.interrupted() && !error_ && next < waiting.size() &&
              static_cast<int>(running_.size()) < options_.jobs) {
         Begin(*waiting[next++]);
       }
@@ -154,7 +153,11 @@ class Pool {
         failed = Start(&*at);
         if (!failed) continue;
       }
-      failed ? Fail(*at, failed->ToString()) : Finish(*at, end);
+      if (failed) {
+        Fail(*at, failed->ToString());
+      } else {
+        Finish(*at, end);
+      }
       running_.erase(at);
     }
     if (options_.time_limit_s <= 0.0) return;
@@ -189,8 +192,8 @@ class Pool {
     const bool written = fs::exists(running.folder + "/model.json", ignored);
     const bool done = end.exit_code == 0 && !running.out_of_time && written;
     if (!done) return Fail(running, ReasonOf(running, end));
+    if (MaybeError error = WriteStatus(running, "")) return Fail(running, error->ToString());
     ++outcome_.done;
-    if (MaybeError error = WriteStatus(running, "")) CheckOutput(*error);
   }
 
   // Costs this job only, unless nothing can be written at all.
