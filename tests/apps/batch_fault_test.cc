@@ -138,9 +138,9 @@ TEST_F(BatchFaultTest, KillsCostNothing) {
 TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   const std::string plan = Plan("bootstrap = 30", {{"a", ""}});
   // "timeout -s INT" sends what Ctrl-C sends.
-  const AppRun run = RunProgram(
-      "/usr/bin/timeout",
-      {"-s", "INT", "0.5", std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
+  const AppRun run = RunProgram("/usr/bin/timeout",
+                                {"-s", "INT", std::to_string(0.5 * kSlowdown),
+                                 std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
   EXPECT_EQ(run.exit_code, 124) << run.err;  // timeout's own
   EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
   EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));

@@ -20,6 +20,13 @@ extern char** environ;
 
 namespace pushid {
 
+// Programs take so much longer under sanitizers.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr double kSlowdown = 10.0;
+#else
+inline constexpr double kSlowdown = 1.0;
+#endif
+
 struct AppRun {
   int exit_code = -1;  // -1: killed by a signal, out of time, or never started
   int signal = 0;
@@ -37,7 +44,7 @@ inline std::string ReadFromStart(std::FILE* file) {
 }
 
 // Output goes to unnamed files rather than pipes: nothing can fill up and block. An app that is not
-// done after `seconds` is killed.
+// done after `seconds` (times kSlowdown) is killed.
 inline AppRun RunProgram(const std::string& path, const std::vector<std::string>& arguments,
                          double seconds = 120.0) {
   std::vector<char*> argv = {const_cast<char*>(path.c_str())};
@@ -61,7 +68,7 @@ inline AppRun RunProgram(const std::string& path, const std::vector<std::string>
   posix_spawn_file_actions_destroy(&actions);
   if (failed == 0) {
     using Clock = std::chrono::steady_clock;
-    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+    const auto deadline = Clock::now() + std::chrono::duration<double>(seconds * kSlowdown);
     int status = 0;
     while (waitpid(child, &status, WNOHANG) == 0) {
       if (!run.timed_out && Clock::now() > deadline) {
