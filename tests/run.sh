@@ -12,7 +12,7 @@ skip_unusable_ccache
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 generator=()
 if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-cmake --preset release "${generator[@]}"
+cmake --preset release "${generator[@]}" ${CI:+-DPUSHID_BENCHMARKS=OFF}  # nothing runs them there
 cmake --build --preset release --parallel "$(nproc)"
 if [ "${PUSHID_FUZZ_SECONDS:-0}" -gt 0 ]; then bash tests/fuzz/run.sh "$PUSHID_FUZZ_SECONDS"; fi
 ctest --preset release --parallel "$(nproc)"
