@@ -117,6 +117,7 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   const std::string masses = WriteText("masses.csv", "id,mass_kg\ns1,70\n");
   const std::string mapping = WriteText("mapping.json", "{\"length_unit\": \"cm\"}");
   const std::string bvh = Path(Json(manifest_)["recordings"][0]["bvh"][0]);
+  const std::string other = Path(Json(manifest_)["recordings"][1]["bvh"][0]);
   const std::string pushed = Path(Json(manifest_)["recordings"][0]["push_csv"]);
   std::filesystem::create_symlink(model, Path("link.json"));
   const std::vector<std::string> make = {"--folder=" + folder_.string(), "--pattern={take}.bvh"};
@@ -140,6 +141,7 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
       {"pushid-push", manifest_, with(push, {"--out=" + manifest_})},
       {"pushid-manifest", masses, with(make, {"--masses=" + masses, "--out=" + masses})},
       {"pushid-manifest", mapping, with(make, {"--mapping=" + mapping, "--out=" + mapping})},
+      {"pushid-push", other, with(push, {"--out=" + other})},
       {"pushid-manifest", bvh, with(found, {"--out=" + bvh})},
       {"pushid-manifest", pushed,
        with(found, {"--push_pattern=push/{take}.csv", "--out=" + pushed})},

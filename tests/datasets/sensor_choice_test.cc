@@ -80,6 +80,14 @@ TEST_F(SensorChoiceTest, ColumnsOfTables) {
   ASSERT_TRUE(csv.ok());
   EXPECT_EQ(csv.value().force[1].x(), 5.0);
   EXPECT_EQ(ReadSensor(Choice("a.csv", "")).value().force[1].x(), 5.0);
+  // 30 N at rest come off after the gain; of a vector nothing can.
+  SensorChoice resting = Choice("a.csv", "");
+  resting.gain = 2.0;
+  resting.zero_n = 30.0;
+  EXPECT_EQ(ReadSensor(resting).value().force[1].x(), 2.0 * 5.0 - 30.0);
+  resting = Choice("a.mot", "ground_force_v");
+  resting.zero_n = 30.0;
+  EXPECT_TRUE(Contains(Message(resting), "a sensor of one number"));
   SensorChoice zero = Choice("a.csv", "");
   zero.gain = 0.0;
   EXPECT_TRUE(Contains(Message(zero), "gain"));

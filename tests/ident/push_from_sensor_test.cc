@@ -133,6 +133,13 @@ TEST(PushFromSensor, UnsoundInputsAreErrors) {
   options.frame_zero_time_s = 0.26;  // half of the push happens before
   EXPECT_TRUE(Contains(problem(record, options), "sensor.csv: "));
   EXPECT_TRUE(Contains(problem(record, options), "outside recording"));
+  EXPECT_TRUE(Contains(problem(record, options), "frame 0 is at 0.26 s of the sensor's clock"));
+  options.clock_error_s = 0.5;  // a clock that is known no better
+  EXPECT_EQ(problem(record, options), "no error");
+  options.clock_error_s = 0.0;
+  SensorRecord resting = record;  // it never reads nothing
+  for (Vector3<double>& force : resting.force) force.x() += 30.0;
+  EXPECT_TRUE(Contains(problem(resting, options), "reads at rest, about 30 N (--sensor_zero)"));
   options.frame_zero_time_s = 5.0;  // all of it
   EXPECT_TRUE(Contains(problem(record, options), "outside recording"));
   options = {};
