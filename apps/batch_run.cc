@@ -208,7 +208,8 @@ class Pool {
   // Whether an error that hit one job's folder would hit them all: then the batch ends with it.
   void CheckOutput(const Error& error) {
     const std::string probe = plan_.dir + "/jobs/.probe";
-    if (WriteFileAtomically(probe, "x")) error_ = error;
+    const MaybeError nowhere = WriteFileAtomically(probe, "x");
+    if (nowhere) error_ = Error{error.message + "; " + nowhere->ToString()};
     std::error_code ignored;
     fs::remove(probe, ignored);
   }
