@@ -202,14 +202,14 @@ class Pool {
     if (!options_.keep_going) outcome_.stopped = true;
     if (!WriteStatus(running, reason)) return;
     outcome_.unrecorded.push_back(reason);
-    CheckOutput(Error{reason});
+    CheckOutput(reason);
   }
 
-  // Whether an error that hit one job's folder would hit them all: then the batch ends with it.
-  void CheckOutput(const Error& error) {
+  // Whether what hit one job's folder would hit them all: then the batch ends with it.
+  void CheckOutput(const std::string& reason) {
     const std::string probe = plan_.dir + "/jobs/.probe";
     const MaybeError nowhere = WriteFileAtomically(probe, "x");
-    if (nowhere) error_ = Error{error.message + "; " + nowhere->ToString()};
+    if (nowhere) error_ = Error{reason + "; " + nowhere->ToString()};
     std::error_code ignored;
     fs::remove(probe, ignored);
   }

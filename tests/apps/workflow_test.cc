@@ -94,7 +94,8 @@ class SlurmTest : public WorkflowTest {
                                    Path("slurm"), std::to_string(getpid())});
       node_ended_ = true;
     });
-    ASSERT_TRUE(Within(30.0 * kSlowdown, [this] { return fs::exists(Path("slurm/ready")) || node_ended_; }));
+    ASSERT_TRUE(Within(30.0 * kSlowdown,
+                       [this] { return fs::exists(Path("slurm/ready")) || node_ended_; }));
     ASSERT_FALSE(node_ended_) << node_run_.err;
   }
 
@@ -130,8 +131,8 @@ TEST_F(SlurmTest, AKilledJobIsDoneWhenResumed) {
 
   AppRun broken;
   std::thread first([&] { broken = Shell(run_all); });
-  const bool started =
-      Within(30.0 * kSlowdown, [&] { return fs::exists(Path("flow/jobs/" + slow + "/stderr.txt")); });
+  const bool started = Within(
+      30.0 * kSlowdown, [&] { return fs::exists(Path("flow/jobs/" + slow + "/stderr.txt")); });
   const AppRun cancelled = Shell("scancel --name=pushid-" + slow);
   first.join();
   ASSERT_TRUE(started) << broken.out << broken.err;
