@@ -3,13 +3,13 @@
 
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/restoration_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/json_file.h"
-#include "ident/body_evaluation.h"
-#include "ident/body_files.h"
-#include "ident/text_table.h"
+#include "apps/flags/restoration_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/bodies/body_files.h"
+#include "ident/figures/text_table.h"
 
 DEFINE_string(joints_out, "",
               "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");

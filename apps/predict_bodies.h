@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "ident/body_recording.h"
-#include "ident/prediction.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/prediction/prediction.h"
 
 namespace pushid {
 

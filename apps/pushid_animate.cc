@@ -3,14 +3,14 @@
 
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/model_flags.h"
-#include "apps/recording_flags.h"
-#include "apps/restoration_flags.h"
-#include "datasets/atomic_file.h"
-#include "ident/animation.h"
-#include "ident/body_evaluation.h"
-#include "ident/prediction.h"
+#include "apps/flags/model_flags.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/bodies/animation.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/prediction/prediction.h"
 #include "models/self_network.h"
 
 DEFINE_string(id, "", "the recording to show");

@@ -5,14 +5,14 @@
 #include <filesystem>
 #include <map>
 
-#include "apps/app_support.h"
-#include "apps/batch_run.h"
-#include "apps/batch_summary.h"
-#include "apps/child_process.h"
-#include "apps/variant_check.h"
-#include "datasets/manifest.h"
-#include "ident/report/document_files.h"
-#include "ident/text_table.h"
+#include "apps/batch/batch_run.h"
+#include "apps/batch/batch_summary.h"
+#include "apps/batch/variant_check.h"
+#include "apps/support/app_support.h"
+#include "apps/support/child_process.h"
+#include "datasets/manifest/manifest.h"
+#include "ident/figures/text_table.h"
+#include "ident/report/page/document_files.h"
 
 DEFINE_string(plan, "", "the plan (TOML); batch_plan.h and the README give its keys");
 DEFINE_bool(

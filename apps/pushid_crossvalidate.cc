@@ -6,18 +6,18 @@
 #include <set>
 #include <sstream>
 
-#include "apps/app_support.h"
-#include "apps/fit_flag_checks.h"
-#include "apps/fit_flags.h"
-#include "apps/recording_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/json_file.h"
-#include "ident/frontier_svg.h"
-#include "ident/option_names.h"
-#include "ident/predictive_bands.h"
-#include "ident/predictors.h"
-#include "ident/scores_json.h"
-#include "ident/scores_text.h"
+#include "apps/flags/fit_flag_checks.h"
+#include "apps/flags/fit_flags.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/parameters/option_names.h"
+#include "ident/prediction/predictive_bands.h"
+#include "ident/validation/frontier_svg.h"
+#include "ident/validation/predictors.h"
+#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_text.h"
 
 DECLARE_uint64(seed);
 

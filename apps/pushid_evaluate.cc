@@ -4,16 +4,16 @@
 #include <cstdio>
 #include <optional>
 
-#include "apps/app_support.h"
-#include "apps/model_flags.h"
-#include "apps/recording_flags.h"
-#include "apps/restoration_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/json_file.h"
-#include "ident/body_report.h"
-#include "ident/peer.h"
-#include "ident/scores_json.h"
-#include "ident/scores_text.h"
+#include "apps/flags/model_flags.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/bodies/body_report.h"
+#include "ident/bodies/peer.h"
+#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_text.h"
 #include "models/self_network.h"
 
 DEFINE_string(json_out, "", "write the scores here (JSON)");

@@ -5,19 +5,19 @@
 #include <cstdio>
 #include <ctime>
 
-#include "apps/app_support.h"
-#include "apps/confidence_flags.h"
-#include "apps/fit_flag_checks.h"
-#include "apps/fit_flags.h"
-#include "apps/recording_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/json_file.h"
-#include "ident/advice.h"
-#include "ident/bootstrap.h"
-#include "ident/large_network_stage.h"
-#include "ident/report_text.h"
-#include "ident/result_json.h"
-#include "ident/text_table.h"
+#include "apps/flags/confidence_flags.h"
+#include "apps/flags/fit_flag_checks.h"
+#include "apps/flags/fit_flags.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/figures/text_table.h"
+#include "ident/report/advice.h"
+#include "ident/report/report_text.h"
+#include "ident/results/result_json.h"
+#include "ident/solver/large_network_stage.h"
+#include "ident/uncertainty/bootstrap.h"
 
 DECLARE_uint64(seed);
 DECLARE_string(bootstrap_file);

@@ -3,11 +3,11 @@
 
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/overwrite_check.h"
-#include "datasets/atomic_file.h"
-#include "datasets/inspection.h"
-#include "ident/inspection_svg.h"
+#include "apps/support/app_support.h"
+#include "apps/support/overwrite_check.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/inspection/inspection.h"
+#include "ident/report/inspection_svg.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");

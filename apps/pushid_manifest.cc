@@ -6,11 +6,11 @@
 #include <tuple>
 #include <vector>
 
-#include "apps/app_support.h"
-#include "apps/overwrite_check.h"
-#include "datasets/atomic_file.h"
-#include "datasets/manifest_maker.h"
-#include "datasets/recording_names.h"
+#include "apps/support/app_support.h"
+#include "apps/support/overwrite_check.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/inspection/manifest_maker.h"
+#include "datasets/manifest/recording_names.h"
 
 DEFINE_string(folder, "", "the folder that holds the recordings, in it and below");
 DEFINE_string(pattern, "",

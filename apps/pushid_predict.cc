@@ -3,14 +3,14 @@
 
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/model_flags.h"
+#include "apps/flags/model_flags.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/predict_bodies.h"
-#include "apps/recording_flags.h"
-#include "apps/restoration_flags.h"
-#include "datasets/atomic_file.h"
-#include "ident/evaluation.h"
-#include "ident/text_table.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/figures/text_table.h"
+#include "ident/prediction/evaluation.h"
 
 DEFINE_string(id, "", "the recording whose first frame and push are taken");
 DEFINE_string(out, "",

@@ -6,14 +6,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "apps/app_support.h"
-#include "apps/recording_flags.h"
-#include "apps/sensor_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/push_csv.h"
-#include "datasets/recording_names.h"
-#include "ident/push_estimation.h"
-#include "ident/text_table.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/sensor_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/manifest/recording_names.h"
+#include "ident/figures/text_table.h"
+#include "ident/push/push_estimation.h"
 
 DEFINE_string(id, "", "the recording");
 DEFINE_int32(person, 0, "who is pushed, counted from 0");

@@ -3,15 +3,15 @@
 
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/recording_flags.h"
-#include "datasets/atomic_file.h"
-#include "ident/report/build_report.h"
-#include "ident/report/document_files.h"
-#include "ident/report/page.h"
-#include "ident/report_text.h"
-#include "ident/result_json.h"
-#include "ident/truth_table.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/report/page/build_report.h"
+#include "ident/report/page/document_files.h"
+#include "ident/report/page/page.h"
+#include "ident/report/report_text.h"
+#include "ident/report/truth_table.h"
+#include "ident/results/result_json.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");

@@ -5,15 +5,15 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/app_support.h"
-#include "apps/formation_bodies_flags.h"
-#include "apps/formation_flags.h"
-#include "apps/model_flags.h"
-#include "apps/output_folder.h"
+#include "apps/flags/formation_bodies_flags.h"
+#include "apps/flags/formation_flags.h"
+#include "apps/flags/model_flags.h"
 #include "apps/simulate_formation.h"
-#include "datasets/recording_names.h"
-#include "datasets/synthetic_recordings.h"
-#include "ident/text_table.h"
+#include "apps/support/app_support.h"
+#include "apps/support/output_folder.h"
+#include "datasets/manifest/recording_names.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/figures/text_table.h"
 
 DECLARE_string(set);
 

@@ -6,16 +6,16 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/app_support.h"
-#include "apps/recording_flags.h"
-#include "apps/restoration_flags.h"
-#include "datasets/atomic_file.h"
-#include "datasets/json_file.h"
-#include "ident/body_report.h"
-#include "ident/curve_svg.h"
-#include "ident/restoration_training_run.h"
-#include "ident/result_json.h"
-#include "ident/text_table.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "ident/bodies/body_report.h"
+#include "ident/figures/text_table.h"
+#include "ident/results/result_json.h"
+#include "ident/training/curve_svg.h"
+#include "ident/training/restoration_training_run.h"
 #include "models/self_network.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");

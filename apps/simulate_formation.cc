@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/app_support.h"
-#include "apps/formation_bodies_flags.h"
-#include "apps/formation_flags.h"
-#include "apps/model_flags.h"
-#include "apps/output_folder.h"
-#include "datasets/atomic_file.h"
-#include "ident/formation_files.h"
-#include "ident/formation_pictures.h"
-#include "ident/formation_run.h"
-#include "ident/text_table.h"
+#include "apps/flags/formation_bodies_flags.h"
+#include "apps/flags/formation_flags.h"
+#include "apps/flags/model_flags.h"
+#include "apps/support/app_support.h"
+#include "apps/support/output_folder.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/figures/text_table.h"
+#include "ident/formations/formation_files.h"
+#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_run.h"
 #include "models/self_network.h"
 
 DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "datasets/c3d.h"
-#include "datasets/load_recordings.h"
-#include "datasets/numeric_table.h"
-#include "datasets/trc.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/trc.h"
+#include "datasets/loading/load_recordings.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/json_file.h"
-#include "datasets/synthetic_recordings.h"
+#include "datasets/files/json_file.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/apps/run_app.h"
 #include "tests/test_support.h"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "datasets/json_file.h"
+#include "datasets/files/json_file.h"
 #include "tests/apps/app_fixture.h"
 
 namespace pushid {

@@ -1,5 +1,5 @@
 // What one adjoint gradient over the 32 recordings of single people costs: cost alone and with its
-// gradient, by network and by the width of vectors (residuals/vector_kernels.h).
+// gradient, by network and by the width of vectors (residuals/kernels/vector_kernels.h).
 //
 // lstm:256:32 is the size of LDP's own network (there the weights are 297 664), whose released
 // PyTorch code needs 18.6 s for one epoch, forward and backward, over the same 32 recordings on one
@@ -8,10 +8,10 @@
 
 #include <memory>
 
-#include "datasets/random.h"
-#include "datasets/synthetic_recordings.h"
-#include "ident/large_network_fit.h"
-#include "ident/self_network_io.h"
+#include "datasets/files/random.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/solver/large_network_fit.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

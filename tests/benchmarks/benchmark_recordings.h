@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/load_recordings.h"
-#include "datasets/pendulum_recording.h"
-#include "datasets/synthetic_recordings.h"
+#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 
 namespace pushid {
 

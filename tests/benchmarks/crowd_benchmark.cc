@@ -8,8 +8,8 @@
 
 #include <cmath>
 
-#include "datasets/random.h"
-#include "datasets/synthetic_recordings.h"
+#include "datasets/files/random.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "models/crowd.h"
 #include "models/formation.h"
 

@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "ident/fit_problem.h"
-#include "ident/fit_result.h"
-#include "ident/solver.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/results/fit_result.h"
+#include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

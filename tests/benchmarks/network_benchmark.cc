@@ -6,9 +6,9 @@
 
 #include <memory>
 
-#include "datasets/random.h"
-#include "ident/self_network_io.h"
-#include "ident/solver.h"
+#include "datasets/files/random.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

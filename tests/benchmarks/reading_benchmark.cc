@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <string>
 
-#include "datasets/bvh.h"
-#include "datasets/c3d.h"
-#include "datasets/numeric_table.h"
-#include "datasets/point_motion.h"
-#include "datasets/random.h"
-#include "datasets/synthetic_skeleton.h"
-#include "datasets/trc.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/files/random.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/trc.h"
+#include "datasets/synthetic/synthetic_skeleton.h"
 
 namespace pushid {
 namespace {

@@ -11,7 +11,7 @@
 #include <memory>
 #include <set>
 
-#include "residuals/rollout_residual.h"
+#include "residuals/cost_functions/rollout_residual.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

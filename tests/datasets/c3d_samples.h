@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "datasets/c3d.h"
+#include "datasets/formats/c3d.h"
 
 namespace pushid {
 

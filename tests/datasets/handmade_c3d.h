@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/c3d.h"
-#include "datasets/c3d_bytes.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/c3d_bytes.h"
 
 namespace pushid {
 

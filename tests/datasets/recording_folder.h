@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/bvh.h"
-#include "datasets/load_recordings.h"
-#include "datasets/push_csv.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/loading/load_recordings.h"
 #include "tests/test_support.h"
 
 namespace pushid {

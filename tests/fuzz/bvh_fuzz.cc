@@ -1,6 +1,6 @@
 // BVH: any text is an Error or a motion; what is read as raw values and as positions agrees in
 // length.
-#include "datasets/bvh.h"
+#include "datasets/formats/bvh.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

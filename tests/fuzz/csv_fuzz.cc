@@ -1,9 +1,9 @@
 // CSV: pushes, sensors, masses and tables with points.
-#include "datasets/manifest_maker.h"
-#include "datasets/numeric_table.h"
-#include "datasets/point_motion.h"
-#include "datasets/push_csv.h"
-#include "datasets/sensor_csv.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/inspection/manifest_maker.h"
+#include "datasets/sensors/sensor_csv.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "datasets/atomic_file.h"
-#include "datasets/bvh.h"
-#include "datasets/manifest.h"
-#include "datasets/numeric_table.h"
-#include "datasets/push_csv.h"
-#include "datasets/synthetic_recordings.h"
-#include "datasets/trc.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/formats/trc.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/handmade_c3d.h"
 #include "tests/fuzz/model_seeds.h"

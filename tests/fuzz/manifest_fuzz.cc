@@ -1,7 +1,7 @@
 // Manifests, mapping files and lists of sensors.
-#include "datasets/column_mapping.h"
-#include "datasets/manifest.h"
-#include "datasets/sensor_choice.h"
+#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/sensors/sensor_choice.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "datasets/json_file.h"
-#include "ident/network_json.h"
-#include "ident/result_json.h"
-#include "ident/self_network_io.h"
+#include "datasets/files/json_file.h"
+#include "ident/parameters/network_json.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/results/result_json.h"
 
 namespace pushid {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "datasets/result.h"
+#include "datasets/files/error.h"
 
 namespace pushid {
 

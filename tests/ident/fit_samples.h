@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "datasets/pendulum_recording.h"
-#include "datasets/random.h"
-#include "datasets/synthetic_recordings.h"
-#include "ident/fit_problem.h"
-#include "ident/fit_result.h"
+#include "datasets/files/random.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/results/fit_result.h"
 
 namespace pushid {
 

@@ -1,8 +1,8 @@
 // What the tests of formations share: a model of people who touch and stand again.
 #pragma once
 
-#include "datasets/synthetic_recordings.h"
-#include "ident/formation_run.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/formations/formation_run.h"
 #include "models/formation.h"
 
 namespace pushid {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "ident/evaluation.h"
-#include "ident/self_network_io.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/prediction/evaluation.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

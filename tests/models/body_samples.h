@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "datasets/random.h"
+#include "datasets/files/random.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/window_features.h"

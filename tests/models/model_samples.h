@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "datasets/random.h"
+#include "datasets/files/random.h"
 #include "models/ipm.h"
 #include "models/parameters.h"
 

@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-#include "residuals/rollout_residual.h"
+#include "residuals/cost_functions/rollout_residual.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/pendulum_recording.h"
-#include "datasets/random.h"
+#include "datasets/files/random.h"
+#include "datasets/loading/pendulum_recording.h"
 #include "models/rollout.h"
 #include "residuals/parameter_map.h"
 #include "tests/jacobian_check.h"

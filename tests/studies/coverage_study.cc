@@ -13,11 +13,11 @@
 #include <cstdio>
 #include <mutex>
 
-#include "ident/bootstrap.h"
-#include "ident/fit_problem.h"
-#include "ident/profile.h"
-#include "ident/solver.h"
-#include "ident/text_table.h"
+#include "ident/figures/text_table.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/profile.h"
 #include "tests/ident/fit_samples.h"
 
 DEFINE_int32(datasets, 1000, "data sets with clustered and naive intervals");

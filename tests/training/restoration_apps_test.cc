@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/bvh.h"
+#include "datasets/formats/bvh.h"
 #include "tests/apps/app_fixture.h"
 
 namespace pushid {

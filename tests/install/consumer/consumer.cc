@@ -3,9 +3,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "datasets/pendulum_recording.h"
-#include "datasets/synthetic_recordings.h"
-#include "ident/fit_result.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/results/fit_result.h"
 
 int main() {
   pushid::SyntheticOptions study;

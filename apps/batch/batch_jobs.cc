@@ -1,0 +1,266 @@
+// apps: expanding plans.
+#include "apps/batch/batch_jobs.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "apps/support/app_support.h"
+#include "datasets/files/content_hash.h"
+#include "datasets/manifest/select_recordings.h"
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+namespace {
+
+// A separator that no id holds, so that "ab","c" and "a","bc" differ.
+void AddPiece(const std::string& text, ContentHash* hash) {
+  hash->Add(text);
+  hash->Add(std::string_view("\0", 1));
+}
+
+// What a manifest's entry says, with the contents of every file it names. Whatever text of it is a
+// file counts: the keys that name files are the reader's business.
+MaybeError HashFiles(const nlohmann::ordered_json& json, const std::string& manifest,
+                     ContentHash* hash) {
+  if (json.is_structured()) {
+    for (const auto& part : json) {
+      if (MaybeError error = HashFiles(part, manifest, hash)) return error;
+    }
+    return std::nullopt;
+  }
+  if (!json.is_string()) return std::nullopt;
+  const std::string path = ResolvePath(manifest, json.get<std::string>());
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
+  const Result<std::string> contents = HashFile(path);
+  if (!contents.ok()) return contents.error();
+  AddPiece(contents.value(), hash);
+  return std::nullopt;
+}
+
+// What the manifest says of all its recordings.
+Result<std::string> CommonHash(const Manifest& manifest) {
+  ContentHash hash;
+  AddPiece(manifest.json.dump(), &hash);
+  if (MaybeError error = HashFiles(manifest.json, manifest.path, &hash)) return *error;
+  return hash.Hex();
+}
+
+Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecording& entry) {
+  ContentHash hash;
+  AddPiece(entry.json.dump(), &hash);
+  if (MaybeError error = HashFiles(entry.json, manifest.path, &hash)) return *error;
+  return hash.Hex();
+}
+
+// What a variant's flags say: of a file its contents, wherever it lies.
+Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
+  ContentHash hash;
+  for (const std::string& flag : variant.flags) {
+    const std::string file = FileOfFlag(flag);
+    if (file.empty()) {
+      AddPiece(flag, &hash);
+      continue;
+    }
+    const Result<std::string> contents = HashFile(file);
+    if (!contents.ok()) {
+      return Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
+                   variant.line};
+    }
+    AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
+  }
+  return hash.Hex();
+}
+
+std::string GroupOf(GroupBy by, const ManifestRecording& entry) {
+  switch (by) {
+    case GroupBy::kRecording:
+      return entry.id;
+    case GroupBy::kSubject:
+      return entry.subjects[entry.pushed_person].id;
+    case GroupBy::kSetting:
+      return entry.setting;
+    case GroupBy::kNone:
+      break;
+  }
+  return "all";
+}
+
+// All that MakeFolds looks at.
+PendulumRecording AsKnown(const ManifestRecording& entry) {
+  PendulumRecording recording;
+  recording.id = entry.id;
+  recording.setting = entry.setting;
+  recording.magnitude = entry.magnitude;
+  recording.pushed_person = entry.pushed_person;
+  for (const ManifestSubject& subject : entry.subjects) {
+    recording.subject_ids.push_back(subject.id);
+  }
+  return recording;
+}
+
+struct Part {
+  std::string name;
+  std::vector<int> train, held_out;  // indices into the manifest
+};
+
+Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifest,
+                                  const std::string& group, const std::vector<int>& members) {
+  if (plan.folds == 0) return std::vector<Part>{{group, members, {}}};
+  std::vector<PendulumRecording> known;
+  for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
+  const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
+  if (!folds.ok()) {
+    return plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                                       " folds: " + folds.error().message});
+  }
+  std::vector<Part> parts;
+  for (size_t f = 0; f < folds.value().size(); ++f) {
+    Part part{
+        group + " fold " + std::to_string(f + 1) + " of " + std::to_string(plan.folds), {}, {}};
+    const std::vector<int>& out = folds.value()[f].held_out;
+    for (int k = 0; k < static_cast<int>(members.size()); ++k) {
+      const bool held = std::find(out.begin(), out.end(), k) != out.end();
+      (held ? part.held_out : part.train).push_back(members[k]);
+    }
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+std::string JoinIds(const std::vector<std::string>& ids) {
+  std::string list;
+  for (const std::string& id : ids) list += (list.empty() ? "" : ",") + id;
+  return list;
+}
+
+// Flags that say how recordings are read: those that are held out are read as those that were
+// fitted.
+std::vector<std::string> ReadingFlags(const std::vector<std::string>& flags) {
+  std::vector<std::string> reading;
+  for (const std::string& flag : flags) {
+    for (const char* name : {"length_unit", "max_gap_s", "lowpass_hz", "resample_fps"}) {
+      if (flag.rfind("--" + std::string(name) + "=", 0) == 0) reading.push_back(flag);
+    }
+  }
+  return reading;
+}
+
+class Expander {
+ public:
+  Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
+
+  Result<std::vector<BatchJob>> Expand() {
+    const Result<std::vector<int>> chosen = Chosen();
+    if (!chosen.ok()) return chosen.error();
+    const Result<std::string> common = CommonHash(manifest_);
+    if (!common.ok()) return common.error();
+    common_hash_ = common.value();
+    hashes_.resize(manifest_.recordings.size());
+    std::vector<std::pair<std::string, std::vector<int>>> groups;
+    for (int i : chosen.value()) {
+      const Result<std::string> hash = RecordingHash(manifest_, manifest_.recordings[i]);
+      if (!hash.ok()) return hash.error();
+      hashes_[i] = hash.value();
+      const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
+      auto at = std::find_if(groups.begin(), groups.end(),
+                             [&name](const auto& group) { return group.first == name; });
+      if (at == groups.end()) at = groups.insert(groups.end(), {name, {}});
+      at->second.push_back(i);
+    }
+    for (const BatchVariant& variant : plan_.variants) {
+      const Result<std::string> flags = FlagsHash(plan_, variant);
+      if (!flags.ok()) return flags.error();
+      for (const auto& [name, members] : groups) {
+        const auto parts = PartsOf(plan_, manifest_, name, members);
+        if (!parts.ok()) return parts.error();
+        for (const Part& part : parts.value()) AddPart(variant, flags.value(), part);
+      }
+    }
+    return jobs_;
+  }
+
+ private:
+  // Each key by itself, so that the one that is wrong can be named.
+  Result<std::vector<int>> Chosen() const {
+    const auto all = SelectRecordings(manifest_, plan_.setting, {});
+    if (!all.ok()) return plan_.ErrorAt("setting", all.error());
+    const auto named = SelectRecordings(manifest_, plan_.setting, plan_.ids);
+    if (!named.ok()) return plan_.ErrorAt("ids", named.error());
+    const auto left = SelectRecordings(manifest_, plan_.setting, plan_.ids, plan_.leave_out);
+    if (!left.ok()) return plan_.ErrorAt("leave_out", left.error());
+    return left;
+  }
+
+  void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
+    for (int replica = 0; replica <= plan_.bootstrap; ++replica) {
+      BatchJob job;
+      job.variant = variant.name;
+      job.group = part.name;
+      job.replica = replica;
+      for (int i : part.train) job.recordings.push_back(manifest_.recordings[i].id);
+      for (int i : part.held_out) job.held_out.push_back(manifest_.recordings[i].id);
+      job.fit_flags = variant.flags;
+      job.fit_flags.push_back("--seed=" + std::to_string(plan_.seed));
+      if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
+      ContentHash hash;
+      AddPiece(Version(), &hash);
+      AddPiece(flags_hash, &hash);
+      AddPiece(common_hash_, &hash);
+      AddPiece(std::to_string(plan_.seed) + "/" + std::to_string(replica), &hash);
+      for (int i : part.train) AddPiece(hashes_[i], &hash);
+      AddPiece("held out", &hash);
+      for (int i : part.held_out) AddPiece(hashes_[i], &hash);
+      job.id = hash.Hex();
+      jobs_.push_back(std::move(job));
+    }
+  }
+
+  const BatchPlan& plan_;
+  const Manifest& manifest_;
+  std::string common_hash_;
+  std::vector<std::string> hashes_;
+  std::vector<BatchJob> jobs_;
+};
+
+}  // namespace
+
+Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& manifest) {
+  return Expander(plan, manifest).Expand();
+}
+
+std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
+                                                  const std::string& folder,
+                                                  const std::string& bin) {
+  const std::string model = folder + "/model.json";
+  std::vector<std::string> fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
+                                  "--ids=" + JoinIds(job.recordings), "--model_out=" + model,
+                                  "--quiet"};
+  fit.insert(fit.end(), job.fit_flags.begin(), job.fit_flags.end());
+  std::vector<std::vector<std::string>> commands = {fit};
+  if (!job.held_out.empty()) {
+    std::vector<std::string> evaluate = {bin + "/pushid-evaluate",
+                                         "--model=" + model,
+                                         "--recordings=" + plan.manifest,
+                                         "--ids=" + JoinIds(job.held_out),
+                                         "--json_out=" + folder + "/scores.json",
+                                         "--quiet"};
+    const std::vector<std::string> reading = ReadingFlags(job.fit_flags);
+    evaluate.insert(evaluate.end(), reading.begin(), reading.end());
+    commands.push_back(evaluate);
+  }
+  return commands;
+}
+
+std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n) {
+  std::vector<BatchJob> part;
+  std::map<std::string, size_t> order;  // of first appearance
+  for (const BatchJob& job : jobs) {
+    const size_t k = order.emplace(job.id, order.size()).first->second;
+    if (k % static_cast<size_t>(n) + 1 == static_cast<size_t>(i)) part.push_back(job);
+  }
+  return part;
+}
+
+}  // namespace pushid

@@ -1,0 +1,283 @@
+// apps: the pool of jobs.
+#include "apps/batch/batch_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "apps/support/app_support.h"
+#include "apps/support/child_process.h"
+#include "apps/support/folder_lock.h"
+#include "apps/support/signal_reader.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double Since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+// The last line that says why: a warning is of no such moment.
+std::string LastLine(const std::string& path) {
+  std::ifstream file(path);
+  std::string last;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty() && line.find(": warning: ") == std::string::npos) last = line;
+  }
+  constexpr size_t kMost = 400;
+  return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
+}
+
+// How a program under a limit ends that gets no more memory: by its own words, by those of the
+// loader, or without any.
+bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
+  for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
+    if (end.signal == signal) return true;
+  }
+  for (const char* words :
+       {"out of memory", "bad_alloc", "annot allocate memory", "failed to map segment"}) {
+    if (last.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+struct Running {
+  const BatchJob* job = nullptr;
+  std::string folder;
+  std::vector<std::vector<std::string>> commands;
+  size_t step = 0;
+  pid_t pid = 0;
+  Clock::time_point begin;
+  bool out_of_time = false;
+  FolderLock lock;
+};
+
+class Pool {
+ public:
+  Pool(const BatchPlan& plan, const BatchRunOptions& options,
+       const std::function<void(const BatchProgress&)>& progress)
+      : plan_(plan), options_(options), progress_(progress), begin_(Clock::now()) {}
+
+  Result<BatchOutcome> Run(const std::vector<const BatchJob*>& waiting, int skipped) {
+    outcome_.skipped = skipped;
+    size_t next = 0;
+    while (!error_) {
+      while (!outcome_.stopped && !signals_.interrupted() && !error_ && next < waiting.size() &&
+             static_cast<int>(running_.size()) < options_.jobs) {
+        Begin(*waiting[next++]);
+      }
+      left_ = static_cast<int>(waiting.size() - next + running_.size());
+      Report();
+      if (signals_.interrupted() || running_.empty()) break;
+      signals_.Wait(EndOfWait());
+      Collect();
+    }
+    outcome_.interrupted = signals_.interrupted();
+    EndAll();
+    if (error_) return *error_;
+    return outcome_;
+  }
+
+ private:
+  void Begin(const BatchJob& job) {
+    Running running;
+    running.job = &job;
+    running.folder = JobFolder(plan_, job);
+    const Result<bool> mine = TakeFolder(running.folder, &running.lock);
+    if (!mine.ok()) return Fail(running, mine.error().ToString());
+    if (!mine.value()) {
+      ++outcome_.elsewhere;
+      return;
+    }
+    // Another process may have done it since this one began.
+    if (options_.resume && ReadResult(plan_, job).done()) {
+      ++outcome_.skipped;
+      return;
+    }
+    // Half-written, or failed. The folder itself stays: it is what is locked.
+    if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
+    running.commands = JobCommands(job, plan_, running.folder, options_.bin);
+    running.begin = Clock::now();
+    if (const MaybeError failed = Start(&running)) return Fail(running, failed->ToString());
+    running_.push_back(std::move(running));
+  }
+
+  static MaybeError Empty(const std::string& folder) {
+    std::error_code failed;
+    for (fs::directory_iterator it(folder, failed); !failed && it != fs::directory_iterator();
+         it.increment(failed)) {
+      fs::remove_all(it->path(), failed);
+      if (failed) return Error{"cannot be removed: " + failed.message(), it->path().string()};
+    }
+    if (failed) return Error{"cannot be read: " + failed.message(), folder};
+    return std::nullopt;
+  }
+
+  static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (failed) return Error{"cannot be made: " + failed.message(), folder};
+    return lock->Take(folder);
+  }
+
+  // Its next command.
+  MaybeError Start(Running* running) {
+    ChildSpec spec;
+    spec.command = running->commands[running->step];
+    spec.out = running->folder + "/stdout.txt";
+    spec.err = running->folder + "/stderr.txt";
+    spec.memory_limit_mb = options_.memory_limit_mb;
+    const Result<pid_t> child = StartChild(spec);
+    if (!child.ok()) return child.error();
+    running->pid = child.value();
+    return std::nullopt;
+  }
+
+  void Collect() {
+    for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+      const auto at = std::find_if(running_.begin(), running_.end(),
+                                   [&end](const Running& r) { return r.pid == end.pid; });
+      if (at == running_.end()) continue;
+      MaybeError failed;
+      if (end.exit_code == 0 && !at->out_of_time && ++at->step < at->commands.size()) {
+        failed = Start(&*at);
+        if (!failed) continue;
+      }
+      if (failed) {
+        Fail(*at, failed->ToString());
+      } else {
+        Finish(*at, end);
+      }
+      running_.erase(at);
+    }
+    if (options_.time_limit_s <= 0.0) return;
+    for (Running& running : running_) {
+      if (running.out_of_time || Since(running.begin) < options_.time_limit_s) continue;
+      running.out_of_time = true;
+      KillChild(running.pid, SIGKILL);
+    }
+  }
+
+  std::string ReasonOf(const Running& running, const ChildEnd& end) const {
+    if (running.out_of_time) {
+      return "out of time after " + DoubleText(options_.time_limit_s) + " s";
+    }
+    const std::string last = LastLine(running.folder + "/stderr.txt");
+    if (options_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
+      return "out of memory (limit " + std::to_string(options_.memory_limit_mb) + " MB" +
+             (end.signal != 0 ? std::string("; ") + strsignal(end.signal) : "") + ")";
+    }
+    if (end.signal != 0) {
+      return std::string("killed by signal ") + strsignal(end.signal) +
+             (last.empty() ? "" : "; it last said: " + last);
+    }
+    if (!last.empty()) return last;
+    if (end.exit_code == 0) return running.commands[0][0] + " wrote no model.json";
+    return end.exit_code == kFitFailed ? "the fit did not converge"
+                                       : "exit code " + std::to_string(end.exit_code);
+  }
+
+  void Finish(const Running& running, const ChildEnd& end) {
+    std::error_code ignored;
+    const bool written = fs::exists(running.folder + "/model.json", ignored);
+    const bool done = end.exit_code == 0 && !running.out_of_time && written;
+    if (!done) return Fail(running, ReasonOf(running, end));
+    if (MaybeError error = WriteStatus(running, "")) return Fail(running, error->ToString());
+    ++outcome_.done;
+  }
+
+  // Costs this job only, unless nothing can be written at all.
+  void Fail(const Running& running, const std::string& reason) {
+    ++outcome_.failed;
+    if (!options_.keep_going) outcome_.stopped = true;
+    if (!WriteStatus(running, reason)) return;
+    outcome_.unrecorded.push_back(reason);
+    CheckOutput(reason);
+  }
+
+  // Whether what hit one job's folder would hit them all: then the batch ends with it.
+  void CheckOutput(const std::string& reason) {
+    const std::string probe = plan_.dir + "/jobs/.probe";
+    const MaybeError nowhere = WriteFileAtomically(probe, "x");
+    if (nowhere) error_ = Error{reason + "; " + nowhere->ToString()};
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+  }
+
+  // reason: empty when it is done.
+  static MaybeError WriteStatus(const Running& running, const std::string& reason) {
+    const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
+    nlohmann::ordered_json json = {{"id", running.job->id},
+                                   {"variant", running.job->variant},
+                                   {"group", running.job->group},
+                                   {"replica", running.job->replica},
+                                   {"status", reason.empty() ? "done" : "failed"},
+                                   {"reason", reason},
+                                   {"commands", running.commands},
+                                   {"run", {{"seconds", seconds}}}};
+    return WriteJson(running.folder + "/status.json", json);
+  }
+
+  // What runs is ended and will be redone: it has no status.
+  void EndAll() {
+    for (const Running& running : running_) KillChild(running.pid, SIGKILL);
+    const auto begin = Clock::now();
+    while (!running_.empty() && Since(begin) < 10.0) {
+      signals_.Wait(100);
+      for (ChildEnd end = NextEnded(); end.pid != 0; end = NextEnded()) {
+        running_.erase(std::remove_if(running_.begin(), running_.end(),
+                                      [&end](const Running& r) { return r.pid == end.pid; }),
+                       running_.end());
+      }
+    }
+  }
+
+  int EndOfWait() const { return options_.time_limit_s > 0.0 ? 50 : 500; }
+
+  void Report() {
+    const int finished = outcome_.done + outcome_.failed;
+    const double each = finished > 0 ? Since(begin_) / finished : 0.0;
+    progress_({outcome_.done, outcome_.failed, left_, each * left_});
+  }
+
+  const BatchPlan& plan_;
+  const BatchRunOptions& options_;
+  const std::function<void(const BatchProgress&)>& progress_;
+  const Clock::time_point begin_;
+  SignalReader signals_;
+  std::vector<Running> running_;
+  BatchOutcome outcome_;
+  int left_ = 0;
+  MaybeError error_;
+};
+
+}  // namespace
+
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                              const BatchRunOptions& options,
+                              const std::function<void(const BatchProgress&)>& progress) {
+  std::vector<const BatchJob*> waiting;
+  std::set<std::string> seen;  // variants of the same flags share their jobs
+  int skipped = 0;
+  for (const BatchJob& job : jobs) {
+    if (!seen.insert(job.id).second) continue;
+    if (options.resume && ReadResult(plan, job).done()) {
+      ++skipped;
+      continue;
+    }
+    waiting.push_back(&job);
+  }
+  return Pool(plan, options, progress).Run(waiting, skipped);
+}
+
+}  // namespace pushid

@@ -1,0 +1,156 @@
+// apps: collecting a batch's results.
+#include "apps/batch/batch_summary.h"
+
+#include "apps/batch/batch_tables.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+#include "ident/figures/text_table.h"
+#include "ident/report/page/document_files.h"
+#include "ident/report/page/page.h"
+#include "ident/results/json_pieces.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kMostRowsInText = 40;
+
+std::string Cell(const std::map<std::string, double>& values, const std::string& name) {
+  const auto found = values.find(name);
+  return found == values.end() ? "" : DoubleText(found->second);
+}
+
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
+// Full precision, for summary.csv.
+TextTable FullTable(const std::vector<JobResult>& rows) {
+  const std::vector<std::string> names = ParameterNames(rows);
+  std::vector<std::string> header = {"id", "variant", "group", "replica", "status", "reason"};
+  header.insert(header.end(), names.begin(), names.end());
+  for (const std::string& name : names) header.push_back(name + "_se");
+  for (const char* name : {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m",
+                           "warnings", "solve_s", "seconds"}) {
+    header.push_back(name);
+  }
+  TextTable table(header, std::vector<bool>(header.size(), true));
+  for (const JobResult& row : rows) {
+    const bool done = row.status == "done";
+    std::vector<std::string> cells = {row.job->id,    row.job->variant,
+                                      row.job->group, std::to_string(row.job->replica),
+                                      row.status,     row.reason};
+    for (const std::string& name : names) cells.push_back(Cell(row.parameters, name));
+    for (const std::string& name : names) cells.push_back(Cell(row.errors, name));
+    cells.push_back(done ? DoubleText(row.cost) : "");
+    cells.push_back(done ? (row.settles ? "yes" : "no") : "");
+    cells.push_back(row.hip_ade >= 0.0 ? DoubleText(row.hip_ade) : "");
+    cells.push_back(row.hip_fde >= 0.0 ? DoubleText(row.hip_fde) : "");
+    cells.push_back(Joined(row.warnings));
+    cells.push_back(done ? DoubleText(row.solve_s) : "");
+    cells.push_back(row.status == "open" ? "" : DoubleText(row.seconds));
+    table.Add(cells);
+  }
+  return table;
+}
+
+Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
+  Json jobs = Json::array();
+  for (const JobResult& row : rows) {
+    Json job = {{"id", row.job->id},       {"variant", row.job->variant},
+                {"group", row.job->group}, {"replica", row.job->replica},
+                {"status", row.status},    {"reason", row.reason}};
+    if (row.status == "done") {
+      for (const auto& [name, value] : row.parameters) {
+        job["parameters"][name] = {{"value", NumberJson(value)},
+                                   {"standard_error", NumberJson(row.errors.at(name))}};
+      }
+      job["cost"] = NumberJson(row.cost);
+      job["settles"] = row.settles;
+      if (!row.warnings.empty()) job["warnings"] = row.warnings;
+      if (row.hip_ade >= 0.0) {
+        job["held_out"] = {{"hipADE_m", row.hip_ade}, {"hipFDE_m", row.hip_fde}};
+      }
+    }
+    job["run"] = {{"solve_s", row.solve_s}, {"seconds", row.seconds}};
+    jobs.push_back(job);
+  }
+  Json bootstrap = Json::array();
+  for (const BootstrapSpread& s : SpreadOverReplicas(rows)) {
+    bootstrap.push_back({{"variant", s.job->variant},
+                         {"group", s.job->group},
+                         {"parameter", s.parameter},
+                         {"estimate", NumberJson(s.estimate)},
+                         {"replicas", s.replicas},
+                         {"standard_error", NumberJson(s.standard_error)},
+                         {"interval_95", {NumberJson(s.lower95), NumberJson(s.upper95)}}});
+  }
+  return {{"plan", plan.path}, {"version", Version()}, {"bootstrap", bootstrap}, {"jobs", jobs}};
+}
+
+Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
+  Report report;
+  report.title = "pushid: batch of " + std::to_string(rows.size()) + " jobs";
+  report.subtitle = plan.path + ", recordings " + plan.manifest + ", pushid " + Version();
+  ReportSection variants, failures, warnings, jobs;
+  variants.id = "variants";
+  variants.title = "Variants";
+  variants.tables = {{"estimates over groups", VariantTable(rows)}};
+  const TextTable bootstrap = BootstrapTable(rows), warned = WarningTable(rows);
+  if (bootstrap.rows().size() > 1) {
+    variants.tables.push_back({"bootstrap: each group over its replicas", bootstrap});
+  }
+  failures.id = "failures";
+  failures.title = "Failures";
+  const TextTable failed = FailureTable(rows);
+  failures.paragraphs = {failed.rows().size() > 1 ? "Failed jobs are tried again by the next run."
+                                                  : "None."};
+  failures.tables = {{"", failed}};
+  warnings.id = "warnings";
+  warnings.title = "Warnings";
+  if (warned.rows().size() == 1) warnings.paragraphs = {"None."};
+  warnings.tables = {{"", warned}};
+  jobs.id = "jobs";
+  jobs.title = "Jobs";
+  if (rows.size() > kMostRowsOnPage) {
+    jobs.paragraphs = {"The first " + std::to_string(kMostRowsOnPage) +
+                       "; all of them are in summary.csv."};
+  }
+  jobs.tables = {{"", JobTable(rows)}};
+  report.sections = {variants, failures, warnings, jobs};
+  return report;
+}
+
+}  // namespace
+
+std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
+  std::vector<JobResult> rows;
+  for (const BatchJob& job : jobs) rows.push_back(ReadResult(plan, job));
+  return rows;
+}
+
+MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
+  if (MaybeError error = WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(FullTable(rows)))) {
+    return error;
+  }
+  if (MaybeError error = WriteJson(plan.dir + "/summary.json", SummaryJson(plan, rows))) {
+    return error;
+  }
+  return WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows)));
+}
+
+std::string SummaryText(const std::vector<JobResult>& rows) {
+  const TextTable bootstrap = BootstrapTable(rows), failed = FailureTable(rows);
+  std::string text = VariantTable(rows).ToString();
+  if (bootstrap.rows().size() > 1 && bootstrap.rows().size() <= kMostRowsInText) {
+    text += "\n" + bootstrap.ToString();
+  }
+  return text + (failed.rows().size() > 1 ? "\n" + failed.ToString() : "");
+}
+
+}  // namespace pushid

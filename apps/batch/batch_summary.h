@@ -1,0 +1,22 @@
+// apps: the table of a batch: one row a job, with what it found or why it failed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/batch/batch_results.h"
+
+namespace pushid {
+
+std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
+
+// summary.csv, summary.json and summary.html in the plan's folder. CSV columns:
+// id,variant,group,replica,status,reason,<parameter>...,<parameter>_se...,cost,settles,
+// held_out_hip_ade_m,held_out_hip_fde_m,warnings,solve_s,seconds
+MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
+
+// By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
+// each group where those are few; failures.
+std::string SummaryText(const std::vector<JobResult>& rows);
+
+}  // namespace pushid

@@ -1,0 +1,123 @@
+// apps: profiles and bootstrap by flag.
+#include "apps/flags/confidence_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <cstring>
+#include <sstream>
+
+#include "apps/flags/fit_flags.h"
+#include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/results/confidence.h"
+#include "ident/solver/large_network_stage.h"
+#include "ident/validation/experiment_design.h"
+
+DECLARE_uint64(seed);
+
+DEFINE_string(profile, "",
+              "profile likelihood of these parameters and combinations, comma-separated; all (or "
+              "nothing after --profile): of every free one");
+DEFINE_int32(bootstrap, 0, "refit so many resamples of the recordings; 199 is a good number");
+DEFINE_string(bootstrap_file, "",
+              "keeps finished replicas, so that a run that was interrupted goes on from there");
+DEFINE_string(design, "",
+              "which further push would lower the standard error of this parameter most; all: of "
+              "all together");
+
+namespace pushid {
+namespace {
+
+constexpr int kDesignRows = 10;
+
+std::vector<std::string> ProfileNames() {
+  std::vector<std::string> names;
+  if (FLAGS_profile == "all") return names;
+  std::stringstream list(FLAGS_profile);
+  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  return names;
+}
+
+JobProgress Show(ProgressLine* line, const std::string& what) {
+  return [line, what](int done, int total) {
+    line->Show(what + " " + std::to_string(done) + " of " + std::to_string(total));
+  };
+}
+
+}  // namespace
+
+void AllowBareProfile(int argc, char** argv) {
+  static char all[] = "--profile=all";
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--profile") == 0 || std::strcmp(argv[i], "-profile") == 0) {
+      argv[i] = all;
+    }
+  }
+}
+
+MaybeError CheckConfidenceFlags() {
+  if (FLAGS_bootstrap < 0 || FLAGS_bootstrap == 1) {
+    return Error{"--bootstrap must be 0 (none) or at least 2 replicas"};
+  }
+  if (!FLAGS_bootstrap_file.empty() && FLAGS_bootstrap == 0) {
+    return Error{"--bootstrap_file needs --bootstrap=N"};
+  }
+  return FLAGS_bootstrap_file.empty() ? std::nullopt : CheckWritable(FLAGS_bootstrap_file);
+}
+
+MaybeError CheckConfidence(const FitOptions& options, int recordings) {
+  if (FLAGS_bootstrap > 0 && recordings < 2) {
+    return Error{"--bootstrap draws recordings with replacement; it needs at least two"};
+  }
+  const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
+  if (stopped_early && (FLAGS_bootstrap > 0 || !FLAGS_profile.empty())) {
+    return Error{
+        "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
+        "reaches; let --network_prior guard the training instead"};
+  }
+  if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
+  std::string known = "all";
+  for (Parameter id : options.table.Free()) {
+    known += ", " + options.table[id].name;
+    if (options.table[id].name == FLAGS_design) return std::nullopt;
+  }
+  return Error{"--design: there is no error of '" + FLAGS_design + "' to reduce; choose from " +
+               known};
+}
+
+MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+  ProgressLine line;
+  if (!FLAGS_profile.empty()) {
+    if (MaybeError error =
+            AddProfiles(recordings, ProfileNames(), NumThreads(), Show(&line, "profile"), result)) {
+      return Error{"--profile: " + error->ToString()};
+    }
+  }
+  if (FLAGS_bootstrap > 0) {
+    BootstrapOptions options;
+    options.replicas = FLAGS_bootstrap;
+    options.seed = FLAGS_seed;
+    options.file = FLAGS_bootstrap_file;
+    options.num_threads = NumThreads();
+    if (MaybeError error =
+            AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), result)) {
+      return *error;
+    }
+  }
+  return std::nullopt;
+}
+
+Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
+                                  const FitResult& result) {
+  if (FLAGS_design.empty()) return std::string();
+  const FitProblem problem(recordings, result.options);
+  const FitPoint& estimate = result.starts[result.best_start].to;
+  const ExperimentDesign design =
+      DesignExperiments(problem, estimate, result.uncertainty, DefaultCandidates(recordings));
+  if (!design.refused.empty()) return "\nno design: " + design.refused + "\n";
+  Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
+  if (!text.ok()) return Error{"--design: " + text.error().message};
+  return "\n" + text.value();
+}
+
+}  // namespace pushid

@@ -1,0 +1,27 @@
+// apps: the flags of pushid-fit that ask how sure a fit is: profiles, bootstrap, and
+// the next push to record.
+#pragma once
+
+#include <vector>
+
+#include "ident/results/fit_result.h"
+
+namespace pushid {
+
+// gflags wants a value after --profile; alone it means all.
+void AllowBareProfile(int argc, char** argv);
+
+// What is wrong with the flags, before a long fit.
+MaybeError CheckConfidenceFlags();
+
+// The same against what is to be fitted: recordings to draw from, a parameter to design for.
+MaybeError CheckConfidence(const FitOptions& options, int recordings);
+
+// Adds what the flags ask for.
+MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result);
+
+// The table of --design, or nothing.
+Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
+                                  const FitResult& result);
+
+}  // namespace pushid

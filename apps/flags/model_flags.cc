@@ -1,0 +1,25 @@
+// apps: loading what --model names.
+#include "apps/flags/model_flags.h"
+
+#include "apps/support/app_support.h"
+#include "ident/results/result_json.h"
+
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
+DEFINE_string(set, "", "what-if: parameters replaced, name=value comma-separated, as in mu=20");
+
+namespace pushid {
+
+Result<IdentifiedModel> LoadFlaggedModel() {
+  if (MaybeError missing =
+          Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
+    return *missing;
+  }
+  const Result<FitResult> result = ReadFitResult(FLAGS_model);
+  if (!result.ok()) return result.error();
+  IdentifiedModel model = ModelOf(result.value());
+  model.source = FLAGS_model;
+  if (MaybeError error = SetValues(FLAGS_set, &model)) return *error;
+  return model;
+}
+
+}  // namespace pushid

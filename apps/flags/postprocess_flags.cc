@@ -1,0 +1,32 @@
+// apps: --postprocess.
+#include <sstream>
+
+#include "apps/flags/restoration_flags.h"
+
+DEFINE_string(postprocess, "fade,bones,feet",
+              "what makes restored bodies fit: fade (begin at the first pose), bones (keep their "
+              "length), feet (standing feet stay), comma-separated; or none");
+
+namespace pushid {
+
+Result<PostprocessOptions> PostprocessOfFlags() {
+  PostprocessOptions options;
+  options.fade_residual = options.keep_bones = options.lock_feet = false;
+  if (FLAGS_postprocess == "none") return options;
+  std::stringstream list(FLAGS_postprocess);
+  for (std::string name; std::getline(list, name, ',');) {
+    if (name == "fade") {
+      options.fade_residual = true;
+    } else if (name == "bones") {
+      options.keep_bones = true;
+    } else if (name == "feet") {
+      options.lock_feet = true;
+    } else {
+      return Error{"--postprocess names '" + name +
+                   "'; it must list fade, bones, feet, or be none"};
+    }
+  }
+  return options;
+}
+
+}  // namespace pushid

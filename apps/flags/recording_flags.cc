@@ -1,0 +1,119 @@
+// apps: loading what --recordings names.
+#include "apps/flags/recording_flags.h"
+
+#include <sstream>
+
+#include "apps/support/app_support.h"
+#include "apps/support/overwrite_check.h"
+
+DEFINE_string(recordings, "", "manifest.json of the recordings");
+DEFINE_string(setting, "all",
+              "which recordings: settings of the manifest, comma-separated; groups (more than one "
+              "person); all");
+DEFINE_string(ids, "", "only these recordings, comma-separated ids");
+DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
+DEFINE_string(length_unit, "",
+              "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
+DEFINE_double(max_gap_s, 0.1,
+              "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
+DEFINE_double(lowpass_hz, 0.0,
+              "zero-phase Butterworth low-pass of all positions (second order, forwards and "
+              "backwards), cut-off in Hz; 0: none");
+DEFINE_double(resample_fps, 0.0,
+              "resample motion and pushes to this many frames per second; 0: as recorded");
+
+namespace pushid {
+namespace {
+
+std::vector<std::string> SplitList(const std::string& text) {
+  std::vector<std::string> words;
+  std::stringstream list(text);
+  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+  return words;
+}
+
+Result<LoadOptions> LoadOptionsOfFlags() {
+  LoadOptions options;
+  options.setting = FLAGS_setting;
+  options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
+  options.ids = SplitList(FLAGS_ids);
+  options.leave_out = SplitList(FLAGS_leave_out);
+  if (!FLAGS_length_unit.empty()) {
+    options.length_unit = LengthUnitFromName(FLAGS_length_unit);
+    if (!options.length_unit) {
+      return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
+    }
+  }
+  if (MaybeError error = CheckPreparation(options.preparation)) return *error;
+  return options;
+}
+
+}  // namespace
+
+MaybeError CheckRecordingFlags() {
+  const Result<LoadOptions> options = LoadOptionsOfFlags();
+  return options.ok() ? std::nullopt : MaybeError(options.error());
+}
+
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
+                                                     bool keep_all_joints,
+                                                     std::vector<std::string>* warnings) {
+  if (MaybeError missing =
+          Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
+    return *missing;
+  }
+  Result<LoadOptions> options = LoadOptionsOfFlags();
+  if (!options.ok()) return options.error();
+  options.value().keep_all_joints = keep_all_joints;
+  if (!ids.empty()) {
+    options.value().ids = ids;
+    options.value().leave_out.clear();
+  }
+  std::vector<std::string> odd;
+  Result<std::vector<Recording>> recordings =
+      LoadRecordings(FLAGS_recordings, options.value(), &odd);
+  for (const std::string& warning : odd) Warn(warning);
+  if (warnings != nullptr) *warnings = odd;
+  if (!recordings.ok()) return recordings;
+  // Pushes may be written again where they were read; a motion cannot be had back.
+  const Result<Manifest> manifest = ReadManifest(FLAGS_recordings);
+  if (!manifest.ok()) return manifest.error();
+  for (const ManifestRecording& entry : manifest.value().recordings) {
+    std::vector<std::string> files = entry.motion_files();
+    if (!entry.mapping.empty()) files.push_back(entry.mapping);
+    for (const std::string& file : files) {
+      const MaybeError error =
+          CheckNoOutput("recording " + entry.id, ResolvePath(FLAGS_recordings, file));
+      if (error) return *error;
+    }
+  }
+  return recordings;
+}
+
+Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting) {
+  const gflags::FlagSaver saver;
+  FLAGS_setting = setting;
+  FLAGS_ids.clear();
+  return LoadFlaggedRecordings({}, true);
+}
+
+MaybeError CheckPushed(const std::vector<Recording>& recordings) {
+  for (const Recording& recording : recordings) {
+    if (!recording.pushes.empty()) continue;
+    return Error{"recording " + recording.id +
+                     " has no push: estimate one with pushid-push, or leave it out (--ids)",
+                 FLAGS_recordings};
+  }
+  return std::nullopt;
+}
+
+std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
+                                             SkeletonMapping mapping) {
+  std::vector<PendulumRecording> pendulums;
+  for (const Recording& recording : recordings) {
+    pendulums.push_back(MakePendulumRecording(recording, mapping));
+  }
+  return pendulums;
+}
+
+}  // namespace pushid

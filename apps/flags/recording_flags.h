@@ -1,0 +1,37 @@
+// apps: the flags by which every executable takes recordings.
+#pragma once
+
+#include <gflags/gflags.h>
+
+#include <string>
+#include <vector>
+
+#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/pendulum_recording.h"
+
+DECLARE_string(recordings);
+DECLARE_string(setting);
+DECLARE_string(ids);
+
+namespace pushid {
+
+// The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
+// `warnings` too. Other ids than the flags' may be asked for, and all joints instead of hip and
+// ankles.
+Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
+                                                     bool keep_all_joints = false,
+                                                     std::vector<std::string>* warnings = nullptr);
+
+// What is wrong with their flags, before any file is read.
+MaybeError CheckRecordingFlags();
+
+// Those of another --setting, with whole bodies.
+Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
+
+// Whether there is a push in every one of them: without it there is nothing to learn from.
+MaybeError CheckPushed(const std::vector<Recording>& recordings);
+
+std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
+                                             SkeletonMapping mapping);
+
+}  // namespace pushid

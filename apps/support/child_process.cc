@@ -1,0 +1,112 @@
+// apps: fork, limits, exec.
+#include "apps/support/child_process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "datasets/files/atomic_file.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kCannotStart = 127;
+constexpr std::size_t kLongestArgument = 128 * 1024 - 1;  // Linux: MAX_ARG_STRLEN
+
+// Between fork and exec: only calls that are safe there.
+[[noreturn]] void RunInChild(const ChildSpec& spec, char* const* argv, pid_t parent, int out,
+                             int err) {
+  setpgid(0, 0);  // so that a terminal's Ctrl-C reaches the batch alone
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(kCannotStart);  // it died before that was asked for
+  if (spec.memory_limit_mb > 0) {
+    const rlim_t bytes = static_cast<rlim_t>(spec.memory_limit_mb) << 20;
+    const rlimit limit{bytes, bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  dup2(out, STDOUT_FILENO);
+  dup2(err, STDERR_FILENO);
+  sigset_t none;  // the parent's mask would be inherited
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execv(argv[0], argv);
+  dprintf(STDERR_FILENO, "%s cannot be started: %s\n", argv[0], std::strerror(errno));
+  _exit(kCannotStart);
+}
+
+// A flag that is longer goes by way of a file beside the outputs, --flagfile.
+Result<std::vector<std::string>> Shortened(const ChildSpec& spec) {
+  std::vector<std::string> words = spec.command;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i].size() < kLongestArgument) continue;
+    const std::string file = spec.out + "." + std::to_string(i) + ".flags";
+    if (MaybeError failed = WriteFileAtomically(file, words[i] + "\n")) return *failed;
+    words[i] = "--flagfile=" + file;
+  }
+  return words;
+}
+
+}  // namespace
+
+Result<pid_t> StartChild(const ChildSpec& spec) {
+  if (access(spec.command[0].c_str(), X_OK) != 0) {
+    return Error{"cannot be run: " + std::string(std::strerror(errno)), spec.command[0]};
+  }
+  Result<std::vector<std::string>> words = Shortened(spec);
+  if (!words.ok()) return words.error();
+  const int flags = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC;
+  const int out = open(spec.out.c_str(), flags, 0644);
+  if (out < 0) return Error{"cannot be written: " + std::string(std::strerror(errno)), spec.out};
+  const int err = open(spec.err.c_str(), flags, 0644);
+  if (err < 0) {
+    const std::string reason = std::strerror(errno);
+    close(out);
+    return Error{"cannot be written: " + reason, spec.err};
+  }
+  std::vector<char*> argv;
+  for (std::string& word : words.value()) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child == 0) RunInChild(spec, argv.data(), parent, out, err);
+  const int reason = errno;
+  close(out);
+  close(err);
+  if (child < 0) return Error{"no process can be started: " + std::string(std::strerror(reason))};
+  setpgid(child, child);  // in both, so that it is done whoever comes first
+  return child;
+}
+
+std::string ShellText(const std::vector<std::string>& command) {
+  std::string text;
+  for (const std::string& word : command) {
+    text += text.empty() ? "'" : " '";
+    for (char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+    text += "'";
+  }
+  return text;
+}
+
+ChildEnd NextEnded() {
+  ChildEnd end;
+  int status = 0;
+  const pid_t pid = waitpid(-1, &status, WNOHANG);
+  if (pid <= 0) return end;
+  end.pid = pid;
+  if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+  if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+  return end;
+}
+
+void KillChild(pid_t pid, int signal) { kill(-pid, signal); }
+
+}  // namespace pushid

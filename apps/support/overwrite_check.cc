@@ -1,0 +1,78 @@
+// apps: outputs against inputs.
+#include "apps/support/overwrite_check.h"
+
+#include <gflags/gflags.h>
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInputs[] = {
+    "recordings", "model",   "truth",  "self_from", "interaction_network",
+    "poses_from", "sensor",  "masses", "sensors",   "mapping",
+    "plan",       "flagfile"};
+
+struct NamedPath {
+  std::string name, path;
+};
+
+std::vector<NamedPath> Outputs() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  std::vector<NamedPath> outputs;
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
+    outputs.push_back({"--" + flag.name, flag.current_value});
+  }
+  return outputs;
+}
+
+// Through symbolic and hard links too; a file need not exist.
+bool Same(const std::string& a, const std::string& b) {
+  std::error_code failed;
+  if (fs::equivalent(a, b, failed) && !failed) return true;
+  const auto whole = [](const std::string& path) {
+    std::error_code ignored;
+    std::string text = fs::weakly_canonical(fs::absolute(path), ignored).string();
+    if (text.size() > 1 && text.back() == '/') text.pop_back();
+    return text;
+  };
+  return whole(a) == whole(b);
+}
+
+Error BothName(const std::string& a, const std::string& b, const std::string& path) {
+  return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
+}
+
+}  // namespace
+
+MaybeError CheckOutputs() {
+  const std::vector<NamedPath> outputs = Outputs();
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (!Same(outputs[i].path, outputs[k].path)) continue;
+      return BothName(outputs[k].name, outputs[i].name, outputs[i].path);
+    }
+  }
+  for (const char* input : kInputs) {
+    gflags::CommandLineFlagInfo flag;
+    if (!gflags::GetCommandLineFlagInfo(input, &flag) || flag.is_default) continue;
+    const MaybeError error = CheckNoOutput("--" + flag.name, flag.current_value);
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckNoOutput(const std::string& reader, const std::string& path) {
+  for (const NamedPath& output : Outputs()) {
+    if (Same(output.path, path)) return BothName(reader, output.name, path);
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,25 @@
+// apps: no program replaces what it reads, nor one of its outputs by another.
+//
+// Outputs are known by their flags' names (out, *_out, bootstrap_file), inputs by the list in
+// overwrite_check.cc; so the check holds for every program at once.
+#pragma once
+
+#include <string>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// Whether a flag of this name says where to write. Here, so that plans are read without flags.
+inline bool IsOutputFlag(const std::string& name) {
+  const bool ends = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
+  return name == "out" || name == "bootstrap_file" || (ends && name != "leave_out");
+}
+
+// Between the flags, as they are given. RunApp asks for it before anything is done.
+MaybeError CheckOutputs();
+
+// For an input that no flag names: `reader` says what does ("--sensors", "the command line").
+MaybeError CheckNoOutput(const std::string& reader, const std::string& path);
+
+}  // namespace pushid

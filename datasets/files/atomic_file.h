@@ -1,0 +1,51 @@
+// datasets: output files that are either complete or not there. The bytes go to a temporary file
+// beside the target, reach the disk, and only then take the target's name; a crash, a full disk or
+// an error half way leaves the old file as it was and no temporary behind.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// For output in pieces:
+//
+//   AtomicFile file;
+//   if (MaybeError failed = file.Open(path)) return failed;
+//   file.Append(text);           // may be repeated; errors are kept until Commit
+//   return file.Commit();        // without it the destructor discards everything
+//
+// A target that is no regular file (/dev/stdout, a pipe) is written directly.
+class AtomicFile {
+ public:
+  AtomicFile() = default;
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  // Errors: the folder does not exist or may not be written, the target is a folder or protected.
+  MaybeError Open(const std::string& path);
+  void Append(std::string_view bytes);
+  MaybeError Commit();
+
+ private:
+  void Flush();
+  void Discard();
+
+  std::string path_;       // as the caller named it, for messages
+  std::string target_;     // with symbolic links followed, so that a link stays a link
+  std::string temporary_;  // empty when the target is written directly
+  std::string pending_;
+  int descriptor_ = -1;
+  MaybeError error_;
+};
+
+MaybeError WriteFileAtomically(const std::string& path, std::string_view contents);
+
+// Whether `path` could be written now, found out by creating and removing a temporary beside it.
+// For use before a long computation whose result shall go there; leaves the target untouched.
+MaybeError CheckWritable(const std::string& path);
+
+}  // namespace pushid

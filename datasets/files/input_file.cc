@@ -1,0 +1,149 @@
+// datasets: reading files in pieces.
+#include "datasets/files/input_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace pushid {
+namespace {
+
+constexpr std::size_t kBufferSize = 1 << 18;    // fits a core's second-level cache
+constexpr std::size_t kLongestLine = 64 << 20;  // beyond it the file is no text
+
+}  // namespace
+
+InputFile::~InputFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+MaybeError InputFile::Open(const std::string& path) {
+  path_ = path;
+  if (path.empty()) return Error{"the file name is empty", "", 0};
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor_ < 0) {
+    if (errno == ENOENT) return Error{"there is no such file", path, 0};
+    return Error{std::string("cannot open it: ") + std::strerror(errno), path, 0};
+  }
+  struct stat info {};
+  if (::fstat(descriptor_, &info) == 0) {
+    if (S_ISDIR(info.st_mode)) return Error{"this is a folder, not a file", path, 0};
+    if (S_ISREG(info.st_mode)) size_ = info.st_size;
+  }
+  return std::nullopt;
+}
+
+Result<std::size_t> InputFile::Read(char* buffer, std::size_t capacity) {
+  while (true) {
+    const ssize_t count = ::read(descriptor_, buffer, capacity);
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno != EINTR) {
+      return Error{std::string("cannot read it: ") + std::strerror(errno), path_, 0};
+    }
+  }
+}
+
+MaybeError LineReader::Open(const std::string& path) {
+  error_ = file_.Open(path);
+  if (error_) return error_;
+  // A small file needs no large buffer; one byte more finds its end.
+  const std::int64_t size = file_.size();
+  buffer_.resize(size > 0 && size < static_cast<std::int64_t>(kBufferSize)
+                     ? static_cast<std::size_t>(size) + 1
+                     : kBufferSize);
+  return error_;
+}
+
+// Makes more of the file available behind the unread part; false when there is no more.
+bool LineReader::Refill() {
+  if (at_end_ || error_) return false;
+  if (begin_ > 0) {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  if (end_ == buffer_.size()) {
+    if (buffer_.size() >= kLongestLine) {
+      error_ = Error{"a line is longer than 64 MB: this is not a text file of the kind expected",
+                     path(), line_number_ + 1};
+      return false;
+    }
+    buffer_.resize(2 * buffer_.size());
+  }
+  Result<std::size_t> count = file_.Read(buffer_.data() + end_, buffer_.size() - end_);
+  if (!count.ok()) {
+    error_ = count.error();
+    return false;
+  }
+  if (count.value() == 0) {
+    at_end_ = true;
+    return false;
+  }
+  hash_.Add({buffer_.data() + end_, count.value()});
+  end_ += count.value();
+  return true;
+}
+
+bool LineReader::Next(std::string_view* line) {
+  std::size_t searched = 0;  // bytes of the unread part known to hold no newline
+  while (true) {
+    const char* start = buffer_.data() + begin_;
+    const std::size_t available = end_ - begin_;
+    const void* newline =
+        available > searched ? std::memchr(start + searched, '\n', available - searched) : nullptr;
+    if (newline != nullptr) {
+      const std::size_t length = static_cast<const char*>(newline) - start;
+      *line = {start, length};
+      begin_ += length + 1;
+      ended_in_newline_ = true;
+      break;
+    }
+    searched = available;
+    if (!Refill()) {
+      if (error_ || begin_ == end_) return false;
+      *line = {buffer_.data() + begin_, end_ - begin_};  // a last line without its newline
+      begin_ = end_;
+      ended_in_newline_ = false;
+      break;
+    }
+  }
+  if (!line->empty() && line->back() == '\r') line->remove_suffix(1);
+  if (line_number_ == 0 && line->substr(0, 3) == "\xEF\xBB\xBF") line->remove_prefix(3);
+  ++line_number_;
+  return true;
+}
+
+bool LineReader::NextNonBlank(std::string_view* line) {
+  while (Next(line)) {
+    for (char c : *line) {
+      if (c != ' ' && c != '\t' && c != '\r') return true;
+    }
+  }
+  return false;
+}
+
+// Bytes; a manifest of a million recordings is smaller. /dev/zero would never end.
+constexpr std::size_t kLargestText = std::size_t{1} << 30;
+
+Result<std::string> ReadWholeFile(const std::string& path) {
+  InputFile file;
+  if (MaybeError failed = file.Open(path)) return *std::move(failed);
+  std::string text;
+  std::size_t used = 0;
+  text.resize(file.size() > 0 ? static_cast<std::size_t>(file.size()) + 1 : 1 << 12);
+  while (true) {
+    if (used >= kLargestText) return Error{"the file is too large for a text of its kind", path, 0};
+    if (used == text.size()) text.resize(2 * text.size());
+    Result<std::size_t> count = file.Read(text.data() + used, text.size() - used);
+    if (!count.ok()) return count.error();
+    if (count.value() == 0) break;
+    used += count.value();
+  }
+  text.resize(used);
+  return text;
+}
+
+}  // namespace pushid

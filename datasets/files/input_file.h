@@ -1,0 +1,79 @@
+// datasets: reading files in pieces. Not by mapping them: the pages of a mapped file count as
+// resident memory, and a recording of hours should need no more than its positions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "datasets/files/content_hash.h"
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// A file opened for reading; closed with the object.
+class InputFile {
+ public:
+  InputFile() = default;
+  ~InputFile();
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  // Errors: no such file, a folder, no permission.
+  MaybeError Open(const std::string& path);
+
+  // Up to `capacity` bytes; 0 at the end of the file.
+  Result<std::size_t> Read(char* buffer, std::size_t capacity);
+
+  std::int64_t size() const { return size_; }  // bytes; 0 for a pipe
+  const std::string& path() const { return path_; }
+
+ private:
+  int descriptor_ = -1;
+  std::int64_t size_ = 0;
+  std::string path_;
+};
+
+// A text file line by line, hashed on the way.
+//
+//   LineReader reader;
+//   if (MaybeError failed = reader.Open(path)) return *failed;
+//   std::string_view line;
+//   while (reader.Next(&line)) { ... }
+//   if (reader.error()) return *reader.error();
+class LineReader {
+ public:
+  MaybeError Open(const std::string& path);
+
+  // The next line without its end (LF or CRLF), valid until the next call; false at the end of the
+  // file or after an error. A byte order mark at the start is skipped.
+  bool Next(std::string_view* line);
+  // The same, passing over lines with nothing but blanks.
+  bool NextNonBlank(std::string_view* line);
+
+  int line_number() const { return line_number_; }             // of the line last returned, 1-based
+  bool ended_in_newline() const { return ended_in_newline_; }  // false: it is the file's last
+  const MaybeError& error() const { return error_; }
+  Error ErrorHere(std::string message) const { return {std::move(message), path(), line_number_}; }
+
+  std::string HashHex() const { return hash_.Hex(); }  // of everything read so far
+  std::int64_t file_size() const { return file_.size(); }
+  const std::string& path() const { return file_.path(); }
+
+ private:
+  bool Refill();
+
+  InputFile file_;
+  ContentHash hash_;
+  std::string buffer_;
+  std::size_t begin_ = 0, end_ = 0;  // the unread part of buffer_
+  bool at_end_ = false, ended_in_newline_ = false;
+  int line_number_ = 0;
+  MaybeError error_;
+};
+
+// A whole file in memory, for the small ones (manifests, models).
+Result<std::string> ReadWholeFile(const std::string& path);
+
+}  // namespace pushid

@@ -1,0 +1,137 @@
+// datasets: typed values taken out of a JSON object, each complaint with its place in the file.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "datasets/files/error.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+
+// "60", "\"abc\"", "[...]": a value as a message shows it.
+inline std::string Shown(const nlohmann::ordered_json& value) {
+  if (value.is_object()) return "an object";
+  if (value.is_array()) return "a list";
+  return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+// Takes typed values out of one JSON object and remembers the first thing that is wrong, so that a
+// reader lists its keys one after the other and asks once at the end.
+class JsonFields {
+ public:
+  // `label` begins every message: "recording 'single_X05_00'".
+  JsonFields(const JsonDocument& document, const nlohmann::ordered_json& object,
+             std::string pointer, std::string label)
+      : document_(document),
+        object_(object),
+        pointer_(std::move(pointer)),
+        label_(std::move(label)) {
+    if (!object_.is_object()) Fail("", "must be an object { }, not " + Shown(object_));
+  }
+
+  bool Has(const char* key) const { return object_.is_object() && object_.contains(key); }
+  const nlohmann::ordered_json& At(const char* key) const { return object_.at(key); }
+  std::string Pointer(const std::string& key) const {
+    return key.empty() ? pointer_ : pointer_ + "/" + key;
+  }
+  const std::string& label() const { return label_; }
+  void set_label(std::string label) { label_ = std::move(label); }
+  const MaybeError& error() const { return error_; }
+
+  void Fail(const std::string& key, const std::string& problem) {
+    if (error_) return;
+    error_ = document_.ErrorAt(Pointer(key),
+                               label_ + ": " + (key.empty() ? problem : key + " " + problem));
+  }
+  void Fail(const MaybeError& error) {
+    if (!error_) error_ = error;
+  }
+
+  // Other keys than these are mistakes, which would be read over.
+  void Only(std::initializer_list<const char*> keys) {
+    if (!object_.is_object()) return;
+    std::string list;
+    for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+    for (const auto& [key, value] : object_.items()) {
+      const bool known = std::any_of(keys.begin(), keys.end(),
+                                     [&name = key](const char* one) { return name == one; });
+      if (!known) Fail(key, "is not known; there may be " + list);
+    }
+  }
+
+  bool Require(const char* key, const char* what) {
+    if (Has(key)) return true;
+    Fail(key, std::string("is missing; it must be ") + what);
+    return false;
+  }
+
+  std::string Text(const char* key, const char* what) {
+    return Require(key, what) ? OptionalText(key, "") : "";
+  }
+
+  std::string OptionalText(const char* key, const std::string& fallback) {
+    if (!Has(key)) return fallback;
+    if (!At(key).is_string()) {
+      Fail(key, "must be text in quotes, not " + Shown(At(key)));
+      return fallback;
+    }
+    return At(key).get<std::string>();
+  }
+
+  double Number(const char* key, const char* what) {
+    if (!Require(key, what)) return 0.0;
+    if (!At(key).is_number()) {
+      Fail(key, std::string("must be ") + what + ", not " + Shown(At(key)));
+      return 0.0;
+    }
+    return At(key).get<double>();
+  }
+
+  // A whole number in [lowest, highest].
+  int Whole(const char* key, const char* what, int lowest, int highest) {
+    const double value = Number(key, what);
+    if (error_) return lowest;
+    if (std::floor(value) != value || value < lowest || value > highest) {
+      Fail(key, "is " + Shown(At(key)) + "; it must be " + what);
+      return lowest;
+    }
+    return static_cast<int>(value);
+  }
+
+  // The list under `key`, or an empty one.
+  const nlohmann::ordered_json& List(const char* key) {
+    static const nlohmann::ordered_json kEmpty = nlohmann::ordered_json::array();
+    if (!Has(key)) return kEmpty;
+    if (At(key).is_array()) return At(key);
+    Fail(key, "must be a list [ ], not " + Shown(At(key)));
+    return kEmpty;
+  }
+
+  // One of the names that `from_name` knows.
+  template <typename T>
+  T Choice(const char* key, std::optional<T> (*from_name)(std::string_view), T fallback,
+           const char* names) {
+    if (!Has(key)) return fallback;
+    const std::string name = OptionalText(key, "");
+    const std::optional<T> choice = from_name(name);
+    if (!choice) Fail(key, "is " + Quoted(name) + "; it must be " + names);
+    return choice.value_or(fallback);
+  }
+
+ private:
+  const JsonDocument& document_;
+  const nlohmann::ordered_json& object_;
+  std::string pointer_;
+  std::string label_;
+  MaybeError error_;
+};
+
+}  // namespace pushid

@@ -1,0 +1,235 @@
+// datasets: JSON files in and out.
+#include "datasets/files/json_file.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/input_file.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kDeepestNesting = 200;  // copying and writing recurse
+
+bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+// Walks over text that is known to be valid JSON.
+class JsonWalker {
+ public:
+  explicit JsonWalker(const std::string& text) : text_(text) { SkipSpace(); }
+
+  // Goes from the container at the current place to its member or element `key`; false, and no
+  // move, when there is none.
+  // Appends where the values start that it comes by, if wanted.
+  bool Enter(const std::string& key, std::vector<std::size_t>* starts = nullptr) {
+    const std::size_t start = at_;
+    const bool object = At() == '{';
+    if (!object && At() != '[') return false;
+    std::size_t found = std::string::npos;
+    ++at_;
+    SkipSpace();
+    for (std::size_t index = 0; At() != '}' && At() != ']' && At() != '\0'; ++index) {
+      std::string name = std::to_string(index);
+      if (object) {
+        const std::size_t name_start = at_;
+        SkipString();
+        name = nlohmann::json::parse(text_.substr(name_start, at_ - name_start)).get<std::string>();
+        SkipSpace();
+        ++at_;  // the colon
+        SkipSpace();
+      }
+      if (starts != nullptr) starts->push_back(at_);
+      if (name == key) found = at_;  // of equal names the last one counts, as in the parser
+      SkipValue();
+      SkipSpace();
+      if (At() == ',') ++at_;
+      SkipSpace();
+    }
+    at_ = found == std::string::npos ? start : found;
+    return found != std::string::npos;
+  }
+
+  // Follows "/recordings/3/fps" as far as it leads.
+  void Follow(const std::string& pointer) {
+    std::size_t begin = pointer.empty() ? std::string::npos : 1;
+    while (begin != std::string::npos) {
+      const std::size_t slash = pointer.find('/', begin);
+      if (!Enter(pointer.substr(begin, slash == std::string::npos ? slash : slash - begin))) return;
+      begin = slash == std::string::npos ? slash : slash + 1;
+    }
+  }
+
+  std::size_t position() const { return at_; }
+
+ private:
+  char At() const { return at_ < text_.size() ? text_[at_] : '\0'; }
+  void SkipSpace() {
+    while (at_ < text_.size() && IsSpace(text_[at_])) ++at_;
+  }
+  void SkipString() {
+    for (++at_; at_ < text_.size() && text_[at_] != '"'; ++at_) {
+      if (text_[at_] == '\\') ++at_;
+    }
+    ++at_;
+  }
+  void SkipValue() {
+    int depth = 0;
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '"') {
+        SkipString();
+        if (depth == 0) return;
+        continue;
+      }
+      if (depth == 0 && (c == ',' || c == '}' || c == ']' || IsSpace(c))) return;
+      ++at_;
+      if (c == '{' || c == '[') ++depth;
+      if ((c == '}' || c == ']') && --depth == 0) return;
+    }
+  }
+
+  const std::string& text_;
+  std::size_t at_ = 0;
+};
+
+// Line and column (1-based, in bytes) of text[position].
+void SetPlace(const std::string& text, std::size_t position, Error* error) {
+  position = std::min(position, text.size());
+  error->line = 1 + static_cast<int>(std::count(text.begin(), text.begin() + position, '\n'));
+  const std::size_t newline = position == 0 ? std::string::npos : text.rfind('\n', position - 1);
+  error->column = static_cast<int>(position - (newline == std::string::npos ? 0 : newline + 1)) + 1;
+}
+
+// Position of the opening bracket that nests too deep; npos when none does.
+std::size_t TooDeepAt(const std::string& text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kDeepestNesting) return i;
+    } else if (c == '}' || c == ']') {
+      --depth;
+    }
+  }
+  return std::string::npos;
+}
+
+// Some of the parser's exceptions know no position; its events do.
+struct ErrorFinder : nlohmann::json_sax<nlohmann::json> {
+  std::size_t last_read = 0;  // the byte at which it could not go on: the end of the wrong token
+  std::string message;
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t bytes_read, const std::string&,
+                   const nlohmann::json::exception& exception) override {
+    last_read = bytes_read > 0 ? bytes_read - 1 : 0;
+    message = exception.what();
+    return false;
+  }
+};
+
+Error SyntaxError(const std::string& path, const std::string& text) {
+  ErrorFinder finder;
+  nlohmann::json::sax_parse(text, &finder);
+  // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...": the
+  // place is told by the Error itself.
+  std::string message = finder.message;
+  if (const std::size_t end = message.find("] "); end != std::string::npos) {
+    message = message.substr(end + 2);
+  }
+  if (message.rfind("parse error at line", 0) == 0)
+    message = message.substr(message.find(": ") + 2);
+  Error error{"this is not valid JSON: " + message, path, 0};
+  SetPlace(text, finder.last_read, &error);
+  return error;
+}
+
+template <typename Json>
+MaybeError Write(const std::string& path, const Json& content, int indent) {
+  std::string text = content.dump(indent, ' ', false, Json::error_handler_t::replace);
+  text += '\n';
+  return WriteFileAtomically(path, text);
+}
+
+}  // namespace
+
+Error JsonDocument::ErrorAt(const std::string& pointer, std::string message) const {
+  JsonWalker walker(text);
+  walker.Follow(pointer);
+  Error error{std::move(message), path, 0};
+  SetPlace(text, walker.position(), &error);
+  return error;
+}
+
+std::vector<int> JsonDocument::ElementLines(const std::string& pointer) const {
+  JsonWalker walker(text);
+  walker.Follow(pointer);
+  std::vector<std::size_t> starts;
+  walker.Enter("", &starts);  // no element has this name: it comes by all of them
+  std::vector<int> lines;
+  std::size_t counted_to = 0;
+  int line = 1;
+  for (std::size_t start : starts) {
+    line += static_cast<int>(std::count(text.begin() + counted_to, text.begin() + start, '\n'));
+    counted_to = start;
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+Result<JsonDocument> ReadJsonDocument(const std::string& path) {
+  Result<std::string> text = ReadWholeFile(path);
+  if (!text.ok()) return text.error();
+  JsonDocument document;
+  document.path = path;
+  document.text = std::move(text.value());
+  if (std::all_of(document.text.begin(), document.text.end(), IsSpace)) {
+    return Error{"the file is empty", path, 0};
+  }
+  if (const std::size_t deep = TooDeepAt(document.text); deep != std::string::npos) {
+    Error error{"the JSON nests deeper than " + std::to_string(kDeepestNesting) + " levels", path,
+                0};
+    SetPlace(document.text, deep, &error);
+    return error;
+  }
+  try {
+    document.content = nlohmann::ordered_json::parse(document.text);
+  } catch (const nlohmann::json::exception&) {
+    return SyntaxError(path, document.text);
+  }
+  return document;
+}
+
+Result<nlohmann::json> ReadJson(const std::string& path) {
+  Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  return nlohmann::json(document.value().content);
+}
+
+MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent) {
+  return Write(path, content, indent);
+}
+
+MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content, int indent) {
+  return Write(path, content, indent);
+}
+
+}  // namespace pushid

@@ -1,0 +1,41 @@
+// datasets: numbers from and to text, independent of the locale.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// Spaces, tabs and a carriage return; newlines never reach the callers.
+inline bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+std::string_view Trimmed(std::string_view text);
+
+// Takes the next run of non-blank characters off the front of `text`; empty when there is none.
+std::string_view NextToken(std::string_view* text);
+
+// "A" and "a" are the same (ASCII).
+bool EqualsIgnoringCase(std::string_view a, std::string_view b);
+
+// A finite decimal number that fills `token` entirely; a leading + is allowed. On failure the
+// reason follows from NumberProblem.
+bool ParseDouble(std::string_view token, double* value);
+bool ParseInteger(std::string_view token, std::int64_t* value);
+
+// Why `token` is no number: "'abc' is not a number", "'nan' is not a finite number", ...
+std::string NumberProblem(std::string_view token);
+
+// `text` in single quotes, shortened and with unprintable bytes replaced, fit for a message.
+std::string Quoted(std::string_view text);
+
+// Appends the shortest text that reads back to the same double; never -0 or a locale's comma.
+void AppendDouble(double value, std::string* out);
+std::string DoubleText(double value);
+
+// "%.<digits>g" for messages.
+std::string Rounded(double value, int digits = 6);
+
+}  // namespace pushid

@@ -1,0 +1,62 @@
+// datasets: tables of numbers as text: CSV, and OpenSim's storage files (.sto, .mot).
+//
+//   CSV: one line of column names, then rows; separated by commas, semicolons or tabs, whichever
+//   the line of names holds most of. Names with a separator in them stand in quotes. Lines that
+//   start with # are comments.
+//   Storage: a head with `name=value` lines and `endheader`, then a line of column names and rows,
+//   separated by blanks.
+//
+// Cells that are empty, NaN or nan are missing and come out as NaN.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// After NumberProblem, where cells may be missing.
+inline constexpr const char* kMissingCell = "; a value that is missing is an empty cell or nan";
+
+enum class TableFormat { kCsv, kStorage };
+
+struct NumericTable {
+  std::string path;
+  bool in_degrees = false;                // what a storage file says of its angles
+  std::vector<std::string> names;         // of every column
+  std::vector<int> chosen;                // the columns read: indices into names
+  std::vector<std::vector<double>> data;  // [chosen][row]
+  std::vector<int> lines;                 // of each row, for messages; only when asked for
+  std::string content_hash;
+
+  int num_rows() const { return data.empty() ? 0 : static_cast<int>(data[0].size()); }
+  int FindName(std::string_view name) const;  // index into names, whatever the case; -1: none
+  // The data of a column by its index in names; null when it was not chosen.
+  const std::vector<double>* Column(int index) const;
+};
+
+struct TableReadOptions {
+  // Which columns to keep, from all names; unset: all.
+  std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
+  bool keep_lines = false;
+};
+
+// Errors name the line: no names, a name twice, rows of another length, text that is no number, a
+// storage file with other than the announced rows or columns.
+Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
+                                      const TableReadOptions& options = {});
+
+// Writes all columns, atomically; NaN as an empty cell (CSV) or nan (storage).
+MaybeError WriteNumericTable(const std::string& path, TableFormat format,
+                             const NumericTable& table);
+
+// The column that holds the time: `wanted` when given, otherwise time, t, time_s, ...; -1: none.
+int FindTimeColumn(const std::vector<std::string>& names, const std::string& wanted);
+
+// Steps of a time column in s, or an Error where it does not ascend in even steps (1 %).
+Result<double> EvenTimeStep(const NumericTable& table, int time_column);
+
+}  // namespace pushid

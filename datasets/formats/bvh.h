@@ -1,0 +1,118 @@
+// datasets: BVH (Biovision Hierarchy) motion files, read and written.
+//
+// Conventions, per joint and frame:
+//   - local translation: the OFFSET, expressed in the parent's frame. Where a joint has position
+//     channels, each of them REPLACES its component of the OFFSET. That is what Blender,
+//     MotionBuilder exports with six channels per joint and the LAFAN1 tools mean; adding the two
+//     (three.js) counts such offsets twice. For a root at OFFSET 0 both agree.
+//   - local rotation: R = R1 R2 R3 of the rotation channels in the order listed, degrees.
+//   - world: p_joint = p_parent + R_parent t_joint, R_joint = R_parent R_local. Translation
+//   precedes
+//     rotation wherever the position channels stand in the list.
+//
+//   Result<BvhMotion> motion = ReadBvh("walk.bvh", {});                        // everything, raw
+//   Result<BvhPositions> p = ReadBvhPositions("walk.bvh", {LengthUnit::kMillimetre, {"Hips"}, {}});
+//   MaybeError failed = WriteBvh("copy.bvh", motion.value(), motion.value().length_unit);
+//
+// The readers are strict: a truncated file, a row too many or too few, a number that is not one,
+// NaN, infinity, an unknown channel or a duplicate name is an Error with file and line.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
+
+namespace pushid {
+
+// In the order of the letters, so that the axis is the value modulo three.
+enum class BvhChannel { kXposition, kYposition, kZposition, kXrotation, kYrotation, kZrotation };
+
+inline bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXrotation; }
+inline int AxisOf(BvhChannel channel) { return static_cast<int>(channel) % 3; }  // 0 x, 1 y, 2 z
+
+// "Xposition" ... "Zrotation", as files spell them.
+const char* Name(BvhChannel channel);
+
+// The usual channels: Zrotation Yrotation Xrotation, for a root after Xposition Yposition
+// Zposition.
+std::vector<BvhChannel> DefaultBvhChannels(bool with_position);
+
+struct BvhJoint {
+  std::string name;
+  int parent = -1;                                   // index of an earlier joint; -1 for a root
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // length unit of the motion
+  std::vector<BvhChannel> channels;                  // in the order of the numbers in a row
+  std::vector<Eigen::Vector3d> end_sites;            // length unit; one for a leaf, as a rule
+};
+
+// Joints in file order: depth first, so every parent precedes its children. Names are unique.
+struct BvhSkeleton {
+  std::vector<BvhJoint> joints;
+
+  int num_channels() const;
+  int Find(const std::string& name) const;  // index of the joint, or -1
+};
+
+// A BVH file as it stands: lengths in `length_unit`, angles in degrees.
+struct BvhMotion {
+  BvhSkeleton skeleton;
+  LengthUnit length_unit = LengthUnit::kMillimetre;  // of offsets, end sites and position channels
+  double frame_time_s = 0.0;
+  std::vector<double> values;  // frame-major: num_channels() per frame, in file order
+
+  int num_frames() const;
+};
+
+struct BvhReadOptions {
+  // What the file's lengths are; BVH itself does not say. Only noted in the motion, not converted.
+  LengthUnit length_unit = LengthUnit::kMillimetre;
+};
+
+// Reads everything, including every channel value (8 bytes per number).
+Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options = {});
+
+struct BvhPositionOptions {
+  // What the file's lengths are; the positions come out in metres.
+  LengthUnit length_unit = LengthUnit::kMillimetre;
+  // Names of the joints whose positions are wanted, in the order wanted; empty: all joints.
+  std::vector<std::string> joints;
+  // When set, decides instead of `joints`: called once with the skeleton, returns joint indices.
+  // For a choice that depends on the skeleton, like a default mapping.
+  std::function<Result<std::vector<int>>(const BvhSkeleton&)> choose_joints;
+};
+
+// World positions of chosen joints.
+struct BvhPositions {
+  BvhSkeleton skeleton;  // offsets in the file's own unit
+  double frame_time_s = 0.0;
+  std::vector<int> joints;                              // joint index of each entry of `positions`
+  std::vector<std::vector<Eigen::Vector3d>> positions;  // [chosen joint][frame], metres
+  std::string content_hash;                             // XXH3-128 of the file, hex
+
+  int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
+};
+
+// Reads row by row and keeps nothing but the chosen positions, so memory is 24 bytes per chosen
+// joint and frame whatever the file's size.
+Result<BvhPositions> ReadBvhPositions(const std::string& path,
+                                      const BvhPositionOptions& options = {});
+
+// Writes `motion` with its lengths in `unit` (normally motion.length_unit), atomically. Numbers are
+// the shortest that read back to the same double. An inconsistent motion (wrong number of values,
+// joints not depth first, NaN, no frames, frame time out of range) is an Error. A leaf without an
+// end site gets one at its own place, which other programs insist on.
+MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit);
+
+// "there is no joint 'Hip'; it has Hips, Spine, ..." for whoever looks joints up by name.
+Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
+                        const std::string& name);
+
+// Frame times accepted in files: 1 to 10000 frames per second.
+constexpr double kMinFramesPerSecond = 1.0;
+constexpr double kMaxFramesPerSecond = 10000.0;
+
+}  // namespace pushid

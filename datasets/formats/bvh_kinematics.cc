@@ -1,0 +1,75 @@
+// datasets: forward kinematics of a BVH skeleton.
+#include "datasets/formats/bvh_kinematics.h"
+
+#include <cmath>
+#include <utility>
+
+namespace pushid {
+namespace {
+
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
+
+// R <- R * R_axis(angle): only two columns change, e.g. for x: y' = c y + s z, z' = c z - s y.
+void RotateAbout(int axis, double radians, Eigen::Matrix3d* rotation) {
+  const double c = std::cos(radians), s = std::sin(radians);
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  const Eigen::Vector3d column_i = rotation->col(i), column_j = rotation->col(j);
+  rotation->col(i) = c * column_i + s * column_j;
+  rotation->col(j) = c * column_j - s * column_i;
+}
+
+}  // namespace
+
+BvhKinematics::BvhKinematics(const BvhSkeleton& skeleton, LengthUnit unit, std::vector<int> joints)
+    : skeleton_(skeleton),
+      metres_per_unit_(MetresPer(unit)),
+      joints_(std::move(joints)),
+      world_position_(skeleton.joints.size()),
+      world_rotation_(skeleton.joints.size()) {
+  const int count = static_cast<int>(skeleton_.joints.size());
+  std::vector<bool> needed(count, false), rotates(count, false);
+  for (int joint : joints_) needed[joint] = true;
+  for (int joint = count - 1; joint >= 0; --joint) {
+    const int parent = skeleton_.joints[joint].parent;
+    if (needed[joint] && parent >= 0) needed[parent] = rotates[parent] = true;
+  }
+  int first_channel = 0;
+  for (int joint = 0; joint < count; ++joint) {
+    if (needed[joint]) {
+      steps_.push_back({joint, skeleton_.joints[joint].parent, rotates[joint], first_channel});
+    }
+    first_channel += static_cast<int>(skeleton_.joints[joint].channels.size());
+  }
+}
+
+void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
+  for (const Step& step : steps_) {
+    const BvhJoint& joint = skeleton_.joints[step.joint];
+    const double* values = row + step.first_channel;
+    Eigen::Matrix3d& rotation = world_rotation_[step.joint];
+    if (step.parent >= 0) {
+      rotation = world_rotation_[step.parent];
+    } else {
+      rotation.setIdentity();
+    }
+    Eigen::Vector3d translation = joint.offset;
+    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+      const BvhChannel channel = joint.channels[i];
+      if (!IsRotation(channel)) translation[AxisOf(channel)] = values[i];
+    }
+    world_position_[step.joint] = rotation * translation;
+    if (step.parent >= 0) world_position_[step.joint] += world_position_[step.parent];
+    if (!step.rotates_something) continue;
+    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+      const BvhChannel channel = joint.channels[i];
+      if (IsRotation(channel)) {
+        RotateAbout(AxisOf(channel), values[i] * kRadiansPerDegree, &rotation);
+      }
+    }
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    positions[i] = metres_per_unit_ * world_position_[joints_[i]];
+  }
+}
+
+}  // namespace pushid

@@ -1,0 +1,136 @@
+// datasets: C3D files as data; their events and force platforms.
+#include "datasets/formats/c3d.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/c3d_parameters.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kShortLabels = 12345;  // header word 150: event labels have four letters
+constexpr int kHeaderEvents = 18;
+constexpr int kMostPlatforms = 255;
+constexpr char kPlatforms[] = "FORCE_PLATFORM";
+
+Error PlatformError(const C3dFile& file, int index, const std::string& problem) {
+  return {"force platform " + std::to_string(index + 1) + " " + problem, file.path};
+}
+
+Result<C3dPlatform> ReadPlatform(const C3dFile& file, int index, int stride) {
+  const auto number = [&file](const char* name, int at, double fallback) {
+    return C3dNumber(file.parameters, kPlatforms, name, at, fallback);
+  };
+  C3dPlatform platform;
+  platform.type = C3dWhole(file.parameters, kPlatforms, "TYPE", index, -1000, 1000, 0);
+  if (platform.type < 1 || platform.type > 4) {
+    return PlatformError(
+        file, index, "has the type " + std::to_string(platform.type) + "; types 1 to 4 are known");
+  }
+  const int needed = platform.type == 3 ? 8 : 6;
+  if (stride < needed) {
+    return PlatformError(file, index, "has fewer than " + std::to_string(needed) + " channels");
+  }
+  const int channels = static_cast<int>(file.analog.size());
+  for (int c = 0; c < needed; ++c) {
+    const double channel = number("CHANNEL", index * stride + c, 0.0);
+    if (!(channel >= 1.0 && channel <= channels)) {
+      return PlatformError(
+          file, index,
+          "names channel " + Rounded(channel) + "; there are 1 to " + std::to_string(channels));
+    }
+    platform.channels.push_back(static_cast<int>(channel) - 1);
+  }
+  for (int k = 0; k < 12; ++k) {
+    platform.corners(k % 3, k / 3) = number("CORNERS", 12 * index + k, 0.0);
+  }
+  for (int k = 0; k < 3; ++k) platform.origin[k] = number("ORIGIN", 3 * index + k, 0.0);
+  for (int k = 0; platform.type == 4 && k < 36; ++k) {
+    platform.calibration(k % 6, k / 6) =
+        number("CAL_MATRIX", 36 * index + k, k % 7 == 0 ? 1.0 : 0.0);
+  }
+  if (!platform.corners.allFinite() || !platform.origin.allFinite() ||
+      !platform.calibration.allFinite()) {
+    return PlatformError(file, index, "has corners, an origin or a calibration that is not finite");
+  }
+  return platform;
+}
+
+}  // namespace
+
+std::string Name(C3dProcessor processor) {
+  switch (processor) {
+    case C3dProcessor::kDec:
+      return "DEC";
+    case C3dProcessor::kMips:
+      return "MIPS";
+    case C3dProcessor::kIntel:
+      break;
+  }
+  return "Intel";
+}
+
+int C3dFile::samples_per_frame() const {
+  const int frames = num_frames();
+  return analog.empty() || frames == 0 ? 0 : static_cast<int>(analog[0].samples.size()) / frames;
+}
+
+int C3dFile::FindPoint(std::string_view name) const {
+  const auto found = std::find(point_names.begin(), point_names.end(), name);
+  return found == point_names.end() ? -1 : static_cast<int>(found - point_names.begin());
+}
+
+int C3dFile::FindAnalog(std::string_view name) const {
+  for (std::size_t i = 0; i < analog.size(); ++i) {
+    if (analog[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+const C3dParameter* C3dFile::Find(std::string_view group, std::string_view name) const {
+  return FindC3dParameter(parameters, group, name);
+}
+
+std::vector<C3dEvent> ReadC3dEvents(const std::vector<C3dParameter>& parameters,
+                                    const C3dBytes& bytes) {
+  std::vector<C3dEvent> events;
+  if (FindC3dParameter(parameters, "EVENT", "TIMES") != nullptr) {
+    const std::vector<double> times = C3dNumbers(parameters, "EVENT", "TIMES");
+    const std::vector<std::string> labels = C3dTexts(parameters, "EVENT", "LABELS");
+    const std::vector<std::string> contexts = C3dTexts(parameters, "EVENT", "CONTEXTS");
+    const std::size_t count = std::min<std::size_t>(
+        times.size() / 2, C3dWhole(parameters, "EVENT", "USED", 0, 0, 32767, 0));
+    for (std::size_t i = 0; i < count; ++i) {
+      events.push_back({60.0 * times[2 * i] + times[2 * i + 1], i < labels.size() ? labels[i] : "",
+                        i < contexts.size() ? contexts[i] : ""});
+    }
+    return events;
+  }
+  const bool four_letters = bytes.Word(298) == kShortLabels;
+  const int count = std::min<int>(bytes.Word(300), kHeaderEvents);
+  for (int i = 0; four_letters && i < count; ++i) {
+    const std::string_view label = bytes.Text(396 + 4 * i, 4);
+    events.push_back(
+        {bytes.Real(304 + 4 * i), std::string(Trimmed(label.substr(0, label.find('\0')))), ""});
+  }
+  return events;
+}
+
+MaybeError ReadC3dPlatforms(C3dFile* file) {
+  const int used = C3dWhole(file->parameters, kPlatforms, "USED", 0, 0, kMostPlatforms, 0);
+  const C3dParameter* channels = FindC3dParameter(file->parameters, kPlatforms, "CHANNEL");
+  if (used == 0 || channels == nullptr) return std::nullopt;
+  file->platform_zero_first = C3dWhole(file->parameters, kPlatforms, "ZERO", 0, 0, 1 << 30, 0);
+  file->platform_zero_last = C3dWhole(file->parameters, kPlatforms, "ZERO", 1, 0, 1 << 30, 0);
+  const int stride = channels->dimensions.empty() ? 1 : channels->dimensions[0];
+  for (int i = 0; i < used; ++i) {
+    Result<C3dPlatform> platform = ReadPlatform(*file, i, stride);
+    if (!platform.ok()) return platform.error();
+    file->platforms.push_back(platform.value());
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

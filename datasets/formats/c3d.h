@@ -1,0 +1,99 @@
+// datasets: C3D files (c3d.org's public format): trajectories of markers, analog channels, events
+// and force platforms in one binary file.
+//
+//   Result<C3dFile> file = ReadC3d("trial.c3d");
+//   file.value().points[file.value().FindPoint("LASI")][frame]   // in file.point_unit
+//
+// Three processors wrote them (Intel, DEC with VAX floats, MIPS big-endian), with points and
+// samples as scaled 16-bit integers or as floats; all six are read and written. The reader is
+// strict: what points outside the file, contradicts itself or is cut short is an Error with the
+// byte it stands at.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// The numbers are those in the file.
+enum class C3dProcessor { kIntel = 84, kDec = 85, kMips = 86 };
+std::string Name(C3dProcessor processor);  // "Intel", "DEC", "MIPS"
+
+enum class C3dType { kText = -1, kByte = 1, kInteger = 2, kReal = 4 };
+
+// One entry of the parameter section, GROUP:NAME. First dimension fastest.
+struct C3dParameter {
+  std::string group, name;
+  C3dType type = C3dType::kReal;
+  std::vector<int> dimensions;     // empty for a single value
+  std::vector<double> numbers;     // bytes, integers (signed) and reals
+  std::vector<std::string> texts;  // kText: one per string, blanks at the end cut off
+};
+
+struct C3dEvent {
+  double time_s = 0.0;  // on the clock whose frame 1 is at 0
+  std::string label;
+  std::string context;  // Left, Right, General; may be empty
+};
+
+// Where a force platform stands and which channels it fills; evaluated by force_platform.h.
+struct C3dPlatform {
+  int type = 2;               // 1 to 4
+  std::vector<int> channels;  // indices into the analog channels, from 0
+  Eigen::Matrix<double, 3, 4> corners = Eigen::Matrix<double, 3, 4>::Zero();          // point unit
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();                                   // point unit
+  Eigen::Matrix<double, 6, 6> calibration = Eigen::Matrix<double, 6, 6>::Identity();  // type 4
+};
+
+struct C3dAnalogChannel {
+  std::string name, unit;
+  std::vector<double> samples;  // in `unit`, scales and offsets applied
+};
+
+struct C3dFile {
+  std::string path;
+  C3dProcessor processor = C3dProcessor::kIntel;
+  bool floating = true;        // points and samples are floats in the file
+  int first_frame = 1;         // of the recording this was cut from, as the file counts
+  int announced_frames = 0;    // more than num_frames() when the file is cut short
+  double point_rate_hz = 0.0;  // frames per second
+  double analog_rate_hz = 0.0;
+  std::string point_unit;          // POINT:UNITS, "mm" as a rule; may be empty
+  std::string screen_x, screen_y;  // POINT:X_SCREEN, Y_SCREEN, "+X" and "+Z" as a rule
+  std::vector<std::string> point_names;
+  std::vector<std::vector<Eigen::Vector3d>> points;  // [point][frame]; NaN where it was not seen
+  int frames_without_points = 0;                     // how many there are, where `points` is empty
+  std::vector<C3dAnalogChannel> analog;
+  std::vector<C3dEvent> events;
+  std::vector<C3dPlatform> platforms;
+  int platform_zero_first = 0, platform_zero_last = 0;  // frames from 1 without load; 0: none
+  std::vector<C3dParameter> parameters;                 // everything, as it stands
+  std::string content_hash;
+
+  int num_frames() const {
+    return points.empty() ? frames_without_points : static_cast<int>(points[0].size());
+  }
+  int samples_per_frame() const;
+  int FindPoint(std::string_view name) const;   // index, or -1
+  int FindAnalog(std::string_view name) const;  // index, or -1
+  const C3dParameter* Find(std::string_view group, std::string_view name) const;
+};
+
+struct C3dReadOptions {
+  // A file that ends before its last announced frame: take the whole frames that are there instead
+  // of refusing it. For looking at what a file holds.
+  bool accept_truncated = false;
+};
+
+Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options = {});
+
+// Writes points, analog channels, events and platforms (not `parameters`), atomically. Integers are
+// scaled to the largest value of the points and of each channel. Names longer than 127 bytes,
+// tracks of unequal length, samples that are not finite and more than 65535 frames are Errors.
+MaybeError WriteC3d(const std::string& path, const C3dFile& file);
+
+}  // namespace pushid

@@ -1,0 +1,300 @@
+// datasets: C3D files written.
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/c3d_bytes.h"
+
+namespace pushid {
+namespace {
+
+constexpr std::size_t kBlock = 512;
+constexpr double kLargestInteger = 32000.0;
+constexpr std::size_t kLongestName = 127;
+constexpr std::size_t kMostEntries = 255;  // of one dimension
+
+std::string WritingProblem(const C3dFile& file) {
+  const std::size_t frames = file.num_frames();
+  if (frames < 1 || frames > 65535) return "it has " + std::to_string(frames) + " frames";
+  if (file.point_names.size() != file.points.size()) return "not every point has a name";
+  if (file.points.size() > 2 * kMostEntries || file.analog.size() > 2 * kMostEntries ||
+      file.platforms.size() > kMostEntries || file.events.size() > kMostEntries) {
+    return "it has too many points, channels, events or platforms";
+  }
+  if (!(file.point_rate_hz > 0.0)) return "its frame rate is not above 0";
+  for (std::size_t i = 0; i < file.points.size(); ++i) {
+    if (file.points[i].size() != frames) return "its tracks differ in length";
+    if (file.point_names[i].size() > kLongestName) return "the name of a point is too long";
+  }
+  for (const C3dAnalogChannel& channel : file.analog) {
+    if (channel.samples.size() != file.analog[0].samples.size() ||
+        channel.samples.size() % frames != 0 || channel.samples.empty()) {
+      return "channel " + Quoted(channel.name) + " has " + std::to_string(channel.samples.size()) +
+             " samples for " + std::to_string(frames) + " frames";
+    }
+    if (channel.name.size() > kLongestName) return "the name of a channel is too long";
+    for (double sample : channel.samples) {
+      if (!std::isfinite(sample)) return "a sample of " + Quoted(channel.name) + " is not finite";
+    }
+  }
+  return "";
+}
+
+// Rounded up to a whole number of 512-byte blocks.
+void FillBlock(std::string* bytes) {
+  bytes->resize((bytes->size() + kBlock - 1) / kBlock * kBlock, '\0');
+}
+
+class Writer {
+ public:
+  explicit Writer(const C3dFile& file) : file_(file) {}
+
+  std::string Write() {
+    double largest = 1e-6;
+    for (const auto& track : file_.points) {
+      for (const Eigen::Vector3d& p : track) {
+        if (p.allFinite()) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+      }
+    }
+    // As it is stored: the reader multiplies by the rounded number.
+    scale_ = static_cast<float>(largest / kLargestInteger);
+    for (const C3dAnalogChannel& channel : file_.analog) {
+      double peak = 1e-6;
+      for (double sample : channel.samples) peak = std::max(peak, std::fabs(sample));
+      analog_scale_.push_back(file_.floating ? 1.0f : static_cast<float>(peak / kLargestInteger));
+    }
+    Parameters();
+    Header();
+    Data();
+    return header_ + parameters_ + data_;
+  }
+
+ private:
+  void Word(double value, std::string* out) const {
+    AppendC3dWord(static_cast<std::uint16_t>(static_cast<int>(std::lround(value)) & 0xffff),
+                  file_.processor, out);
+  }
+  void Real(double value, std::string* out) const { AppendC3dReal(value, file_.processor, out); }
+
+  void Header() {
+    header_ += '\2';
+    header_ += '\x50';
+    Word(static_cast<double>(file_.points.size()), &header_);
+    Word(static_cast<double>(file_.analog.size()) * file_.samples_per_frame(), &header_);
+    Word(file_.first_frame, &header_);
+    Word(file_.first_frame + file_.num_frames() - 1.0, &header_);
+    Word(0, &header_);
+    Real(file_.floating ? -scale_ : scale_, &header_);
+    Word(1.0 + static_cast<double>((kBlock + parameters_.size()) / kBlock), &header_);
+    Word(file_.samples_per_frame(), &header_);
+    Real(file_.point_rate_hz, &header_);
+    FillBlock(&header_);
+  }
+
+  void Group(int id, const std::string& name) {
+    parameters_ += static_cast<char>(name.size());
+    parameters_ += static_cast<char>(-id);
+    parameters_ += name;
+    Word(3, &parameters_);  // itself and an empty description
+    parameters_ += '\0';
+    group_ = id;
+  }
+
+  void Parameter(const std::string& name, C3dType type, const std::vector<std::size_t>& dimensions,
+                 const std::string& data) {
+    parameters_ += static_cast<char>(name.size());
+    parameters_ += static_cast<char>(group_);
+    parameters_ += name;
+    Word(static_cast<double>(2 + 2 + dimensions.size() + data.size() + 1), &parameters_);
+    parameters_ += static_cast<char>(type);
+    parameters_ += static_cast<char>(dimensions.size());
+    for (std::size_t dimension : dimensions) parameters_ += static_cast<char>(dimension);
+    parameters_ += data;
+    parameters_ += '\0';
+  }
+
+  // What holds more entries than a dimension goes on in NAME2, NAME3, ...
+  template <typename Entry, typename Write>
+  static void InParts(const std::string& name, const std::vector<Entry>& entries, Write write) {
+    std::string part = name;
+    for (std::size_t begin = 0; begin == 0 || begin < entries.size(); begin += kMostEntries) {
+      const std::size_t end = std::min(entries.size(), begin + kMostEntries);
+      write(part, std::vector<Entry>(entries.begin() + begin, entries.begin() + end));
+      part = name + std::to_string(end / kMostEntries + 1);
+    }
+  }
+
+  void Texts(const std::string& name, const std::vector<std::string>& texts) {
+    std::size_t length = 1;
+    for (const std::string& text : texts) length = std::max(length, text.size());
+    length = std::min(length, kMostEntries);
+    InParts(name, texts, [&](const std::string& part, const std::vector<std::string>& some) {
+      std::string data;
+      for (std::string padded : some) {
+        padded.resize(length, ' ');
+        data += padded;
+      }
+      Parameter(part, C3dType::kText, {length, some.size()}, data);
+    });
+  }
+
+  void Text(const std::string& name, const std::string& text) {
+    Parameter(name, C3dType::kText, {text.size()}, text);
+  }
+
+  void Integers(const std::string& name, const std::vector<std::size_t>& dimensions,
+                const std::vector<double>& values) {
+    std::string data;
+    for (double value : values) Word(value, &data);
+    Parameter(name, C3dType::kInteger, dimensions, data);
+  }
+
+  void Reals(const std::string& name, const std::vector<std::size_t>& dimensions,
+             const std::vector<double>& values) {
+    std::string data;
+    for (double value : values) Real(value, &data);
+    Parameter(name, C3dType::kReal, dimensions, data);
+  }
+
+  void Parameters() {
+    parameters_ = std::string("\1\x50\0", 3) + static_cast<char>(file_.processor);
+    Group(1, "POINT");
+    Integers("USED", {}, {static_cast<double>(file_.points.size())});
+    Integers("FRAMES", {}, {static_cast<double>(file_.num_frames())});
+    Reals("SCALE", {}, {file_.floating ? -scale_ : scale_});
+    Reals("RATE", {}, {file_.point_rate_hz});
+    Text("UNITS", file_.point_unit);
+    if (!file_.screen_x.empty()) Text("X_SCREEN", file_.screen_x);
+    if (!file_.screen_y.empty()) Text("Y_SCREEN", file_.screen_y);
+    Texts("LABELS", file_.point_names);
+    Group(2, "ANALOG");
+    AnalogParameters();
+    Group(3, "FORCE_PLATFORM");
+    PlatformParameters();
+    Group(4, "EVENT");
+    EventParameters();
+    parameters_.append(2, '\0');  // a name of length 0 ends the list
+    FillBlock(&parameters_);
+    parameters_[2] = static_cast<char>(parameters_.size() / kBlock);
+  }
+
+  void AnalogParameters() {
+    std::vector<std::string> names, units;
+    std::vector<double> scales(analog_scale_.begin(), analog_scale_.end());
+    for (const C3dAnalogChannel& channel : file_.analog) {
+      names.push_back(channel.name);
+      units.push_back(channel.unit);
+    }
+    Integers("USED", {}, {static_cast<double>(names.size())});
+    Reals("RATE", {}, {file_.point_rate_hz * std::max(1, file_.samples_per_frame())});
+    Reals("GEN_SCALE", {}, {1.0});
+    Texts("LABELS", names);
+    Texts("UNITS", units);
+    using Numbers = std::vector<double>;
+    InParts("SCALE", scales, [this](const std::string& part, const Numbers& some) {
+      Reals(part, {some.size()}, some);
+    });
+    InParts("OFFSET", Numbers(scales.size(), 0.0),
+            [this](const std::string& part, const Numbers& some) {
+              Integers(part, {some.size()}, some);
+            });
+  }
+
+  void PlatformParameters() {
+    const std::size_t count = file_.platforms.size();
+    std::size_t stride = 6;
+    bool calibrated = false;
+    for (const C3dPlatform& platform : file_.platforms) {
+      stride = std::max(stride, platform.channels.size());
+      calibrated = calibrated || platform.type == 4;
+    }
+    std::vector<double> types, channels, corners, origins, calibration;
+    for (const C3dPlatform& platform : file_.platforms) {
+      types.push_back(platform.type);
+      for (std::size_t i = 0; i < stride; ++i) {
+        channels.push_back(i < platform.channels.size() ? platform.channels[i] + 1.0 : 0.0);
+      }
+      corners.insert(corners.end(), platform.corners.data(), platform.corners.data() + 12);
+      origins.insert(origins.end(), platform.origin.data(), platform.origin.data() + 3);
+      calibration.insert(calibration.end(), platform.calibration.data(),
+                         platform.calibration.data() + 36);
+    }
+    Integers("USED", {}, {static_cast<double>(count)});
+    Integers("TYPE", {count}, types);
+    Integers("CHANNEL", {stride, count}, channels);
+    Reals("CORNERS", {3, 4, count}, corners);
+    Reals("ORIGIN", {3, count}, origins);
+    if (calibrated) Reals("CAL_MATRIX", {6, 6, count}, calibration);
+    Integers("ZERO", {2},
+             {static_cast<double>(file_.platform_zero_first),
+              static_cast<double>(file_.platform_zero_last)});
+  }
+
+  void EventParameters() {
+    std::vector<std::string> labels, contexts;
+    std::vector<double> times;
+    for (const C3dEvent& event : file_.events) {
+      labels.push_back(event.label);
+      contexts.push_back(event.context);
+      times.push_back(std::floor(event.time_s / 60.0));
+      times.push_back(event.time_s - 60.0 * times.back());
+    }
+    Integers("USED", {}, {static_cast<double>(labels.size())});
+    Texts("LABELS", labels);
+    Texts("CONTEXTS", contexts);
+    Reals("TIMES", {2, labels.size()}, times);
+  }
+
+  void Data() {
+    const int per_frame = file_.samples_per_frame();
+    for (int frame = 0; frame < file_.num_frames(); ++frame) {
+      for (const auto& track : file_.points) Point(track[frame]);
+      for (int sample = 0; sample < per_frame; ++sample) {
+        for (std::size_t i = 0; i < file_.analog.size(); ++i) {
+          const double value = file_.analog[i].samples[frame * per_frame + sample];
+          if (file_.floating) {
+            Real(value, &data_);
+          } else {
+            Word(value / analog_scale_[i], &data_);
+          }
+        }
+      }
+    }
+    FillBlock(&data_);
+  }
+
+  void Point(const Eigen::Vector3d& position) {
+    const bool seen = position.allFinite();
+    for (int i = 0; i < 3; ++i) {
+      const double value = seen ? position[i] : 0.0;
+      if (file_.floating) {
+        Real(value, &data_);
+      } else {
+        Word(value / scale_, &data_);
+      }
+    }
+    if (file_.floating) {
+      Real(seen ? 0.0 : -1.0, &data_);
+    } else {
+      Word(seen ? 0.0 : -1.0, &data_);
+    }
+  }
+
+  const C3dFile& file_;
+  float scale_ = 1.0f;
+  std::vector<float> analog_scale_;
+  int group_ = 0;
+  std::string header_, parameters_, data_;
+};
+
+}  // namespace
+
+MaybeError WriteC3d(const std::string& path, const C3dFile& file) {
+  const std::string problem = WritingProblem(file);
+  if (!problem.empty()) return Error{"the C3D file cannot be written: " + problem, path};
+  return WriteFileAtomically(path, Writer(file).Write());
+}
+
+}  // namespace pushid

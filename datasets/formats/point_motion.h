@@ -1,0 +1,67 @@
+// datasets: trajectories of named points (markers or joints) from files other than BVH: C3D, TRC,
+// and tables (CSV, OpenSim STO and MOT) with three columns per point.
+//
+//   Result<PointMotion> motion = ReadPointMotion("trial.trc", MotionFormat::kTrc, {});
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
+#include "datasets/manifest/manifest.h"
+
+namespace pushid {
+
+// What files of the format are called: ".c3d" is C3D, ".mot" and ".sto" storage, ...; nullopt for
+// other endings.
+std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
+
+struct PointMotion {
+  std::string path;
+  double rate_hz = 0.0;            // frames per second; 0 when the file does not say
+  double first_time_s = 0.0;       // of a table with times; C3D files count from their first frame
+  std::optional<LengthUnit> unit;  // as the file says
+  std::string unit_text;           // what the file says, when it is no unit known here
+  std::string up;                  // the axis the file calls up, "+z"; empty when it does not say
+  std::vector<std::string> names;  // of every point of the file
+  std::vector<int> chosen;         // the points read: indices into names
+  // [chosen][frame], the file's unit and axes; NaN where the point was not seen (empty, NaN, or
+  // exactly zero in all three coordinates).
+  std::vector<std::vector<Eigen::Vector3d>> positions;
+  std::string content_hash;
+
+  int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }
+};
+
+// Three columns of a table that are one point, by name.
+struct PointColumns {
+  std::string name;
+  std::string x, y, z;
+};
+
+struct PointReadOptions {
+  // Which points to keep, from all names; unset: all. Only those stay in memory where the file is
+  // text.
+  std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
+  // Tables: the column of the time in s; empty: a column called time, Time, t, ... where there is
+  // one.
+  std::string time_column;
+  // Tables: points whose columns do not follow a pattern such as hip_x, hip_y, hip_z (PointsOf).
+  std::vector<PointColumns> columns;
+  bool accept_truncated = false;  // of C3D, see C3dReadOptions
+};
+
+// Errors besides those of the single readers: no points, times that are not evenly spaced.
+Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
+                                    const PointReadOptions& options = {});
+
+// "there is no point 'hip'; it has LASI, RASI, ..." for whoever looks points up by name.
+Error UnknownPointError(const std::string& path, const std::vector<std::string>& names,
+                        const std::string& name);
+
+}  // namespace pushid

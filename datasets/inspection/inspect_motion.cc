@@ -1,0 +1,297 @@
+// datasets: what can be seen of a motion before anything is fitted.
+#include "datasets/inspection/inspect_motion.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+using Track = std::vector<Eigen::Vector3d>;
+
+constexpr double kShortestRod = 0.5, kLongestRod = 1.3;  // m; adults 0.7 to 1.1
+constexpr double kJumpSpeed = 12.0;     // m/s; no joint of a pushed person is as fast
+constexpr double kSmallestJump = 0.05;  // m; less is noise, however high the rate
+constexpr double kStaticSpeed = 0.05;   // m/s of the hip
+constexpr double kStaticTime = 0.25;    // s
+constexpr double kOnset = 0.02;         // m
+constexpr double kFromRest = 0.6;       // speed at first over the largest before the onset
+constexpr std::size_t kNamed = 4;       // points named in a warning
+
+std::string Seconds(double s) { return Rounded(s, 3) + " s"; }
+
+std::string AxisName(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+}
+
+// Frames in which all of the chosen points were seen have their mean, others NaN.
+Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen, double metres) {
+  Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
+  for (int index : chosen) {
+    for (int t = 0; t < motion.num_frames(); ++t) mean[t] += motion.positions[index][t];
+  }
+  for (Eigen::Vector3d& position : mean) position *= metres / static_cast<double>(chosen.size());
+  return mean;
+}
+
+class MotionInspector {
+ public:
+  MotionInspector(const PointMotion& motion, Inspection* found) : motion_(motion), found_(*found) {}
+
+  void Look(const std::optional<PendulumJoints>& joints) {
+    Rate();
+    Gaps();
+    if (joints) Body(*joints);
+    Jumps();
+  }
+
+ private:
+  void Rate() {
+    const int frames = motion_.num_frames();
+    found_.rate_hz = motion_.rate_hz;
+    std::string text = std::to_string(frames);
+    if (motion_.rate_hz > 0.0) {
+      text +=
+          " at " + Rounded(motion_.rate_hz) + " per second, " + Seconds(frames / motion_.rate_hz);
+      const double whole = std::round(motion_.rate_hz);
+      if (whole > 0.0 && motion_.rate_hz != whole &&
+          std::fabs(motion_.rate_hz / whole - 1.0) < 1e-3) {
+        text += "; most likely " + Rounded(whole) + " (\"fps\" in the manifest wins)";
+      }
+      if (motion_.rate_hz < 30.0) {
+        found_.Warn("a push lasts a few frames only at " + Rounded(motion_.rate_hz) +
+                    " frames per second");
+      }
+    } else {
+      found_.Warn("the file does not say its frame rate: give fps in the manifest");
+    }
+    found_.Fact("frames", text);
+    if (frames < 3) found_.Warn("at least three frames are needed");
+  }
+
+  void Gaps() {
+    std::vector<std::pair<int, std::string>> hidden;  // frames, point
+    for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
+      std::vector<bool> seen;
+      int missing = 0;
+      for (const Eigen::Vector3d& position : motion_.positions[i]) {
+        seen.push_back(position.allFinite());
+        missing += seen.back() ? 0 : 1;
+      }
+      if (missing > 0) hidden.emplace_back(missing, motion_.names[motion_.chosen[i]]);
+      found_.point_names.push_back(motion_.names[motion_.chosen[i]]);
+      found_.seen.push_back(std::move(seen));
+    }
+    if (hidden.empty()) return;
+    std::stable_sort(hidden.begin(), hidden.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::string text;
+    for (std::size_t i = 0; i < std::min(kNamed, hidden.size()); ++i) {
+      text += (i > 0 ? ", " : "") + hidden[i].second + " " + std::to_string(hidden[i].first);
+    }
+    found_.Warn("gaps in " + std::to_string(hidden.size()) + " of " +
+                std::to_string(motion_.positions.size()) + " points; frames not seen: " + text +
+                (hidden.size() > kNamed ? ", ..." : ""));
+  }
+
+  void Body(const PendulumJoints& joints) {
+    const Track hip = MeanOf(motion_, joints.hip, 1.0);
+    const Track left = MeanOf(motion_, joints.left_ankle, 1.0);
+    const Track right = MeanOf(motion_, joints.right_ankle, 1.0);
+    int first = 0;
+    const int frames = motion_.num_frames();
+    while (first < frames && !(hip[first] + left[first] + right[first]).allFinite()) ++first;
+    Places(joints);
+    if (first == frames) {
+      found_.Warn("hip and both ankles are never seen together: there is no rod to fit");
+      return;
+    }
+    if (first > 0) {
+      found_.Warn("hip and ankles are first seen together at frame " + std::to_string(first) +
+                  ": set first_frame to " + std::to_string(first) + " or later");
+    }
+    const Eigen::Vector3d rod = hip[first] - 0.5 * (left[first] + right[first]);
+    Unit(rod.norm());
+    Axes(rod, left[first] - right[first]);
+    for (const Eigen::Vector3d& position : hip) {
+      found_.hip.push_back(metres_ * (position - hip[first]));
+    }
+    Onset(first, rod);
+    Start(first);
+  }
+
+  void Places(const PendulumJoints& joints) {
+    const auto names = [this](const std::vector<int>& chosen) {
+      std::string text;
+      for (int index : chosen) text += (text.empty() ? "" : " + ") + motion_.names[index];
+      return text;
+    };
+    found_.Fact("hip", names(joints.hip));
+    found_.Fact("ankles",
+                names(joints.left_ankle) + " (left), " + names(joints.right_ankle) + " (right)");
+    for (const std::vector<int>* place : {&joints.hip, &joints.left_ankle, &joints.right_ankle}) {
+      for (int index : *place) {
+        int longest = 0, run = 0;
+        for (const Eigen::Vector3d& position : motion_.positions[index]) {
+          run = position.allFinite() ? 0 : run + 1;
+          longest = std::max(longest, run);
+        }
+        if (longest > 0) {
+          found_.Warn(
+              motion_.names[index] + " is hidden for up to " + std::to_string(longest) + " frames" +
+              (motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "") +
+              ": --max_gap_s says how long a gap is interpolated");
+        }
+      }
+    }
+  }
+
+  // The file's word, otherwise what makes a person of the rod.
+  void Unit(double rod) {
+    std::optional<LengthUnit> fits;
+    for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kCentimetre}) {
+      const double length = rod * MetresPer(unit);
+      if (!fits && length >= kShortestRod && length <= kLongestRod) fits = unit;
+    }
+    const LengthUnit unit = motion_.unit ? *motion_.unit : fits.value_or(LengthUnit::kMillimetre);
+    metres_ = MetresPer(unit);
+    found_.Fact("unit", Name(unit) + (motion_.unit ? ", as the file says"
+                                      : fits       ? ", by the length of the rod"
+                                                   : ", assumed"));
+    if (!motion_.unit && !motion_.unit_text.empty()) {
+      found_.Warn("the file's unit is " + Quoted(motion_.unit_text) + ", which is not known here");
+    }
+    if (fits && motion_.unit && *fits != unit) {
+      found_.Warn("the file says " + Name(unit) + ", but the person looks like " + Name(*fits) +
+                  ": set length_unit");
+    }
+    if (!motion_.unit && unit != LengthUnit::kMillimetre) {
+      found_.Warn("lengths look like " + Name(unit) + "; mm is assumed unless length_unit says so");
+    }
+    found_.Fact("standing height", "hip " + Rounded(rod * metres_, 3) + " m above the ankles");
+    if (!fits) {
+      found_.Warn("no unit makes a standing person of it: hip " + Rounded(rod * metres_, 3) +
+                  " m above the ankles; check hip and ankles");
+    }
+  }
+
+  void Axes(const Eigen::Vector3d& rod, const Eigen::Vector3d& to_the_left) {
+    up_ = AxisName(rod);
+    const Eigen::Vector3d forward = to_the_left.cross(rod);
+    const std::string faces = forward.norm() > 0.0 ? AxisName(forward) : "?";
+    found_.Fact("axes", up_ + " is up, the person faces " + faces);
+    if (up_ != "z") {
+      found_.Warn(up_ + " is up in the file: set \"up\" and \"forward\" in the manifest");
+    }
+    if (!motion_.up.empty() && motion_.up != "+" + up_ && motion_.up != up_) {
+      found_.Warn("the file calls " + motion_.up + " up, the person stands along " + up_);
+    }
+    const double lean = std::acos(std::fmin(1.0, rod.cwiseAbs().maxCoeff() / rod.norm()));
+    if (lean > 0.35) {
+      found_.Warn("the person leans " + Rounded(lean * 180.0 / 3.14159265358979323846, 3) +
+                  " degrees at the start");
+    }
+  }
+
+  void Start(int first) {
+    if (!(motion_.rate_hz > 0.0)) return;
+    const int window = std::max(2, static_cast<int>(kStaticTime * motion_.rate_hz));
+    const int last = std::min<int>(first + window, static_cast<int>(found_.hip.size()) - 1);
+    if (last <= first || !found_.hip[last].allFinite()) return;
+    const double speed =
+        (found_.hip[last] - found_.hip[first]).norm() * motion_.rate_hz / (last - first);
+    if (found_.onset_frame >= 0 && found_.onset_frame <= last && PushedFromRest(first)) {
+      found_.Fact("start", "the push begins at once");
+      return;
+    }
+    const bool still = speed <= kStaticSpeed;
+    found_.Fact("start",
+                std::string(still ? "static" : "moving") + " (hip " + Rounded(speed, 2) + " m/s)");
+    if (!still) {
+      found_.Warn(
+          "the person moves at the start: cut it by first_frame, or set initial_velocity "
+          "to estimated or free");
+    }
+  }
+
+  // Whether the hip gathers speed before the onset, as a push makes it do, rather than coming with
+  // it: whoever walks in is as fast at first as later.
+  bool PushedFromRest(int first) const {
+    const int end = found_.onset_frame, step = std::max(1, (end - first) / 4);
+    const auto way = [&](int t) { return (found_.hip[t + step] - found_.hip[t]).norm(); };
+    double longest = 0.0;
+    for (int t = first; t + step <= end; t += step) longest = std::max(longest, way(t));
+    return longest > 0.0 && way(first) < kFromRest * longest;
+  }
+
+  // The hip's first 2 cm across the up axis, as the propagation of pushes counts it.
+  void Onset(int first, const Eigen::Vector3d& rod) {
+    int axis = 0;
+    rod.cwiseAbs().maxCoeff(&axis);
+    Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
+    for (std::size_t t = first; t < found_.hip.size(); ++t) {
+      Eigen::Vector3d across = found_.hip[t];
+      if (!across.allFinite()) continue;
+      across[axis] = 0.0;
+      if (found_.onset_frame < 0 && across.norm() >= kOnset) {
+        found_.onset_frame = static_cast<int>(t);
+      }
+      if (across.norm() > farthest.norm()) farthest = across;
+    }
+    if (found_.onset_frame < 0) {
+      found_.Warn("the hip never moves by 2 cm: there is no push to be seen");
+      return;
+    }
+    found_.Fact(
+        "onset",
+        "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +
+            (motion_.rate_hz > 0.0 ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
+                                   : "") +
+            "; it goes " + Rounded(farthest.norm(), 3) + " m, mostly along " + AxisName(farthest));
+  }
+
+  // From frame to frame of the same point, where metres are known.
+  void Jumps() {
+    if (metres_ == 0.0 || !(motion_.rate_hz > 0.0)) return;
+    int points = 0;
+    std::string text;
+    for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
+      const Track& track = motion_.positions[i];
+      double largest = 0.0;
+      std::size_t where = 0;
+      for (std::size_t t = 1; t < track.size(); ++t) {
+        const double way = metres_ * (track[t] - track[t - 1]).norm();
+        if (way > largest) largest = way, where = t;  // false for NaN
+      }
+      if (largest * motion_.rate_hz < kJumpSpeed || largest < kSmallestJump) continue;
+      if (++points <= static_cast<int>(kNamed)) {
+        text += (text.empty() ? "" : ", ") + motion_.names[motion_.chosen[i]] + " " +
+                Rounded(largest, 3) + " m at frame " + std::to_string(where);
+      }
+    }
+    if (points > 0) {
+      found_.Warn("jumps in " + std::to_string(points) + " points: " + text +
+                  (points > static_cast<int>(kNamed) ? ", ..." : ""));
+    }
+  }
+
+  const PointMotion& motion_;
+  Inspection& found_;
+  double metres_ = 0.0;  // 0: not known
+  std::string up_;
+};
+
+}  // namespace
+
+void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
+                   Inspection* inspection) {
+  MotionInspector(motion, inspection).Look(joints);
+}
+
+}  // namespace pushid

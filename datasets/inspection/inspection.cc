@@ -1,0 +1,288 @@
+// datasets: what a file holds.
+#include "datasets/inspection/inspection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "datasets/files/input_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/formats/table_points.h"
+#include "datasets/inspection/inspect_manifest.h"
+#include "datasets/inspection/inspect_motion.h"
+#include "datasets/manifest/recording_names.h"
+#include "datasets/sensors/force_platform.h"
+#include "datasets/sensors/sensor_csv.h"
+
+namespace pushid {
+namespace {
+
+constexpr std::size_t kMostSignals = 6;  // in the picture
+constexpr double kForceOnset = 20.0;     // N
+
+// Peak, impulse and onset of a force; keeps it for the picture.
+void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
+              Inspection* found) {
+  double peak = 0.0, impulse = 0.0;
+  int onset = -1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    if (std::fabs(values[i]) > std::fabs(peak)) peak = values[i];
+    impulse += values[i] / rate_hz;
+    if (onset < 0 && std::fabs(values[i]) > kForceOnset) onset = static_cast<int>(i);
+  }
+  found->Fact(name, "peak " + Rounded(peak, 3) + " N, impulse " + Rounded(impulse, 3) + " N s" +
+                        (onset >= 0 ? ", above " + Rounded(kForceOnset) + " N from " +
+                                          Rounded(onset / rate_hz, 3) + " s"
+                                    : ""));
+  if (found->forces.size() < kMostSignals) {
+    found->forces.push_back({name, "N", rate_hz, std::move(values)});
+  }
+}
+
+// A warning where hip and ankles cannot be found.
+void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
+  found->Fact("points", ListOfNames(motion.names));
+  const Result<PendulumJoints> joints =
+      ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
+  if (!joints.ok()) found->Warn(joints.error().message);
+  InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
+}
+
+// A joint of a BVH file is never hidden, so that only hip and ankles are kept: files of a gigabyte
+// fit.
+MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
+  std::optional<PendulumJoints> places;  // indices into the joints kept
+  std::vector<std::string> names;
+  BvhPositionOptions options;
+  options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
+  options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+    for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
+    const Result<PendulumJoints> joints =
+        ChoosePendulumJoints(found->path, skeleton, mapping.joints);
+    if (!joints.ok()) {
+      found->Warn(joints.error().message);
+      return std::vector<int>{0};
+    }
+    places = PendulumJoints{{0}, {1}, {2}};
+    return std::vector<int>{joints.value().hip[0], joints.value().left_ankle[0],
+                            joints.value().right_ankle[0]};
+  };
+  Result<BvhPositions> bvh = ReadBvhPositions(found->path, options);
+  if (!bvh.ok()) return bvh.error();
+  PointMotion motion;
+  motion.path = found->path;
+  motion.rate_hz = 1.0 / bvh.value().frame_time_s;
+  for (int joint : bvh.value().joints) {
+    motion.chosen.push_back(static_cast<int>(motion.names.size()));
+    motion.names.push_back(names[joint]);
+  }
+  motion.positions = std::move(bvh.value().positions);
+  found->Fact("joints", ListOfNames(names));
+  InspectMotion(motion, places, found);
+  return std::nullopt;
+}
+
+void LookAtAnalog(const C3dFile& file, Inspection* found) {
+  std::vector<std::string> names;
+  std::set<std::string> units;
+  for (const C3dAnalogChannel& channel : file.analog) {
+    names.push_back(channel.name);
+    units.insert(channel.unit);
+    const bool steady =
+        std::all_of(channel.samples.begin(), channel.samples.end(),
+                    [&channel](double sample) { return sample == channel.samples[0]; });
+    if (steady && file.num_frames() > 1) names.back() += " (constant)";
+  }
+  found->Fact("analog", ListOfNames(names) + " at " + Rounded(file.analog_rate_hz) +
+                            " per second, in " + ListOfNames({units.begin(), units.end()}));
+  for (const C3dAnalogChannel& channel : file.analog) {
+    if (channel.unit == "N" && file.platforms.empty()) {
+      AddForce(channel.name, file.analog_rate_hz, channel.samples, found);
+    }
+  }
+}
+
+void LookAtPlatforms(const C3dFile& file, Inspection* found) {
+  const LengthUnit unit = LengthUnitFromName(file.point_unit).value_or(LengthUnit::kMillimetre);
+  for (std::size_t i = 0; i < file.platforms.size(); ++i) {
+    const std::string name = "platform:" + std::to_string(i + 1);
+    const Result<PlatformRecord> platform = EvaluatePlatform(file, static_cast<int>(i), unit);
+    if (!platform.ok()) {
+      found->Warn(platform.error().message);
+      continue;
+    }
+    const Eigen::Vector3d& normal = platform.value().normal;
+    std::vector<double> pressing;
+    for (const Eigen::Vector3d& force : platform.value().force) {
+      pressing.push_back(force.dot(normal));
+    }
+    found->Fact(name + " type", std::to_string(file.platforms[i].type) + ", surface faces (" +
+                                    Rounded(normal.x(), 2) + ", " + Rounded(normal.y(), 2) + ", " +
+                                    Rounded(normal.z(), 2) + ")");
+    AddForce(name, platform.value().rate_hz, std::move(pressing), found);
+    if (file.platforms[i].origin.z() > 0.0) {
+      found->Warn(name +
+                  " has its sensors above its surface (ORIGIN z > 0); they are taken to be "
+                  "below");
+    }
+  }
+}
+
+MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
+  const Result<C3dFile> read = ReadC3d(found->path, {true});
+  if (!read.ok()) return read.error();
+  const C3dFile& file = read.value();
+  found->format += ", " + Name(file.processor) + (file.floating ? ", floats" : ", integers");
+  if (file.num_frames() < file.announced_frames) {
+    found->Warn("the file ends after " + std::to_string(file.num_frames()) + " of " +
+                std::to_string(file.announced_frames) + " frames: it is truncated; fits refuse it");
+  }
+  if (!file.points.empty()) {
+    PointReadOptions options;
+    options.accept_truncated = true;
+    const Result<PointMotion> motion = ReadPointMotion(found->path, MotionFormat::kC3d, options);
+    if (!motion.ok()) return motion.error();
+    LookAtPoints(motion.value(), mapping, found);
+  }
+  if (!file.analog.empty()) LookAtAnalog(file, found);
+  LookAtPlatforms(file, found);
+  for (const C3dEvent& event : file.events) {
+    found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
+                             (event.context.empty() ? "" : " (" + event.context + ")"));
+  }
+  return std::nullopt;
+}
+
+MaybeError LookAtPush(Inspection* found) {
+  const Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(found->path);
+  if (!force.ok()) return force.error();
+  found->format = "push CSV";
+  double peak = 0.0;
+  for (const Eigen::Vector4d& row : force.value()) peak = std::max(peak, row.head<2>().norm());
+  found->Fact("rows", std::to_string(force.value().size()) + ", one a frame of its recording");
+  found->Fact("peak", Rounded(peak, 3) + " N");
+  return std::nullopt;
+}
+
+MaybeError LookAtSensor(Inspection* found) {
+  const Result<SensorRecord> record = ReadSensorCsv(found->path);
+  if (!record.ok()) return record.error();
+  found->format = "sensor CSV";
+  const std::vector<double>& time = record.value().time_s;
+  const double rate = (time.size() - 1) / (time.back() - time.front());
+  found->Fact("samples", std::to_string(time.size()) + " at " + Rounded(rate, 5) +
+                             " per second, from " + Rounded(time.front()) + " s");
+  for (int axis = 0; axis < (record.value().is_vector ? 3 : 1); ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& force : record.value().force) values.push_back(force[axis]);
+    AddForce(record.value().is_vector ? std::string("f") + "xyz"[axis] : "force", rate,
+             std::move(values), found);
+  }
+  return std::nullopt;
+}
+
+// A table: points where columns come in threes, and forces by their names.
+MaybeError LookAtTable(MotionFormat format, const ColumnMapping& mapping, Inspection* found) {
+  const TableFormat table_format =
+      format == MotionFormat::kCsv ? TableFormat::kCsv : TableFormat::kStorage;
+  const Result<NumericTable> read = ReadNumericTable(found->path, table_format, {});
+  if (!read.ok()) return read.error();
+  const NumericTable& table = read.value();
+  found->Fact("columns", ListOfNames(table.names));
+  const int time = FindTimeColumn(table.names, mapping.time_column);
+  double rate = mapping.frame_rate;
+  if (time >= 0) {
+    const Result<double> step = EvenTimeStep(table, time);
+    if (step.ok() && rate == 0.0) rate = 1.0 / step.value();
+    if (!step.ok()) found->Warn(step.error().message);
+  }
+  for (std::size_t i = 0; rate > 0.0 && i < table.names.size(); ++i) {
+    if (IsForceColumn(table.names[i])) AddForce(table.names[i], rate, table.data[i], found);
+  }
+  PointReadOptions options;
+  options.columns = mapping.columns;
+  options.time_column = mapping.time_column;
+  const Result<PointMotion> motion = ReadPointMotion(found->path, format, options);
+  PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
+  points.rate_hz = rate;
+  if (!points.names.empty()) {
+    LookAtPoints(points, mapping, found);
+  } else {
+    found->Fact("rows", std::to_string(table.num_rows()) +
+                            (rate > 0.0 ? " at " + Rounded(rate, 5) + " per second" : ""));
+    if (!motion.ok() && found->forces.empty()) found->Warn(motion.error().message);
+  }
+  return std::nullopt;
+}
+
+// The first line that says something; empty when there is none.
+std::string FirstLine(const std::string& path) {
+  LineReader reader;
+  std::string_view line;
+  if (reader.Open(path) || !reader.NextNonBlank(&line)) return "";
+  return std::string(Trimmed(line));
+}
+
+MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
+  const std::string& path = found->path;
+  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  if (!format) {
+    const std::string first = FirstLine(path);
+    if (first.empty() || first[0] != '{') {
+      return Error{
+          "what this is cannot be told: names end in .bvh, .c3d, .trc, .sto, .mot, .csv, "
+          "or .json for a manifest",
+          path};
+    }
+    found->format = "manifest";
+    return InspectManifest(found);
+  }
+  found->format = Title(*format);
+  switch (*format) {
+    case MotionFormat::kBvh:
+      return LookAtBvh(mapping, found);
+    case MotionFormat::kC3d:
+      return LookAtC3d(mapping, found);
+    case MotionFormat::kTrc: {
+      const Result<PointMotion> motion = ReadPointMotion(path, *format, {});
+      if (!motion.ok()) return motion.error();
+      LookAtPoints(motion.value(), mapping, found);
+      return std::nullopt;
+    }
+    case MotionFormat::kCsv:
+    case MotionFormat::kStorage:
+      break;
+  }
+  const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
+  if (first.rfind("frame,fx,fy,ftheta", 0) == 0) return LookAtPush(found);
+  if (first == "time,force" || first == "time,fx,fy,fz") return LookAtSensor(found);
+  return LookAtTable(*format, mapping, found);
+}
+
+}  // namespace
+
+Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping) {
+  InputFile file;  // what cannot be opened is said first
+  if (MaybeError failed = file.Open(path)) return *std::move(failed);
+  Inspection found;
+  found.path = path;
+  if (MaybeError failed = Look(mapping, &found)) return *std::move(failed);
+  return found;
+}
+
+std::string InspectionText(const Inspection& inspection) {
+  std::string text = inspection.path + ": " + inspection.format + "\n";
+  for (const auto& [what, said] : inspection.facts) {
+    text += "  " + what + std::string(what.size() < 16 ? 16 - what.size() : 1, ' ') + said + "\n";
+  }
+  for (const std::string& warning : inspection.warnings) text += "  warning: " + warning + "\n";
+  return text;
+}
+
+}  // namespace pushid

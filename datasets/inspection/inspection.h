@@ -1,0 +1,50 @@
+// datasets: what a file holds, and what about it will matter in a fit.
+//
+//   Result<Inspection> found = Inspect("trial.c3d");
+//   for (const auto& [what, text] : found.value().facts) ...
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/column_mapping.h"
+
+namespace pushid {
+
+// A line of a picture: values at a constant rate.
+struct InspectedSignal {
+  std::string name, unit;
+  double rate_hz = 0.0;
+  std::vector<double> values;
+};
+
+struct Inspection {
+  std::string path;
+  std::string format;  // "BVH", "C3D", "TRC", "STO", "CSV", "manifest", ...
+  std::vector<std::pair<std::string, std::string>> facts;  // "frames", "580 at 100 per second"
+  std::vector<std::string> warnings;
+
+  // For the picture; empty where the file has no such thing.
+  double rate_hz = 0.0;                  // of hip and seen
+  std::vector<Eigen::Vector3d> hip;      // m, file's axes, less that of the first frame seen
+  std::vector<std::string> point_names;  // of seen
+  std::vector<std::vector<bool>> seen;   // [point][frame]
+  std::vector<InspectedSignal> forces;   // N
+  int onset_frame = -1;                  // the hip's first 2 cm
+
+  void Fact(const std::string& what, const std::string& text) { facts.emplace_back(what, text); }
+  void Warn(const std::string& text) { warnings.push_back(text); }
+};
+
+// By the file's ending and its first line; joints, columns, times and rate as the mapping says. An
+// Error where it cannot be read at all; a C3D file cut short is read as far as it goes, with a
+// warning.
+Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
+
+// "file: format", the facts and the warnings, one a line.
+std::string InspectionText(const Inspection& inspection);
+
+}  // namespace pushid

@@ -1,0 +1,262 @@
+// datasets: a manifest from a folder.
+#include "datasets/inspection/manifest_maker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "datasets/files/found_files.h"
+#include "datasets/files/input_file.h"
+#include "datasets/files/name_pattern.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/axes.h"
+#include "datasets/formats/bvh_header.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/manifest_keys.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What names of a pattern mean something; others tell recordings apart.
+const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
+                                              "person"};
+constexpr double kNearlyWhole = 1e-3;  // of a frame rate
+
+class Maker {
+ public:
+  explicit Maker(const ManifestOptions& options) : options_(options) {}
+
+  Result<MadeManifest> Make() {
+    const Result<NamePattern> pattern = NamePattern::Parse(options_.pattern);
+    if (!pattern.ok()) return pattern.error();
+    pattern_ = pattern.value();
+    const std::optional<MotionFormat> format = MotionFormatOfFile(options_.pattern);
+    if (!format) {
+      return Error{"the pattern " + Quoted(options_.pattern) +
+                   " must end like its files: .bvh, .c3d, .trc, .csv, .sto or .mot"};
+    }
+    format_ = *format;
+    if (!options_.up.empty() || !options_.forward.empty()) {
+      const Result<Eigen::Matrix3d> axes =
+          AxesRotation(options_.up.empty() ? "z" : options_.up,
+                       options_.forward.empty() ? "x" : options_.forward);
+      if (!axes.ok()) return axes.error();
+    }
+    if (!options_.push_pattern.empty()) {
+      const Result<NamePattern> push = NamePattern::Parse(options_.push_pattern);
+      if (!push.ok()) return push.error();
+      push_pattern_ = push.value();
+      if (MaybeError wrong = CheckPushPattern()) return *std::move(wrong);
+    }
+    if (!options_.mapping.empty()) {
+      Result<ColumnMapping> mapping = ReadColumnMapping(options_.mapping);
+      if (!mapping.ok()) return mapping.error();
+      mapping_ = std::move(mapping.value());
+    }
+    WarnOfNames();
+    if (MaybeError failed = Find()) return *std::move(failed);
+    for (auto& [id, files] : recordings_) {
+      if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
+    }
+    if (made_.manifest.recordings.empty()) {
+      Error first = made_.unreadable.front();
+      first.message += "; no other file can be read either";
+      return first;
+    }
+    if (!massless_.empty()) {
+      std::string names;
+      for (const std::string& name : massless_) names += (names.empty() ? "" : ", ") + name;
+      return Error{"no mass is known of " + names +
+                   "; list them in a file with the columns id,mass_kg"};
+    }
+    return std::move(made_);
+  }
+
+ private:
+  // It must name one file for each recording.
+  MaybeError CheckPushPattern() const {
+    const std::string what = "the push pattern " + Quoted(options_.push_pattern);
+    if (push_pattern_->HasStar()) {
+      return Error{what + " has a *; it names one file of each recording, by names of the pattern"};
+    }
+    for (const std::string& name : push_pattern_->names()) {
+      if (pattern_.Has(name)) continue;
+      std::string known;
+      for (const std::string& one : pattern_.names()) known += (known.empty() ? "" : ", ") + one;
+      return Error{what + " has the name {" + name + "}, but the pattern has only " + known};
+    }
+    return std::nullopt;
+  }
+
+  // A misspelt {subject} would make one person of everybody.
+  void WarnOfNames() {
+    for (const std::string& name : pattern_.names()) {
+      const std::string meant = MeantBy(name, kUnderstood);
+      if (meant.empty() || pattern_.Has(meant)) continue;
+      made_.odd.push_back("the pattern has {" + name +
+                          "}, which only tells recordings apart; is {" + meant + "} meant?");
+    }
+  }
+
+  MaybeError Find() {
+    const Result<std::vector<std::string>> files = FilesBelow(options_.folder);
+    if (!files.ok()) return files.error();
+    for (const std::string& path : files.value()) {
+      const std::optional<NameValues> values = pattern_.Match(path);
+      if (!values) {
+        ++made_.others;
+        continue;
+      }
+      ++made_.files;
+      recordings_[IdOf(pattern_, *values)].push_back({path, *values});
+    }
+    if (made_.files == 0) {
+      return Error{"none of its " + std::to_string(files.value().size()) +
+                       " files fits the pattern " + Quoted(options_.pattern) +
+                       (files.value().empty() ? "" : "; the first is " + files.value()[0]),
+                   options_.folder};
+    }
+    return std::nullopt;
+  }
+
+  std::string Value(const NameValues& values, const char* name, const std::string& fallback) const {
+    const auto found = values.find(name);
+    return found == values.end() ? fallback : found->second;
+  }
+
+  // As the manifest names it.
+  std::string FromManifest(const std::string& relative) const {
+    const fs::path file = fs::path(options_.folder) / relative;
+    std::error_code failed;
+    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
+    const fs::path path = fs::proximate(fs::absolute(file), base, failed);
+    return failed ? file.generic_string() : path.generic_string();
+  }
+
+  MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
+    if (pattern_.Has("person")) std::sort(files->begin(), files->end(), &PersonBefore);
+    if (MaybeError mixed = CheckTogether(id, *files, pattern_.Has("person"), options_.folder))
+      return mixed;
+    if (id.find(',') != std::string::npos) {
+      return Error{(*files)[0].path + " would be recording " + Quoted(id) +
+                       ", but commas separate ids in lists; give the file another name",
+                   options_.folder};
+    }
+    const NameValues& values = files->front().values;
+    ManifestRecording recording;
+    recording.id = id;
+    for (std::size_t i = files->size(); i-- > 0;) {
+      const Result<double> rate = Rate((*files)[i].path);
+      if (!rate.ok()) {
+        made_.unreadable.push_back(rate.error());
+        return std::nullopt;
+      }
+      recording.fps = rate.value();  // in the end that of the first
+    }
+    if (!(recording.fps > 0.0)) {
+      return Error{"it does not say its frame rate; give --fps",
+                   (fs::path(options_.folder) / files->front().path).string()};
+    }
+    recording.setting = Value(values, "setting", options_.setting);
+    recording.magnitude = Value(values, "magnitude", options_.magnitude);
+    recording.condition_code = Value(values, "condition_code", "");
+    recording.push_kind = options_.push_kind;
+    recording.motion_format = format_;
+    for (const FoundFile& file : *files) {
+      const std::string subject =
+          Value(file.values, "subject", Value(file.values, "person", "person"));
+      recording.subjects.push_back({subject, MassOf(subject)});
+      auto& list = format_ == MotionFormat::kBvh ? recording.bvh : recording.motion;
+      list.push_back(FromManifest(file.path));
+    }
+    recording.pushed_person = options_.pushed_person;
+    if (recording.pushed_person >= static_cast<int>(files->size())) {
+      return Error{"recording " + Quoted(id) + " has " + std::to_string(files->size()) +
+                   " people, so that nobody is person " + std::to_string(recording.pushed_person)};
+    }
+    SetPush(values, &recording);
+    recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
+    SetAxes(&recording);
+    recording.length_unit = options_.length_unit;
+    made_.manifest.recordings.push_back(recording);
+    return std::nullopt;
+  }
+
+  // Written even where they are the default, so that a mapping's do not win.
+  void SetAxes(ManifestRecording* recording) const {
+    if (options_.up.empty() && options_.forward.empty()) return;
+    if (!options_.up.empty()) recording->up = options_.up;
+    if (!options_.forward.empty()) recording->forward = options_.forward;
+    recording->json = {{"up", recording->up}, {"forward", recording->forward}};
+  }
+
+  // The mapping is named from where the program runs.
+  std::string MappingFromManifest() const {
+    std::error_code failed;
+    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
+    return fs::proximate(fs::absolute(options_.mapping), base, failed).generic_string();
+  }
+
+  double MassOf(const std::string& subject) {
+    const auto found = options_.masses.find(subject);
+    if (found != options_.masses.end()) return found->second;
+    if (options_.mass_kg <= 0.0) massless_.insert(subject);
+    return options_.mass_kg;
+  }
+
+  // Frames per second, whole where they nearly are; 0 where neither file nor option says.
+  Result<double> Rate(const std::string& relative) const {
+    if (options_.fps > 0.0) return options_.fps;
+    const std::string path = (fs::path(options_.folder) / relative).string();
+    double rate = 0.0;
+    if (format_ == MotionFormat::kBvh) {
+      LineReader reader;
+      if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+      const Result<BvhHeader> header = ReadBvhHeader(&reader);
+      if (!header.ok()) return header.error();
+      rate = 1.0 / header.value().frame_time_s;
+    } else {
+      PointReadOptions point_options;
+      if (mapping_.frame_rate > 0.0) return mapping_.frame_rate;
+      point_options.time_column = mapping_.time_column;
+      point_options.columns = mapping_.columns;
+      point_options.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
+      const Result<PointMotion> motion = ReadPointMotion(path, format_, point_options);
+      if (!motion.ok()) return motion.error();
+      rate = motion.value().rate_hz;
+    }
+    if (!(rate > 0.0)) return 0.0;
+    const double whole = std::round(rate);
+    return whole > 0.0 && std::fabs(rate / whole - 1.0) < kNearlyWhole ? whole : rate;
+  }
+
+  void SetPush(const NameValues& values, ManifestRecording* recording) {
+    if (!push_pattern_) return;
+    const std::optional<std::string> path = push_pattern_->Fill(values);
+    std::error_code ignored;
+    if (path && fs::is_regular_file(fs::path(options_.folder) / *path, ignored)) {
+      recording->push_csv = FromManifest(*path);
+    } else {
+      made_.without_push.push_back(recording->id);
+    }
+  }
+
+  const ManifestOptions& options_;
+  NamePattern pattern_;
+  std::optional<NamePattern> push_pattern_;
+  ColumnMapping mapping_;
+  MotionFormat format_ = MotionFormat::kBvh;
+  std::map<std::string, std::vector<FoundFile>> recordings_;  // by id, which is their order
+  std::set<std::string> massless_;
+  MadeManifest made_;
+};
+
+}  // namespace
+
+Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
+
+}  // namespace pushid

@@ -1,0 +1,306 @@
+// datasets: one person of a recording from the file that holds their motion.
+#include "datasets/loading/load_person.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/axes.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/loading/motion_checks.h"
+#include "datasets/loading/track_gaps.h"
+#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_choice.h"
+
+namespace pushid {
+namespace {
+
+using Track = std::vector<Eigen::Vector3d>;
+
+// fps and a BVH's rounded frame time agree within this: 0.016667 s against 60 Hz is 0.002 %.
+constexpr double kFrameTimeTolerance = 1e-3;
+
+// What the files have in common once they are read.
+struct Motion {
+  std::vector<Track> tracks;  // of every joint or point read, file's axes, metres
+  PendulumJoints places;      // indices into tracks
+  std::vector<std::string> names;
+  std::vector<int> parents;   // of BVH joints; otherwise -1 each
+  double frame_time_s = 0.0;  // 0: the file does not say
+  double first_time_s = 0.0;  // by the file's clock
+  LengthUnit unit = LengthUnit::kMillimetre;
+  std::string content_hash;
+};
+
+// Turns indices into the file's joints to indices into the list of those that are read.
+std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
+  std::vector<int> places;
+  for (int joint : wanted) {
+    const auto found = std::find(read->begin(), read->end(), joint);
+    places.push_back(static_cast<int>(found - read->begin()));
+    if (found == read->end()) read->push_back(joint);
+  }
+  return places;
+}
+
+class PersonLoader {
+ public:
+  PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
+               const LoadOptions& options, std::vector<std::string>* warnings)
+      : manifest_(manifest), entry_(entry), index_(index), options_(options), warnings_(warnings) {
+    path_ = ResolvePath(manifest.path, entry.motion_files()[index]);
+  }
+
+  Result<RecordedPerson> Load(std::string* file_hash) {
+    if (!entry_.mapping.empty()) {
+      Result<ColumnMapping> mapping =
+          ReadColumnMapping(ResolvePath(manifest_.path, entry_.mapping));
+      if (!mapping.ok()) return mapping.error();
+      mapping_ = std::move(mapping.value());
+      const Result<std::string> hash = HashFile(ResolvePath(manifest_.path, entry_.mapping));
+      if (!hash.ok()) return hash.error();
+      mapping_hash_ = hash.value();
+    }
+    joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
+    Result<Motion> read =
+        entry_.motion_format == MotionFormat::kBvh ? ReadSkeleton() : ReadPoints();
+    if (!read.ok()) return read.error();
+    Motion& motion = read.value();
+    *file_hash = mapping_hash_ + motion.content_hash;
+    WarnOfRate(motion.frame_time_s);
+    RecordedPerson person;
+    person.subject_id = entry_.subjects[index_].id;
+    person.mass_kg = entry_.subjects[index_].mass_kg;
+    person.file = path_;
+    person.file_clock_s =
+        motion.first_time_s +
+        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / entry_.fps);
+    if (MaybeError failed = Cut(&motion)) return *std::move(failed);
+    if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
+    if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
+    Take(motion, &person);
+    if (MaybeError failed = CheckMotion(person, motion.unit)) return *std::move(failed);
+    return person;
+  }
+
+ private:
+  // By whoever does not have to believe the file; the first one counts.
+  std::optional<LengthUnit> UnitGiven() const {
+    for (const auto& unit :
+         {options_.length_unit, entry_.length_unit, manifest_.length_unit, mapping_.length_unit}) {
+      if (unit) return unit;
+    }
+    return std::nullopt;
+  }
+
+  LengthUnit Unit(const std::optional<LengthUnit>& of_file) const {
+    return UnitGiven().value_or(of_file.value_or(LengthUnit::kMillimetre));
+  }
+
+  void Warn(const std::string& warning) const {
+    if (warnings_ != nullptr) {
+      // As the manifest names it: results keep warnings, and not where the data lay.
+      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion_files()[index_] +
+                           " " + warning);
+    }
+  }
+
+  // Which of the file's `all` joints are read; where the pendulum's stand among those.
+  std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all, Motion* motion) const {
+    std::vector<int> read(options_.keep_all_joints ? all : 0);
+    std::iota(read.begin(), read.end(), 0);
+    motion->places = {Among(joints.hip, &read), Among(joints.left_ankle, &read),
+                      Among(joints.right_ankle, &read)};
+    return read;
+  }
+
+  Result<Motion> ReadSkeleton() {
+    Motion motion;
+    motion.unit = Unit(std::nullopt);
+    BvhPositionOptions bvh_options;
+    bvh_options.length_unit = motion.unit;
+    bvh_options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+      const Result<PendulumJoints> joints = ChoosePendulumJoints(path_, skeleton, joints_);
+      if (!joints.ok()) return joints.error();
+      return Wanted(joints.value(), skeleton.joints.size(), &motion);
+    };
+    Result<BvhPositions> bvh = ReadBvhPositions(path_, bvh_options);
+    if (!bvh.ok()) return bvh.error();
+    motion.tracks = std::move(bvh.value().positions);
+    motion.frame_time_s = bvh.value().frame_time_s;
+    motion.content_hash = bvh.value().content_hash;
+    for (int joint : bvh.value().joints) {
+      motion.names.push_back(bvh.value().skeleton.joints[joint].name);
+      motion.parents.push_back(bvh.value().skeleton.joints[joint].parent);
+    }
+    return motion;
+  }
+
+  Result<Motion> ReadPoints() {
+    Motion motion;
+    PointReadOptions point_options;
+    point_options.columns = mapping_.columns;
+    point_options.time_column = mapping_.time_column;
+    point_options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+      const Result<PendulumJoints> joints = ChoosePendulumPoints(path_, names, joints_);
+      if (!joints.ok()) return joints.error();
+      return Wanted(joints.value(), names.size(), &motion);
+    };
+    Result<PointMotion> points = ReadPointMotion(path_, entry_.motion_format, point_options);
+    if (!points.ok()) return points.error();
+    motion.unit = Unit(points.value().unit);
+    const std::string& said = points.value().unit_text;
+    if (!points.value().unit && !Trimmed(said).empty() && !UnitGiven()) {
+      return Error{"says its lengths are in " + Quoted(said) +
+                       ", which is not known here; give length_unit (mm, cm or m) in the manifest",
+                   path_};
+    }
+    if (points.value().unit && *points.value().unit != motion.unit) {
+      Warn("says its lengths are " + Name(*points.value().unit) + "; they are read as " +
+           Name(motion.unit));
+    }
+    motion.tracks = std::move(points.value().positions);
+    for (Track& track : motion.tracks) {
+      for (Eigen::Vector3d& position : track) position *= MetresPer(motion.unit);
+    }
+    const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.value().rate_hz;
+    motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
+    motion.first_time_s = points.value().first_time_s;
+    motion.content_hash = points.value().content_hash;
+    for (int point : points.value().chosen) motion.names.push_back(points.value().names[point]);
+    motion.parents.assign(motion.names.size(), -1);
+    return motion;
+  }
+
+  void WarnOfRate(double frame_time_s) const {
+    if (frame_time_s == 0.0 || std::abs(frame_time_s * entry_.fps - 1.0) <= kFrameTimeTolerance) {
+      return;
+    }
+    Warn("has a frame time of " + Rounded(frame_time_s) + " s (" + Rounded(1.0 / frame_time_s) +
+         " frames per second), the manifest says " + Rounded(entry_.fps) +
+         " frames per second; the manifest's value is used");
+  }
+
+  MaybeError Cut(Motion* motion) const {
+    const int frames = static_cast<int>(motion->tracks[0].size());
+    if (entry_.frames && *entry_.frames != frames) {
+      return Error{"wrong frame count: the file has " + std::to_string(frames) +
+                       " frames, the manifest says " + std::to_string(*entry_.frames),
+                   path_};
+    }
+    const int end = entry_.end_frame.value_or(frames);
+    if (entry_.first_frame == 0 && end == frames) return std::nullopt;
+    if (end > frames || entry_.first_frame >= end) {
+      return Error{"the file has " + std::to_string(frames) + " frames, too few for first_frame " +
+                       std::to_string(entry_.first_frame) + " and end_frame " + std::to_string(end),
+                   path_};
+    }
+    for (Track& track : motion->tracks) {
+      track = Track(track.begin() + entry_.first_frame, track.begin() + end);
+    }
+    return std::nullopt;
+  }
+
+  // Only gaps of hip and ankles take weight from a frame.
+  MaybeError CloseGaps(Motion* motion, RecordedPerson* person) const {
+    const std::size_t frames = motion->tracks[0].size();
+    const int max_gap =
+        static_cast<int>(std::floor(options_.preparation.max_gap_s * entry_.fps + 1e-9));
+    std::vector<double> weight(frames, 1.0), unused(frames, 1.0);
+    int gaps = 0;
+    for (std::size_t i = 0; i < motion->tracks.size(); ++i) {
+      const bool counts = IsPlace(motion->places, static_cast<int>(i));
+      const GapCount count = FillGaps(max_gap, &motion->tracks[i], counts ? &weight : &unused);
+      if (counts && count.excluded_frames == static_cast<int>(frames)) {
+        return Error{motion->names[i] + " is never seen; choose another by \"joints\"", path_};
+      }
+      if (counts) gaps += count.gaps;
+    }
+    if (gaps == 0) return std::nullopt;
+    if (weight[0] == 0.0) {
+      const auto seen = std::find(weight.begin(), weight.end(), 1.0);
+      return Error{"at frame " + std::to_string(entry_.first_frame) +
+                       ", where the fit starts, hip or ankles are not seen; " +
+                       (seen == weight.end()
+                            ? std::string("no frame shows them all")
+                            : "set first_frame to " +
+                                  std::to_string(entry_.first_frame + (seen - weight.begin())) +
+                                  " or later in the manifest"),
+                   path_};
+    }
+    const auto excluded = std::count(weight.begin(), weight.end(), 0.0);
+    Warn("has " + std::to_string(gaps) + " gap" + (gaps == 1 ? "" : "s") +
+         " in hip and ankles; those of up to " + Rounded(options_.preparation.max_gap_s) +
+         " s are interpolated, " + std::to_string(excluded) + " of " + std::to_string(frames) +
+         " frames are left out");
+    if (excluded > 0) person->weight = std::move(weight);
+    return std::nullopt;
+  }
+
+  static bool IsPlace(const PendulumJoints& places, int track) {
+    for (const std::vector<int>* place : {&places.hip, &places.left_ankle, &places.right_ankle}) {
+      if (std::find(place->begin(), place->end(), track) != place->end()) return true;
+    }
+    return false;
+  }
+
+  MaybeError Turn(Motion* motion, RecordedPerson* person) const {
+    const bool own =
+        mapping_.up.empty() || entry_.json.contains("up") || entry_.json.contains("forward");
+    person->file_up = own ? entry_.up : mapping_.up;
+    person->file_forward = own ? entry_.forward : mapping_.forward;
+    const Result<Eigen::Matrix3d> rotation = AxesRotation(person->file_up, person->file_forward);
+    if (!rotation.ok()) return rotation.error();
+    for (Track& track : motion->tracks) {
+      for (Eigen::Vector3d& position : track) position = rotation.value() * position;
+    }
+    return std::nullopt;
+  }
+
+  static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
+    Track mean = tracks[chosen[0]];
+    for (std::size_t frame = 0; frame < mean.size(); ++frame) {
+      for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
+      mean[frame] /= static_cast<double>(chosen.size());
+    }
+    return mean;
+  }
+
+  void Take(const Motion& motion, RecordedPerson* person) const {
+    person->hip = Mean(motion.tracks, motion.places.hip);
+    person->left_ankle = Mean(motion.tracks, motion.places.left_ankle);
+    person->right_ankle = Mean(motion.tracks, motion.places.right_ankle);
+    if (!options_.keep_all_joints) return;
+    person->joint_names = motion.names;
+    person->joint_parents = motion.parents;
+    person->joints.assign(person->hip.size(), Track(motion.tracks.size()));
+    for (std::size_t joint = 0; joint < motion.tracks.size(); ++joint) {
+      for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {
+        person->joints[frame][joint] = motion.tracks[joint][frame];
+      }
+    }
+  }
+
+  const Manifest& manifest_;
+  const ManifestRecording& entry_;
+  const std::size_t index_;
+  const LoadOptions& options_;
+  std::vector<std::string>* const warnings_;
+  std::string path_;
+  ColumnMapping mapping_;
+  std::string mapping_hash_;
+  JointMapping joints_;
+};
+
+}  // namespace
+
+Result<RecordedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
+                                  std::size_t index, const LoadOptions& options,
+                                  std::string* file_hash, std::vector<std::string>* warnings) {
+  return PersonLoader(manifest, entry, index, options, warnings).Load(file_hash);
+}
+
+}  // namespace pushid

@@ -1,0 +1,121 @@
+// datasets: from a manifest to recordings in SI units, checked.
+#include "datasets/loading/load_recordings.h"
+
+#include <utility>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/push_csv.h"
+#include "datasets/loading/load_person.h"
+#include "datasets/manifest/manifest_keys.h"
+#include "datasets/manifest/select_recordings.h"
+
+namespace pushid {
+namespace {
+
+// Puts the recording's name in front of what went wrong with one of its files.
+Error OfRecording(const ManifestRecording& entry, Error error) {
+  error.message = "recording " + Quoted(entry.id) + ": " + error.message;
+  return error;
+}
+
+Result<Push> LoadPush(const Manifest& manifest, const ManifestPush& entry, int num_frames,
+                      ContentHash* hash) {
+  Push push;
+  push.person = entry.person;
+  push.start_frame = entry.start_frame;
+  push.file = ResolvePath(manifest.path, entry.csv);
+  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(push.file);
+  if (!force.ok()) return force.error();
+  push.force = std::move(force.value());
+
+  const std::string motion = "the motion has " + std::to_string(num_frames) + " frames";
+  if (push.start_frame > num_frames - 2) {
+    return Error{"the push starts at frame " + std::to_string(push.start_frame) + ", but " + motion,
+                 push.file, 0};
+  }
+  // One row per frame is fine: a sensor records as long as the cameras, its last row drives no
+  // step.
+  if (push.force.size() > static_cast<std::size_t>(num_frames - push.start_frame)) {
+    return Error{
+        "the push is longer than the motion: it has " + std::to_string(push.force.size()) +
+            " rows" +
+            (push.start_frame > 0 ? " from frame " + std::to_string(push.start_frame) : "") + ", " +
+            motion,
+        push.file, 0};
+  }
+  const Result<std::string> file_hash = HashFile(push.file);
+  if (!file_hash.ok()) return file_hash.error();
+  hash->Add(file_hash.value());
+  return push;
+}
+
+}  // namespace
+
+Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
+                                const LoadOptions& options, std::vector<std::string>* warnings) {
+  Recording recording;
+  recording.id = entry.id;
+  recording.setting = entry.setting;
+  recording.magnitude = entry.magnitude;
+  recording.condition_code = entry.condition_code;
+  recording.fps = entry.fps;
+  recording.pushed_person = entry.pushed_person;
+  recording.push_kind = entry.push_kind;
+  recording.initial_velocity = entry.initial_velocity;
+
+  for (const std::string& odd : MisspeltKeys(entry)) {
+    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + odd);
+  }
+
+  ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
+  for (std::size_t i = 0; i < entry.motion_files().size(); ++i) {
+    std::string file_hash;
+    Result<RecordedPerson> person = LoadPerson(manifest, entry, i, options, &file_hash, warnings);
+    if (!person.ok()) return OfRecording(entry, person.error());
+    hash.Add(file_hash);
+    if (i > 0 && person.value().hip.size() != recording.people[0].hip.size()) {
+      return OfRecording(entry, {"the file has " + std::to_string(person.value().hip.size()) +
+                                     " frames, but " + recording.people[0].file + " has " +
+                                     std::to_string(recording.people[0].hip.size()) +
+                                     "; the people of one recording share their frames",
+                                 person.value().file, 0});
+    }
+    recording.people.push_back(std::move(person.value()));
+  }
+
+  std::vector<ManifestPush> pushes = entry.pushes;
+  if (!entry.push_csv.empty()) {
+    pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
+  }
+  for (const ManifestPush& push : pushes) {
+    Result<Push> loaded = LoadPush(manifest, push, recording.num_frames(), &hash);
+    if (!loaded.ok()) return OfRecording(entry, loaded.error());
+    recording.pushes.push_back(std::move(loaded.value()));
+  }
+  recording.content_hash = hash.Hex();
+  if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
+    return OfRecording(entry, *std::move(failed));
+  }
+  return recording;
+}
+
+Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
+                                              const LoadOptions& options,
+                                              std::vector<std::string>* warnings) {
+  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
+  const Result<Manifest> manifest = ReadManifest(manifest_path);
+  if (!manifest.ok()) return manifest.error();
+  const Result<std::vector<int>> selected =
+      SelectRecordings(manifest.value(), options.setting, options.ids, options.leave_out);
+  if (!selected.ok()) return selected.error();
+  std::vector<Recording> recordings;
+  for (int index : selected.value()) {
+    Result<Recording> recording =
+        LoadRecording(manifest.value(), manifest.value().recordings[index], options, warnings);
+    if (!recording.ok()) return recording.error();
+    recordings.push_back(std::move(recording.value()));
+  }
+  return recordings;
+}
+
+}  // namespace pushid

@@ -1,0 +1,56 @@
+// datasets: from a manifest to recordings in SI units, checked.
+//
+//   std::vector<std::string> warnings;
+//   LoadOptions options;
+//   options.setting = "single";
+//   Result<std::vector<Recording>> recordings = LoadRecordings("M/manifest.json", options,
+//   &warnings);
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/content_hash.h"  // HashFile
+#include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
+#include "datasets/loading/motion_preparation.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+
+struct LoadOptions {
+  // The unit of the files' lengths, whatever they and the manifest say (--length_unit). Without it:
+  // the recording's length_unit, else the manifest's, the mapping's, the file's own, else mm.
+  std::optional<LengthUnit> length_unit;
+  // Which recordings: see SelectRecordings. Only those are read.
+  std::string setting = "all";
+  // Only these ids; empty: all of the setting.
+  std::vector<std::string> ids;
+  // Not these ids of them.
+  std::vector<std::string> leave_out;
+  // Also keep the positions of all joints (RecordedPerson::joints), for full-body work; without it
+  // only hip and ankles stay in memory.
+  bool keep_all_joints = false;
+  // Gaps, filter, frame rate.
+  PreparationOptions preparation{};
+};
+
+// Reads and checks the selected recordings, in the manifest's order. Things that look odd but can
+// be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
+// `warnings`.
+//
+// Besides what the readers of the single files refuse: fewer than three frames, a number of frames
+// other than the manifest's `frames`, people with different numbers of frames, a push longer than
+// the motion or starting after it, hip heights that show wrong units, joints not found.
+Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
+                                              const LoadOptions& options = {},
+                                              std::vector<std::string>* warnings = nullptr);
+
+// One recording of a manifest that was read already.
+Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
+                                const LoadOptions& options = {},
+                                std::vector<std::string>* warnings = nullptr);
+
+}  // namespace pushid

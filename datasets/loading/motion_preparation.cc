@@ -1,0 +1,94 @@
+// datasets: what is done to a motion between the file and the fit.
+#include "datasets/loading/motion_preparation.h"
+
+#include <algorithm>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/loading/low_pass.h"
+#include "datasets/loading/resample.h"
+
+namespace pushid {
+namespace {
+
+using Track = std::vector<Eigen::Vector3d>;
+
+constexpr double kSlowestCutoff = 0.5;  // Hz
+
+// change(track) for hip, ankles and, where they were kept, every joint.
+template <typename Change>
+void ForEachTrack(RecordedPerson* person, const Change& change) {
+  for (Track* track : {&person->hip, &person->left_ankle, &person->right_ankle}) change(track);
+  if (person->joints.empty()) return;
+  std::vector<Track> tracks(person->joints[0].size());
+  for (std::size_t joint = 0; joint < tracks.size(); ++joint) {
+    for (const auto& frame : person->joints) tracks[joint].push_back(frame[joint]);
+    change(&tracks[joint]);
+  }
+  person->joints.assign(tracks[0].size(), Track(tracks.size()));
+  for (std::size_t frame = 0; frame < person->joints.size(); ++frame) {
+    for (std::size_t joint = 0; joint < tracks.size(); ++joint) {
+      person->joints[frame][joint] = tracks[joint][frame];
+    }
+  }
+}
+
+bool IsRate(double value) { return value >= kMinFramesPerSecond && value <= kMaxFramesPerSecond; }
+
+}  // namespace
+
+MaybeError CheckPreparation(const PreparationOptions& options) {
+  if (!(options.max_gap_s >= 0.0 && options.max_gap_s <= 10.0)) {
+    return Error{"--max_gap_s is " + Rounded(options.max_gap_s) + "; it must be from 0 to 10 s"};
+  }
+  if (options.lowpass_hz != 0.0 &&
+      !(options.lowpass_hz >= kSlowestCutoff && options.lowpass_hz <= 1e4)) {
+    return Error{"--lowpass_hz is " + Rounded(options.lowpass_hz) +
+                 "; it must be a cut-off of at least " + Rounded(kSlowestCutoff) +
+                 " Hz, below which nothing of a push is left, or 0 for none"};
+  }
+  if (options.resample_fps != 0.0 && !IsRate(options.resample_fps)) {
+    return Error{"--resample_fps is " + Rounded(options.resample_fps) +
+                 "; it must be from 1 to 10000 frames per second, or 0 for the recording's own"};
+  }
+  return std::nullopt;
+}
+
+MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording) {
+  const double from = recording->fps, to = options.resample_fps;
+  if (options.lowpass_hz > 0.0) {
+    const double highest = HighestCutoff(from);
+    if (options.lowpass_hz >= highest) {
+      return Error{"--lowpass_hz=" + Rounded(options.lowpass_hz) + " is too high for its rate of " +
+                   Rounded(from) + " frames per second: it must be below " + Rounded(highest, 3) +
+                   " Hz"};
+    }
+    for (RecordedPerson& person : recording->people) {
+      ForEachTrack(&person, [&](Track* track) { LowPass(options.lowpass_hz, from, track); });
+    }
+  }
+  if (to == 0.0 || to == from) return std::nullopt;
+  if (to < from && !(options.lowpass_hz > 0.0 && options.lowpass_hz <= 0.5 * to)) {
+    return Error{"--resample_fps=" + Rounded(to) + " is below its " + Rounded(from) +
+                 " frames per second: faster movements would turn up as slow ones; pass "
+                 "--lowpass_hz=" +
+                 Rounded(to / 4.0, 3) + " or another cut-off of at most half the new rate"};
+  }
+  if (ResampledFrames(recording->num_frames(), from, to) < 3) {
+    return Error{"fewer than three frames are left at --resample_fps=" + Rounded(to)};
+  }
+  for (RecordedPerson& person : recording->people) {
+    ForEachTrack(&person, [&](Track* track) { *track = ResampleTrack(*track, from, to); });
+    if (!person.weight.empty()) person.weight = ResampleWeights(person.weight, from, to);
+  }
+  for (Push& push : recording->pushes) {
+    push = ResamplePush(push, from, to);
+    // A push that ends with the motion may reach into a frame that is not there any more.
+    const int room = recording->num_frames() - push.start_frame;
+    if (static_cast<int>(push.force.size()) > room) push.force.resize(std::max(room, 1));
+  }
+  recording->fps = to;
+  return std::nullopt;
+}
+
+}  // namespace pushid

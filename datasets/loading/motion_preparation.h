@@ -1,0 +1,28 @@
+// datasets: what is done to a motion between the file and the fit.
+#pragma once
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+
+struct PreparationOptions {
+  // Gaps of up to this long are interpolated; frames of longer ones get weight 0. 0: none is.
+  double max_gap_s = 0.1;
+  // Zero-phase low-pass of all positions (low_pass.h), Hz; 0: none. 6 to 10 Hz is usual for trunk
+  // and ankles; it also rounds off the first frames of the reaction to a push.
+  double lowpass_hz = 0.0;
+  // The rate at which the motion is rolled out and compared, frames per second; 0: the recording's.
+  // Lower rates make fits cheaper and the discretization coarser.
+  double resample_fps = 0.0;
+};
+
+// What is wrong with the options, if anything.
+MaybeError CheckPreparation(const PreparationOptions& options);
+
+// Filters and resamples a recording whose gaps are filled. Errors: a cut-off that the recording's
+// rate cannot have, a lower rate without a low-pass of at most half of it, fewer than three frames
+// left.
+MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording);
+
+}  // namespace pushid

@@ -1,0 +1,84 @@
+// datasets: mapping a recording's skeletons to pendulums.
+#include "datasets/loading/pendulum_recording.h"
+
+#include <algorithm>
+
+#include "datasets/files/content_hash.h"
+
+namespace pushid {
+namespace {
+
+void AddNumbers(const double* numbers, size_t count, ContentHash* hash) {
+  hash->Add({reinterpret_cast<const char*>(numbers), count * sizeof(double)});
+}
+
+// Of the files and of what the manifest makes of them: masses, units, rate, pushes.
+std::string HashOf(const PendulumRecording& recording, const std::string& files) {
+  ContentHash hash;
+  hash.Add(files);
+  AddNumbers(&recording.scene.dt, 1, &hash);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const ScenePerson& person = recording.scene.people[n];
+    const double body[] = {person.body.mass, person.body.rod_length, person.body.cart_height};
+    AddNumbers(body, 3, &hash);
+    AddNumbers(person.start.qd.data(), 4, &hash);
+    for (const Vector3<double>& hip : recording.hip[n]) AddNumbers(hip.data(), 3, &hash);
+  }
+  for (const ScenePush& push : recording.scene.pushes) {
+    const double kind[] = {static_cast<double>(push.person), static_cast<double>(push.start_frame),
+                           static_cast<double>(push.kind)};
+    AddNumbers(kind, 3, &hash);
+    for (const Vector4<double>& row : push.force) AddNumbers(row.data(), 4, &hash);
+  }
+  return hash.Hex();
+}
+
+}  // namespace
+
+PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
+  PendulumRecording result;
+  result.id = recording.id;
+  result.setting = recording.setting;
+  result.magnitude = recording.magnitude;
+  result.condition_code = recording.condition_code;
+  result.pushed_person = recording.pushed_person;
+  result.initial_velocity = recording.initial_velocity;
+  result.scene.dt = 1.0 / recording.fps;
+
+  for (const RecordedPerson& person : recording.people) {
+    std::vector<PendulumState<double>> states(person.hip.size());
+    std::vector<double> lengths(person.hip.size());
+    ScenePerson in_scene;
+    for (size_t t = 0; t < person.hip.size(); ++t) {
+      const MappedPose pose =
+          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t], mapping);
+      states[t].q = pose.q;
+      if (t > 0) states[t].qd = (pose.q - states[t - 1].q) * recording.fps;
+      lengths[t] = pose.rod_length;
+      if (t == 0) in_scene.body = {person.mass_kg, pose.rod_length, pose.cart_height};
+    }
+    in_scene.start.q = states[0].q;
+    if (recording.initial_velocity != InitialVelocity::kZero && states.size() > 1) {
+      in_scene.start.qd = states[1].qd;
+    }
+    states[0].qd = in_scene.start.qd;
+    result.subject_ids.push_back(person.subject_id);
+    result.scene.people.push_back(in_scene);
+    result.states.push_back(std::move(states));
+    result.rod_length.push_back(std::move(lengths));
+    result.hip.push_back(person.hip);
+    std::vector<double> weight = person.weight;
+    for (size_t t = 1; t < weight.size(); ++t) {
+      weight[t] = std::min(person.weight[t - 1], person.weight[t]);
+    }
+    result.weight.push_back(std::move(weight));
+  }
+  for (const Push& push : recording.pushes) {
+    result.scene.pushes.push_back(
+        MakeScenePush(push.person, push.start_frame, recording.push_kind, push.force));
+  }
+  result.content_hash = HashOf(result, recording.content_hash);
+  return result;
+}
+
+}  // namespace pushid

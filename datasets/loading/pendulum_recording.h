@@ -1,0 +1,44 @@
+// datasets: a recording seen as pendulums: the scene to roll out and the motion to compare with.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/manifest/recording.h"
+#include "models/scene.h"
+#include "models/skeleton_mapping.h"
+
+namespace pushid {
+
+struct PendulumRecording {
+  std::string id;
+  std::string setting;
+  std::string magnitude;
+  std::string condition_code;
+  int pushed_person = 0;
+  InitialVelocity initial_velocity = InitialVelocity::kZero;
+  std::vector<std::string> subject_ids;  // one per person
+  Scene scene;
+  // [person][frame]; velocities are backward differences, which is what semi-implicit Euler's qd
+  // is.
+  std::vector<std::vector<PendulumState<double>>> states;
+  std::vector<std::vector<double>> rod_length;    // m
+  std::vector<std::vector<Vector3<double>>> hip;  // m
+  // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
+  // a frame is the least of its own and the one before, which its velocity leans on.
+  std::vector<std::vector<double>> weight;
+  std::string content_hash;  // of the files and of what the manifest makes of them
+
+  int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }
+  double Weight(int person, int frame) const {
+    const bool given = person < static_cast<int>(weight.size()) && !weight[person].empty();
+    return given ? weight[person][frame] : 1.0;
+  }
+  int num_people() const { return static_cast<int>(hip.size()); }
+};
+
+// Rod length and cart height are those of frame 0; the start velocity is zero or estimated, as the
+// recording says (`free` starts from the estimate).
+PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping);
+
+}  // namespace pushid

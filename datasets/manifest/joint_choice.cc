@@ -1,0 +1,239 @@
+// datasets: which joints or markers of a file the pendulum is read from.
+#include "datasets/manifest/joint_choice.h"
+
+#include <iterator>
+#include <vector>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/point_motion.h"
+
+namespace pushid {
+namespace {
+
+// The FZJ push skeleton: hip; spine to head; right arm, left arm; right leg 14-17, left leg 18-21.
+constexpr int kFzjParents[] = {-1, 0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
+                               10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
+constexpr int kFzjRightAnkle = 16, kFzjLeftAnkle = 20;
+
+bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
+  if (skeleton.joints.size() != std::size(kFzjParents)) return false;
+  for (std::size_t i = 0; i < std::size(kFzjParents); ++i) {
+    if (skeleton.joints[i].parent != kFzjParents[i]) return false;
+  }
+  return true;
+}
+
+// "mixamorig:Left_Foot" -> "leftfoot".
+std::string Simplified(const std::string& name) {
+  std::string simple;
+  const std::size_t prefix = name.rfind(':');
+  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
+  }
+  return simple;
+}
+
+std::vector<std::string> JointNames(const BvhSkeleton& skeleton) {
+  std::vector<std::string> names;
+  for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
+  return names;
+}
+
+// What differs between the joints of a skeleton and the points of other files.
+struct Source {
+  const std::string& path;
+  std::vector<std::string> names;
+  const BvhSkeleton* skeleton = nullptr;  // null: points
+  std::vector<std::string> simplified{};
+
+  bool is_bvh() const { return skeleton != nullptr; }
+  const char* noun() const { return is_bvh() ? "joint" : "point"; }
+  Error Unknown(const std::string& name) const {
+    return is_bvh() ? UnknownJointError(path, *skeleton, name)
+                    : UnknownPointError(path, names, name);
+  }
+};
+
+std::vector<int> AllCalled(const Source& source, const std::string& simplified) {
+  std::vector<int> found;
+  for (std::size_t i = 0; i < source.simplified.size(); ++i) {
+    if (source.simplified[i] == simplified) found.push_back(static_cast<int>(i));
+  }
+  return found;
+}
+
+Error SeveralError(const Source& source, const char* key, const std::vector<int>& found) {
+  return {std::string(key) + " could be " + Quoted(source.names[found[0]]) + " or " +
+              Quoted(source.names[found[1]]) +
+              "; name it in full by \"joints\" in the manifest (each subject may have its own)",
+          source.path};
+}
+
+// The first set of candidates that are all there; an empty list when there is none. Points of
+// several people that answer to the same name are an Error, joints are taken in file order.
+Result<std::vector<int>> FindDefault(const Source& source, const char* key,
+                                     const std::vector<std::vector<std::string>>& candidates) {
+  for (const std::vector<std::string>& set : candidates) {
+    std::vector<int> chosen;
+    for (const std::string& name : set) {
+      const std::vector<int> found = AllCalled(source, name);
+      if (found.empty()) break;
+      if (found.size() > 1 && !source.is_bvh()) return SeveralError(source, key, found);
+      chosen.push_back(found[0]);
+    }
+    if (chosen.size() == set.size()) return chosen;
+  }
+  return std::vector<int>{};
+}
+
+Result<std::vector<int>> DefaultHip(const Source& source) {
+  std::vector<std::vector<std::string>> candidates = {{"hips"}, {"hip"}, {"pelvis"}};
+  if (!source.is_bvh()) {
+    for (const auto& set :
+         std::vector<std::vector<std::string>>{{"midhip"},
+                                               {"hipcenter"},
+                                               {"lasi", "rasi", "lpsi", "rpsi"},
+                                               {"lasis", "rasis", "lpsis", "rpsis"},
+                                               {"asisl", "asisr", "psisl", "psisr"},
+                                               {"lasi", "rasi", "sacr"},
+                                               {"lasis", "rasis", "vsacral"},
+                                               {"lasi", "rasi"},
+                                               {"lasis", "rasis"},
+                                               {"lhip", "rhip"},
+                                               {"lefthip", "righthip"}}) {
+      candidates.push_back(set);
+    }
+  }
+  Result<std::vector<int>> hip = FindDefault(source, "hip", candidates);
+  if (hip.ok() && hip.value().empty() && source.is_bvh()) return std::vector<int>{0};
+  return hip;
+}
+
+Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
+                                      const std::string& side) {
+  const std::string letter = side.substr(0, 1);
+  std::vector<std::vector<std::string>> candidates;
+  for (const std::string& name :
+       {side + "ankle", letter + "ankle", "ankle" + side, "ankle" + letter, side + "foot",
+        letter + "foot", "foot" + side, "foot" + letter}) {
+    candidates.push_back({name});
+  }
+  if (!source.is_bvh()) {
+    for (const std::string& name : {letter + "ank", letter + "anklelat", letter + "mal",
+                                    letter + "lm", "mal" + letter, "malext" + letter}) {
+      candidates.push_back({name});
+    }
+  }
+  Result<std::vector<int>> ankle = FindDefault(source, key, candidates);
+  if (ankle.ok() && ankle.value().empty() && source.is_bvh() && IsFzjSkeleton(*source.skeleton)) {
+    return std::vector<int>{side == "left" ? kFzjLeftAnkle : kFzjRightAnkle};
+  }
+  return ankle;
+}
+
+Error InJoints(const char* key, Error error) {
+  error.message = std::string("joints: ") + key + ": " + error.message;
+  return error;
+}
+
+// The joint or point that one name or index means.
+Result<int> Look(const Source& source, const char* key, const JointReference& reference) {
+  const int count = static_cast<int>(source.names.size());
+  if (reference.name.empty()) {
+    if (reference.index >= 0 && reference.index < count) return reference.index;
+    const std::string noun = source.noun();
+    return Error{std::string("joints: ") + key + " is " + noun + " " +
+                     std::to_string(reference.index) + ", but the " +
+                     (source.is_bvh() ? "skeleton" : "file") + " has " + noun + "s 0 to " +
+                     std::to_string(count - 1),
+                 source.path, 0};
+  }
+  for (int i = 0; i < count; ++i) {
+    if (source.names[i] == reference.name) return i;
+  }
+  // "LASI" for "Anna:LASI".
+  std::vector<int> found;
+  for (int i = 0; i < count && !source.is_bvh(); ++i) {
+    const std::size_t prefix = source.names[i].rfind(':');
+    if (prefix != std::string::npos && source.names[i].substr(prefix + 1) == reference.name) {
+      found.push_back(i);
+    }
+  }
+  if (found.size() > 1) return InJoints(key, SeveralError(source, key, found));
+  if (found.size() == 1) return found[0];
+  return InJoints(key, source.Unknown(reference.name));
+}
+
+// What `reference` means, or else `fallback`; an Error when there is neither.
+Result<std::vector<int>> Choose(const Source& source, const char* key,
+                                const std::optional<JointReference>& reference,
+                                const Result<std::vector<int>>& fallback) {
+  if (!reference) {
+    if (!fallback.ok() || !fallback.value().empty()) return fallback;
+    Error error = source.Unknown("");
+    error.message = std::string("no ") + source.noun() + " could be recognised as " + key +
+                    "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
+                    "\"right_ankle\": ...}; the " +
+                    (source.is_bvh() ? "skeleton" : "file") + " has " +
+                    error.message.substr(error.message.find("it has ") + 7);
+    return error;
+  }
+  std::vector<int> chosen;
+  const std::vector<JointReference> single = {*reference};
+  for (const JointReference& one : reference->mean_of.empty() ? single : reference->mean_of) {
+    const Result<int> index = Look(source, key, one);
+    if (!index.ok()) return index.error();
+    chosen.push_back(index.value());
+  }
+  return chosen;
+}
+
+Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
+  for (const std::string& name : source.names) source.simplified.push_back(Simplified(name));
+  const std::vector<int> unneeded = {0};
+  // A default is only looked for where it is wanted: it may be ambiguous.
+  const Result<std::vector<int>> hip =
+      Choose(source, "hip", mapping.hip, mapping.hip ? unneeded : DefaultHip(source));
+  if (!hip.ok()) return hip.error();
+  const Result<std::vector<int>> left =
+      Choose(source, "left_ankle", mapping.left_ankle,
+             mapping.left_ankle ? unneeded : DefaultAnkle(source, "left_ankle", "left"));
+  if (!left.ok()) return left.error();
+  const Result<std::vector<int>> right =
+      Choose(source, "right_ankle", mapping.right_ankle,
+             mapping.right_ankle ? unneeded : DefaultAnkle(source, "right_ankle", "right"));
+  if (!right.ok()) return right.error();
+  const PendulumJoints joints{hip.value(), left.value(), right.value()};
+  if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
+      joints.left_ankle == joints.right_ankle) {
+    return Error{std::string("hip, left_ankle and right_ankle must be three different ") +
+                     source.noun() + "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
+                     Quoted(source.names[joints.left_ankle[0]]) + " and " +
+                     Quoted(source.names[joints.right_ankle[0]]) +
+                     "; name them by \"joints\" in the manifest",
+                 source.path, 0};
+  }
+  return joints;
+}
+
+}  // namespace
+
+Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
+                                            const JointMapping& mapping) {
+  return ChooseFrom({path, JointNames(skeleton), &skeleton}, mapping);
+}
+
+Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
+                                            const std::vector<std::string>& names,
+                                            const JointMapping& mapping) {
+  return ChooseFrom({path, names}, mapping);
+}
+
+JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
+  return {first.hip ? first.hip : second.hip,
+          first.left_ankle ? first.left_ankle : second.left_ankle,
+          first.right_ankle ? first.right_ankle : second.right_ankle};
+}
+
+}  // namespace pushid

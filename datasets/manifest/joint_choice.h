@@ -1,0 +1,41 @@
+// datasets: which joints or markers of a file the pendulum is read from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/manifest/manifest.h"
+
+namespace pushid {
+
+// Indices into the file's joints or points; each place is the mean of its list.
+struct PendulumJoints {
+  std::vector<int> hip, left_ankle, right_ankle;
+};
+
+// What `mapping` names, and for the rest the defaults:
+//   hip     a joint called Hips, Hip or Pelvis, otherwise the first root;
+//   ankles  joints called LeftAnkle, LeftFoot, L_Ankle, foot.l, mixamorig:LeftFoot, ... (case and
+//           punctuation do not matter); otherwise, in a skeleton with the 22 joints and the parents
+//           of the FZJ push recordings, right 16 and left 20.
+// Errors: a joint that does not exist (a few that do are listed), no ankles found, one joint twice.
+// `path` is the BVH file, for messages.
+Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
+                                            const JointMapping& mapping);
+
+// The same for named points. A name may leave out what stands before a colon ("LASI" for
+// "Anna:LASI") where that is clear. Defaults:
+//   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
+//           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
+//   ankles  the names above, LANK, L.Ankle.Lat, LMAL, ...
+// Errors besides the above: a default or a short name that several people's points answer to.
+Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
+                                            const std::vector<std::string>& names,
+                                            const JointMapping& mapping);
+
+// `first` where it names a joint, otherwise `second`.
+JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
+
+}  // namespace pushid

@@ -1,0 +1,122 @@
+// datasets: the manifest, a JSON file that lists recordings and says what is known about each.
+//
+//   {"recordings": [{
+//     "id": "s1_00", "setting": "single", "fps": 60,
+//     "subjects": [{"id": "s1", "mass_kg": 67.0}], "pushed_person": 0,
+//     "bvh": ["bvh/s1_00.bvh"], "push_csv": "push/s1_00.csv",
+//     "push_kind": "external", "magnitude": "weak"}]}
+//
+// Required per recording: id, setting, fps, subjects (id, mass_kg), pushed_person, bvh, magnitude.
+// Optional: push_csv (none: no push known), push_kind (net, net_without_friction, external; default
+// external), joints {hip, left_ankle, right_ankle} by name or index, up and forward (axes of the
+// BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
+// start_frame}] in addition to push_csv, initial_velocity (zero, estimated, free; default zero),
+// condition_code, frames. At the top: length_unit or units.bvh_length for all recordings.
+//
+// Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
+// with one file per subject; the same file may be named for several. A joint may then be a list of
+// markers whose mean it is: "hip": ["LASI", "RASI", "LPSI", "RPSI"]. A subject may have joints of
+// its own; mapping names a file (column_mapping.h) with joints, columns, unit, axes and rate for
+// recordings that share them. first_frame and end_frame (the one behind the last) cut the motion;
+// frames of pushes count from first_frame.
+// Paths are relative to the manifest. Keys not listed here are kept when a manifest is written
+// again.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+
+// What the files of the motion are.
+enum class MotionFormat { kBvh, kC3d, kTrc, kCsv, kStorage };
+
+// A joint or marker by name or, where the manifest gives a number, by index in file order; or the
+// mean of several.
+struct JointReference {
+  std::string name;
+  int index = -1;                         // used when the name is empty
+  std::vector<JointReference> mean_of{};  // not empty: their mean, and nothing else is used
+};
+
+// Which joints the pendulum is read from; whatever is absent is found by default
+// (load_recordings.h).
+struct JointMapping {
+  std::optional<JointReference> hip, left_ankle, right_ankle;
+};
+
+struct ManifestSubject {
+  std::string id;
+  double mass_kg = 0.0;
+  JointMapping joints{};  // before those of the recording
+};
+
+struct ManifestPush {
+  int person = 0;
+  std::string csv;  // relative to the manifest
+  int start_frame = 0;
+};
+
+struct ManifestRecording {
+  std::string id;
+  std::string setting;
+  double fps = 0.0;
+  std::vector<ManifestSubject> subjects;
+  int pushed_person = 0;
+  std::vector<std::string> bvh;  // one per subject, relative to the manifest
+  // Of another format: the files stand here, and `bvh` is empty.
+  MotionFormat motion_format = MotionFormat::kBvh;
+  std::vector<std::string> motion;
+  std::string mapping;   // relative to the manifest; empty: none
+  std::string push_csv;  // relative to the manifest; empty: no push at frame 0
+  PushKind push_kind = PushKind::kExternal;
+  std::string magnitude;
+  std::string condition_code;
+  JointMapping joints;
+  std::string up = "z";       // axis of the BVH that points up
+  std::string forward = "x";  // axis of the BVH that points forward, in the push direction
+  std::optional<LengthUnit> length_unit;
+  std::vector<ManifestPush> pushes;
+  InitialVelocity initial_velocity = InitialVelocity::kZero;
+  std::optional<int> frames;     // checked against the file when given
+  int first_frame = 0;           // of the file, from 0, that becomes frame 0
+  std::optional<int> end_frame;  // of the file, behind the last one used
+  int line = 0;                  // where the entry starts in the manifest, for messages
+
+  // The entry as read, with the keys this program does not know. Writing starts from it and sets
+  // the fields above on top.
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+
+  const std::vector<std::string>& motion_files() const {
+    return motion_format == MotionFormat::kBvh ? bvh : motion;
+  }
+};
+
+struct Manifest {
+  std::string path;                       // the file it was read from, for messages
+  std::optional<LengthUnit> length_unit;  // for recordings that do not give their own
+  std::vector<ManifestRecording> recordings;
+  nlohmann::ordered_json json =
+      nlohmann::ordered_json::object();  // the top level, without `recordings`
+};
+
+// Reads and checks a manifest; does not open the files it names. Errors name file, line and
+// recording: JSON syntax (with column), missing or mistyped keys, duplicate ids, no recordings,
+// mass not in (0, 400] kg, fps not in [1, 10000], pushed_person out of range, not as many BVH files
+// as subjects.
+Result<Manifest> ReadManifest(const std::string& path);
+
+// Writes atomically. A field that equals its default is written only where the JSON already has it;
+// push_kind is always written.
+MaybeError WriteManifest(const std::string& path, const Manifest& manifest);
+
+// "push/a.csv" as named by the manifest at `manifest_path`: relative to its folder unless absolute.
+std::string ResolvePath(const std::string& manifest_path, const std::string& file);
+
+}  // namespace pushid

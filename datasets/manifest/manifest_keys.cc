@@ -1,0 +1,64 @@
+// datasets: keys near to known ones.
+#include "datasets/manifest/manifest_keys.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+const std::vector<std::string> kKeys = {
+    "id",      "setting",     "fps",         "subjects",      "pushed_person",
+    "bvh",     "c3d",         "trc",         "csv",           "sto",
+    "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
+    "up",      "forward",     "length_unit", "pushes",        "initial_velocity",
+    "frames",  "first_frame", "end_frame",   "condition_code"};
+
+// Letters to put in, take out or replace (Levenshtein), hyphens and capitals aside.
+std::size_t Distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t replaced = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replaced, row[k] + 1, row[k + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string Plain(std::string key) {
+  for (char& c : key) c = c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(c));
+  return key;
+}
+
+}  // namespace
+
+std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return "";
+  for (const std::string& one : known) {
+    // Short words are near to too much.
+    const std::size_t most = one.size() < 5 ? 0 : 2;
+    if (Distance(Plain(word), one) <= most) return one;
+  }
+  return "";
+}
+
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
+  std::vector<std::string> found;
+  if (!entry.json.is_object()) return found;
+  for (const auto& [key, value] : entry.json.items()) {
+    const std::string meant = MeantBy(key, kKeys);
+    if (meant.empty()) continue;
+    found.push_back("has the key " + Quoted(key) + ", which is not known and not used; is " +
+                    meant + " meant?");
+  }
+  return found;
+}
+
+}  // namespace pushid

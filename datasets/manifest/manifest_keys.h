@@ -1,0 +1,19 @@
+// datasets: keys of a manifest's recording that are most likely misspelt.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/manifest/manifest.h"
+
+namespace pushid {
+
+// The known word that another one is most likely a misspelling of; empty where it is known itself
+// or like none of them.
+std::string MeantBy(const std::string& word, const std::vector<std::string>& known);
+
+// "has the key 'push_scv', which is not known and not used; is push_csv meant?" for each. Keys that
+// are like no known one are a user's own, and fine.
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry);
+
+}  // namespace pushid

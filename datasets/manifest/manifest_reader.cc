@@ -1,0 +1,209 @@
+// datasets: the manifest read and checked.
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/axes.h"
+#include "datasets/formats/bvh.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/manifest/mapping_json.h"
+#include "datasets/manifest/recording_names.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kHeaviestPerson = 400.0;  // kg
+
+constexpr int kAnyFrame = 1 << 30;
+
+void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+  if (!fields->Require("subjects", "a list of {\"id\", \"mass_kg\"}")) return;
+  int index = 0;
+  for (const Json& item : fields->List("subjects")) {
+    JsonFields subject(document, item, fields->Pointer("subjects/" + std::to_string(index)),
+                       fields->label() + ", subject " + std::to_string(index));
+    ManifestSubject read;
+    read.id = subject.Text("id", "text that names the person");
+    read.mass_kg = subject.Number("mass_kg", "the person's mass in kg");
+    if (!subject.error() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
+      subject.Fail("mass_kg", "is " + Rounded(read.mass_kg) +
+                                  "; a mass in kg is above 0 and at most " +
+                                  Rounded(kHeaviestPerson));
+    }
+    read.joints = ReadJointMapping(document, &subject);
+    fields->Fail(subject.error());
+    recording->subjects.push_back(read);
+    ++index;
+  }
+  if (index == 0) fields->Fail("subjects", "is empty; name at least one person");
+}
+
+void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
+  std::string key;
+  for (MotionFormat format : {MotionFormat::kBvh, MotionFormat::kC3d, MotionFormat::kTrc,
+                              MotionFormat::kCsv, MotionFormat::kStorage}) {
+    const std::string name = Name(format);
+    if (!fields->Has(name.c_str())) continue;
+    if (!key.empty()) {
+      fields->Fail(name, "is given beside " + key + "; the motion stands in one of them");
+    }
+    key = name;
+    recording->motion_format = format;
+  }
+  if (key.empty()) {
+    fields->Require("bvh", "a list of BVH files, one per subject (or c3d, trc, csv, sto instead)");
+    return;
+  }
+  const bool bvh = recording->motion_format == MotionFormat::kBvh;
+  std::vector<std::string>& files = bvh ? recording->bvh : recording->motion;
+  for (const Json& item : fields->List(key.c_str())) {
+    if (!item.is_string() || item.get<std::string>().empty()) {
+      fields->Fail(key + "/" + std::to_string(files.size()),
+                   "must be a file name, not " + Shown(item));
+      return;
+    }
+    files.push_back(item.get<std::string>());
+  }
+  if (!fields->error() && files.size() != recording->subjects.size()) {
+    fields->Fail(key, "lists " + std::to_string(files.size()) + " files for " +
+                          std::to_string(recording->subjects.size()) +
+                          " subjects; there must be one per subject, in the same order");
+  }
+}
+
+void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+  const int people = static_cast<int>(recording->subjects.size());
+  for (const Json& item : fields->List("pushes")) {
+    const std::string index = std::to_string(recording->pushes.size());
+    JsonFields push(document, item, fields->Pointer("pushes/" + index),
+                    fields->label() + ", push " + index);
+    ManifestPush read;
+    read.person = push.Whole("person", "the index of a subject, from 0", 0, people - 1);
+    read.csv = push.Text("csv", "the name of a push CSV file");
+    if (!push.error() && read.csv.empty()) push.Fail("csv", "is empty");
+    if (push.Has("start_frame")) {
+      read.start_frame =
+          push.Whole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame);
+    }
+    if (!push.error() && read.csv == recording->push_csv && read.start_frame == 0 &&
+        read.person == recording->pushed_person) {
+      push.Fail("csv", "is also given as push_csv; the push would count twice");
+    }
+    fields->Fail(push.error());
+    recording->pushes.push_back(read);
+  }
+}
+
+Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json& object,
+                                        int index) {
+  const std::string pointer = "/recordings/" + std::to_string(index);
+  JsonFields fields(document, object, pointer, "recording " + std::to_string(index));
+  ManifestRecording recording;
+  recording.id = fields.Text("id", "text that names the recording");
+  if (!fields.error() && recording.id.empty()) fields.Fail("id", "is empty");
+  if (!fields.error()) fields.set_label("recording " + Quoted(recording.id));
+  if (!fields.error() && recording.id.find(',') != std::string::npos) {
+    fields.Fail("id", "must have no comma: commas separate ids in lists");
+  }
+
+  recording.setting = fields.Text("setting", "text, for instance single");
+  recording.fps = fields.Number("fps", "the frames per second");
+  if (!fields.error() &&
+      !(recording.fps >= kMinFramesPerSecond && recording.fps <= kMaxFramesPerSecond)) {
+    fields.Fail("fps", "is " + Rounded(recording.fps) + "; accepted are " +
+                           Rounded(kMinFramesPerSecond) + " to " + Rounded(kMaxFramesPerSecond) +
+                           " frames per second");
+  }
+  ReadSubjects(document, &fields, &recording);
+  if (!fields.error()) {
+    const int people = static_cast<int>(recording.subjects.size());
+    const std::string what =
+        "the index of the pushed subject, " +
+        (people == 1 ? std::string("0") : "0 to " + std::to_string(people - 1));
+    recording.pushed_person = fields.Whole("pushed_person", what.c_str(), 0, people - 1);
+  }
+  ReadMotionNames(&fields, &recording);
+  recording.mapping = fields.OptionalText("mapping", "");
+  recording.push_csv = fields.OptionalText("push_csv", "");
+  recording.push_kind = fields.Choice("push_kind", &PushKindFromName, PushKind::kExternal,
+                                      "net, net_without_friction or external");
+  recording.magnitude =
+      fields.Text("magnitude", "the push's strength as a label, for instance weak, medium, strong");
+  recording.condition_code = fields.OptionalText("condition_code", "");
+  recording.joints = ReadJointMapping(document, &fields);
+  recording.up = fields.OptionalText("up", recording.up);
+  recording.forward = fields.OptionalText("forward", recording.forward);
+  const Result<Eigen::Matrix3d> axes = AxesRotation(recording.up, recording.forward);
+  if (!axes.ok())
+    fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
+                                 fields.label() + ": " + axes.error().message));
+  recording.length_unit = ReadLengthUnit(&fields, "length_unit");
+  if (!fields.error()) ReadPushes(document, &fields, &recording);
+  recording.initial_velocity = fields.Choice("initial_velocity", &InitialVelocityFromName,
+                                             InitialVelocity::kZero, "zero, estimated or free");
+  if (fields.Has("frames")) {
+    recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
+  }
+  if (fields.Has("first_frame")) {
+    recording.first_frame =
+        fields.Whole("first_frame", "the file's frame that becomes frame 0", 0, kAnyFrame);
+  }
+  if (fields.Has("end_frame")) {
+    recording.end_frame =
+        fields.Whole("end_frame", "the frame behind the last one used, after first_frame",
+                     recording.first_frame + 1, kAnyFrame);
+  }
+  if (fields.error()) return *fields.error();
+  recording.json = object;
+  return recording;
+}
+
+}  // namespace
+
+Result<Manifest> ReadManifest(const std::string& path) {
+  Result<JsonDocument> read = ReadJsonDocument(path);
+  if (!read.ok()) return read.error();
+  const JsonDocument& document = read.value();
+  JsonFields top(document, document.content, "", "manifest");
+  Manifest manifest;
+  manifest.path = path;
+  top.Require("recordings", "a list of recordings");
+  const Json& recordings = top.List("recordings");
+  if (!top.error() && recordings.empty()) {
+    top.Fail("recordings", "is empty: the manifest lists no recordings");
+  }
+  if (top.Has("units") && top.At("units").is_object()) {
+    JsonFields units(document, top.At("units"), "/units", "manifest, units");
+    manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
+    top.Fail(units.error());
+  }
+  if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
+  if (top.error()) return *top.error();
+
+  const std::vector<int> lines = document.ElementLines("/recordings");
+  std::unordered_map<std::string, int> line_of_id;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    Result<ManifestRecording> recording =
+        ReadRecording(document, recordings[i], static_cast<int>(i));
+    if (!recording.ok()) return recording.error();
+    recording.value().line = lines[i];
+    const auto [earlier, is_new] = line_of_id.emplace(recording.value().id, recording.value().line);
+    if (!is_new) {
+      return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
+                              "recording " + Quoted(recording.value().id) +
+                                  ": this id was given before, in line " +
+                                  std::to_string(earlier->second) + "; ids must be unique");
+    }
+    manifest.recordings.push_back(std::move(recording.value()));
+  }
+  manifest.json = document.content;
+  manifest.json.erase("recordings");
+  return manifest;
+}
+
+}  // namespace pushid

@@ -1,0 +1,137 @@
+// datasets: the manifest written, with everything that was in it before.
+#include <cmath>
+#include <filesystem>
+
+#include "datasets/files/json_file.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/manifest/recording_names.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Sets an optional key: written when it says something or was there already and still may; removed
+// when it was emptied.
+template <typename T>
+void SetUnless(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default) {
+    (*object)[key] = value;
+  } else {
+    object->erase(key);
+  }
+}
+
+// The same for keys whose default value may as well be spelled out.
+template <typename T>
+void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default || object->contains(key)) (*object)[key] = value;
+}
+
+Json JointJson(const JointReference& joint) {
+  if (!joint.mean_of.empty()) {
+    Json list = Json::array();
+    for (const JointReference& one : joint.mean_of) list.push_back(JointJson(one));
+    return list;
+  }
+  return joint.name.empty() ? Json(joint.index) : Json(joint.name);
+}
+
+// What was under `key` when it is a list of `size` objects, so that their other keys stay;
+// otherwise a list of that many empty ones.
+Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
+  Json list = object.contains(key) ? object.at(key) : Json();
+  bool usable = list.is_array() && list.size() == size;
+  if (usable) {
+    for (const Json& item : list) usable = usable && item.is_object();
+  }
+  return usable ? list : Json(size, Json::object());
+}
+
+Json JointsJson(const JointMapping& joints, const Json& object) {
+  Json json = object.contains("joints") ? object.at("joints") : Json::object();
+  const auto set = [&json](const char* key, const std::optional<JointReference>& joint) {
+    SetUnless(!joint.has_value(), key, joint ? JointJson(*joint) : Json(), &json);
+  };
+  set("hip", joints.hip);
+  set("left_ankle", joints.left_ankle);
+  set("right_ankle", joints.right_ankle);
+  return json;
+}
+
+Json RecordingJson(const ManifestRecording& recording) {
+  Json json = recording.json.is_object() ? recording.json : Json::object();
+  json["id"] = recording.id;
+  json["setting"] = recording.setting;
+  const bool whole_fps = recording.fps == std::floor(recording.fps) && recording.fps < 1e6;
+  json["fps"] = whole_fps ? Json(static_cast<int>(recording.fps)) : Json(recording.fps);
+  Json subjects = ObjectsUnder(json, "subjects", recording.subjects.size());
+  for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
+    subjects[i]["id"] = recording.subjects[i].id;
+    subjects[i]["mass_kg"] = recording.subjects[i].mass_kg;
+    const Json joints = JointsJson(recording.subjects[i].joints, subjects[i]);
+    SetUnless(joints.empty(), "joints", joints, &subjects[i]);
+  }
+  json["subjects"] = subjects;
+  json["pushed_person"] = recording.pushed_person;
+  json[Name(recording.motion_format)] = recording.motion_files();
+  SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
+  SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
+  json["push_kind"] = Name(recording.push_kind);
+  json["magnitude"] = recording.magnitude;
+  SetOrKeep(recording.condition_code.empty(), "condition_code", recording.condition_code, &json);
+  const Json joints = JointsJson(recording.joints, json);
+  SetUnless(joints.empty(), "joints", joints, &json);
+  SetOrKeep(recording.up == "z", "up", recording.up, &json);
+  SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
+  SetUnless(!recording.length_unit, "length_unit",
+            recording.length_unit ? Name(*recording.length_unit) : "", &json);
+  Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
+  for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
+    pushes[i]["person"] = recording.pushes[i].person;
+    pushes[i]["csv"] = recording.pushes[i].csv;
+    pushes[i]["start_frame"] = recording.pushes[i].start_frame;
+  }
+  SetOrKeep(recording.pushes.empty(), "pushes", pushes, &json);
+  SetOrKeep(recording.initial_velocity == InitialVelocity::kZero, "initial_velocity",
+            Name(recording.initial_velocity), &json);
+  SetUnless(!recording.frames, "frames", recording.frames.value_or(0), &json);
+  SetOrKeep(recording.first_frame == 0, "first_frame", recording.first_frame, &json);
+  SetUnless(!recording.end_frame, "end_frame", recording.end_frame.value_or(0), &json);
+  return json;
+}
+
+}  // namespace
+
+MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
+  Json json = manifest.json.is_object() ? manifest.json : Json::object();
+  if (manifest.length_unit) {
+    const std::string name = Name(*manifest.length_unit);
+    const bool in_units =
+        json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
+    if (in_units) json["units"]["bvh_length"] = name;
+    if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
+  }
+  Json recordings = Json::array();
+  for (const ManifestRecording& recording : manifest.recordings) {
+    bool finite = std::isfinite(recording.fps);
+    for (const ManifestSubject& subject : recording.subjects) {
+      finite = finite && std::isfinite(subject.mass_kg);
+    }
+    if (!finite) {
+      return Error{
+          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
+          0};
+    }
+    recordings.push_back(RecordingJson(recording));
+  }
+  json["recordings"] = recordings;
+  return WriteJson(path, json, 1);
+}
+
+std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
+  // operator/ takes an absolute right-hand side as it is.
+  return (std::filesystem::path(manifest_path).parent_path() / file).string();
+}
+
+}  // namespace pushid

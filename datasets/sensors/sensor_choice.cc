@@ -1,0 +1,183 @@
+// datasets: force sensors in any file.
+#include "datasets/sensors/sensor_choice.h"
+
+#include <cmath>
+#include <filesystem>
+
+#include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/axes.h"
+#include "datasets/formats/c3d.h"
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_points.h"
+#include "datasets/inspection/inspect_manifest.h"
+#include "datasets/sensors/force_platform.h"
+
+namespace pushid {
+namespace {
+
+constexpr char kPlatform[] = "platform:";
+
+Error NoColumn(const SensorChoice& choice, const char* noun,
+               const std::vector<std::string>& names) {
+  Error error = UnknownPointError(choice.file, names, choice.column);
+  error.message.replace(error.message.find("point"), 5, noun);
+  return error;
+}
+
+// Times and values of a column or three.
+Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
+  std::vector<int> columns;
+  int time = -1;
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    time = FindTimeColumn(names, "");
+    if (time < 0) return Error{"there is no column called time", choice.file};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == choice.column) columns = {static_cast<int>(i)};
+    }
+    for (const TablePoint& point : PointsOf(names)) {
+      if (columns.empty() && point.name == choice.column) {
+        columns.assign(point.columns, point.columns + 3);
+      }
+    }
+    if (columns.empty()) return NoColumn(choice, "column", names);
+    std::vector<int> wanted = columns;
+    wanted.push_back(time);
+    return wanted;
+  };
+  const Result<NumericTable> table = ReadNumericTable(choice.file, format, options);
+  if (!table.ok()) return table.error();
+  SensorRecord record;
+  record.is_vector = columns.size() == 3;
+  record.time_s = table.value().data.back();
+  const Result<double> step = EvenTimeStep(table.value(), time);
+  if (!step.ok()) return step.error();
+  for (int row = 0; row < table.value().num_rows(); ++row) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < columns.size(); ++i) force[i] = table.value().data[i][row];
+    if (!force.allFinite()) {
+      return Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
+                   table.value().lines[row]};
+    }
+    record.force.push_back(force);
+  }
+  return record;
+}
+
+// For files that hold more than a push.
+Error WhichColumn(const SensorChoice& choice, bool c3d) {
+  std::vector<std::string> names;
+  if (c3d) {
+    const Result<C3dFile> file = ReadC3d(choice.file);
+    if (!file.ok()) return file.error();
+    for (const C3dAnalogChannel& channel : file.value().analog) names.push_back(channel.name);
+    for (std::size_t i = 0; i < file.value().platforms.size(); ++i) {
+      names.push_back(kPlatform + std::to_string(i + 1));
+    }
+  } else {
+    const Result<NumericTable> table = ReadNumericTable(choice.file, TableFormat::kStorage, {});
+    if (!table.ok()) return table.error();
+    names = table.value().names;
+  }
+  return Error{
+      "say what of it is the push by --sensor_column (in a list of sensors by \"column\"): "
+      "it has " +
+          (names.empty() ? "none" : ListOfNames(names)),
+      choice.file};
+}
+
+// The mean height of the pressure, weighted by the force, along the file's axis that points up.
+std::optional<double> HeightOfPressure(const PlatformRecord& platform, const Eigen::Vector3d& up) {
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < platform.force.size(); ++i) {
+    if (!platform.centre[i].allFinite()) continue;
+    sum += platform.force[i].norm() * platform.centre[i].dot(up);
+    weight += platform.force[i].norm();
+  }
+  return weight > 0.0 ? std::optional<double>(sum / weight) : std::nullopt;
+}
+
+Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& up) {
+  const Result<C3dFile> read = ReadC3d(choice.file);
+  if (!read.ok()) return read.error();
+  const C3dFile& file = read.value();
+  SensorRecord record;
+  if (choice.column.rfind(kPlatform, 0) == 0) {
+    std::int64_t number = 0;
+    if (!ParseInteger(choice.column.substr(sizeof kPlatform - 1), &number) || number < 1 ||
+        number > 1000) {
+      return Error{Quoted(choice.column) +
+                   " is no platform; it must be platform:1 or another number"};
+    }
+    const std::optional<LengthUnit> unit = LengthUnitFromName(file.point_unit);
+    if (!unit && !Trimmed(file.point_unit).empty()) {
+      return Error{"its lengths are in " + Quoted(file.point_unit) +
+                       ", which is not known here, so that the height of a platform is not",
+                   choice.file};
+    }
+    const Result<PlatformRecord> platform = EvaluatePlatform(
+        file, static_cast<int>(number) - 1, unit.value_or(LengthUnit::kMillimetre));
+    if (!platform.ok()) return platform.error();
+    record.is_vector = true;
+    record.force = platform.value().force;
+    record.height_m = HeightOfPressure(platform.value(), up);
+  } else {
+    const int channel = file.FindAnalog(choice.column);
+    if (channel < 0) {
+      std::vector<std::string> names;
+      for (const C3dAnalogChannel& one : file.analog) names.push_back(one.name);
+      return NoColumn(choice, "analog channel", names);
+    }
+    for (double sample : file.analog[channel].samples) record.force.push_back({sample, 0.0, 0.0});
+  }
+  for (std::size_t i = 0; i < record.force.size(); ++i) {
+    record.time_s.push_back(static_cast<double>(i) / file.analog_rate_hz);
+    if (!record.force[i].allFinite()) {
+      return Error{choice.column + " is not finite at sample " + std::to_string(i), choice.file};
+    }
+  }
+  return record;
+}
+
+}  // namespace
+
+void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
+  std::error_code failed;
+  if (!std::filesystem::equivalent(person.file, choice->file, failed) || failed) return;
+  if (!choice->start_s) choice->start_s = person.file_clock_s;
+  if (!choice->up.empty() || !choice->forward.empty()) return;
+  choice->up = person.file_up;
+  choice->forward = person.file_forward;
+}
+
+Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
+  const Result<Eigen::Matrix3d> rotation = AxesRotation(
+      choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
+  if (!rotation.ok()) return rotation.error();
+  const std::optional<MotionFormat> format = MotionFormatOfFile(choice.file);
+  const bool c3d = format == MotionFormat::kC3d, storage = format == MotionFormat::kStorage;
+  if (choice.column.empty() && (c3d || storage)) return WhichColumn(choice, c3d);
+  if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
+    return Error{"the gain of a sensor must be a number of N per unit other than 0"};
+  }
+  Result<SensorRecord> record =
+      c3d ? FromC3d(choice, rotation.value().row(2).transpose())
+      : choice.column.empty()
+          ? ReadSensorCsv(choice.file)
+          : FromTable(choice, storage ? TableFormat::kStorage : TableFormat::kCsv);
+  if (!record.ok()) return record;
+  record.value().file = choice.file;
+  if (choice.zero_n != 0.0 && record.value().is_vector) {
+    return Error{"a force at rest can only be taken off a sensor of one number", choice.file};
+  }
+  for (Eigen::Vector3d& force : record.value().force) {
+    force *= choice.gain;
+    force.x() -= choice.zero_n;
+    if (record.value().is_vector) force = rotation.value() * force;
+  }
+  return record;
+}
+
+}  // namespace pushid

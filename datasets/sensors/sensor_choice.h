@@ -1,0 +1,49 @@
+// datasets: force sensors in any file: CSV of the two forms in sensor_csv.h, a column or three of
+// another CSV or an OpenSim storage file, an analog channel or a force platform of a C3D file.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/recording.h"
+#include "datasets/sensors/sensor_csv.h"
+
+namespace pushid {
+
+// One sensor, and how it pushes.
+struct SensorChoice {
+  std::string file;
+  // What of the file: empty for a CSV time,force or time,fx,fy,fz; a column's name, or the common
+  // part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel; or
+  // platform:1, counted from 1.
+  std::string column;
+  double gain = 1.0;    // N per unit of the column; negative where it counts the other way
+  double zero_n = 0.0;  // what it reads at rest, N; of a sensor of one number
+  // Axes of the file that point up and forward, for forces that are vectors; empty: z and x.
+  std::string up, forward;
+  // The rest is what PushFromSensor needs.
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  double height_fraction = 1.0;
+  std::optional<double> height_m;
+  std::optional<double> start_s;  // its clock at frame 0; unset: 0
+  double idle_force = 0.0;        // N
+};
+
+// Where the sensor was recorded in the file of a person's motion, what the choice does not say is
+// that file's: clock at frame 0 and axes.
+void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
+
+// Errors besides those of the files' readers: no such column, channel or platform (some that exist
+// are listed), missing values, uneven times.
+Result<SensorRecord> ReadSensor(const SensorChoice& choice);
+
+// Several sensors that push together:
+//   [{"file": "left.csv", "height": 0.8}, {"file": "trial.c3d", "column": "rod", "gain": -250,
+//     "direction": [1, 0, 0], "height_m": 1.1, "start": 0.2, "idle_force": 3}]
+// Files are relative to the list. Also up and forward.
+Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
+
+}  // namespace pushid

@@ -1,0 +1,273 @@
+// datasets: drawing people and pushes, and rolling them out.
+#include "datasets/synthetic/synthetic_recordings.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
+
+namespace pushid {
+namespace {
+
+struct Subject {
+  std::string id;
+  double mass_kg;
+  SyntheticSkeleton skeleton;
+  ParameterSet<double> parameters;
+};
+
+ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Random* random) {
+  for (int i = 0; i < kNumParameters; ++i) {
+    // Not spread: one more draw would change every recording of a known seed.
+    if (i != kRodLift) parameters[i] *= std::exp(sigma * random->Normal());
+  }
+  return parameters;
+}
+
+std::string TwoDigits(int number) { return (number < 10 ? "0" : "") + std::to_string(number); }
+
+// The rows of a push of peak force mass * acceleration, in the plane of `direction` (0: forwards).
+std::vector<Vector4<double>> DrawPush(const SyntheticOptions& options, const ScenePerson& person,
+                                      double acceleration, Random* random) {
+  const bool external = options.push_kind == PushKind::kExternal;
+  const double shortest = options.min_push_s > 0.0 ? options.min_push_s : (external ? 0.15 : 0.05);
+  const double longest = options.max_push_s > 0.0 ? options.max_push_s : (external ? 0.35 : 0.15);
+  const double duration = random->Uniform(shortest, longest);
+  const double direction = random->Normal(0.0, options.direction_sigma_rad);
+  const double height = random->Uniform(options.min_height, options.max_height);
+  const int rows = std::max(2, static_cast<int>(std::lround(duration * options.fps)));
+  std::vector<Vector4<double>> force;
+  for (int k = 0; k < rows; ++k) {
+    const double phase = (k + 0.5) / rows * (external ? M_PI : 0.5 * M_PI);
+    const double size = person.body.mass * acceleration * std::sin(phase);
+    const Vector3<double> f(size * std::cos(direction), size * std::sin(direction), 0.0);
+    force.push_back(GeneralizedForce(person.body, person.start.q, f, height));
+  }
+  return force;
+}
+
+RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
+                   SyntheticRecording* made, ForceTrace* forces = nullptr) {
+  return Rollout(made->scene, model, made->parameters, InitialVelocities(made->scene),
+                 options.frames, &made->path, forces);
+}
+
+// Where a push stands for other forces too while it lasts, its rows must contain them. They are
+// taken from a rollout in which the drawn push is added to everything else.
+RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecording* made) {
+  const ModelOptions& model = options.model;
+  if (model.push == PushUse::kAdded || options.push_kind == PushKind::kExternal) return {};
+  ModelOptions added = model;
+  added.push = PushUse::kAdded;
+  ForceTrace forces;
+  const RolloutStatus status = Roll(options, added, made, &forces);
+  if (!status.ok) return status;
+  ScenePush& push = made->scene.pushes[0];
+  std::vector<Vector4<double>> rows;
+  for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
+    NetForce<double> force = forces.At(t, 0);
+    if (options.push_kind == PushKind::kNetWithoutFriction) force.friction.setZero();
+    rows.push_back(force.Total());
+  }
+  push = MakeScenePush(0, push.start_frame, push.kind, rows);
+  return {};
+}
+
+RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRecording& made,
+                             const Subject& subject, int n, Random* noise) {
+  RecordedPerson person;
+  person.subject_id = subject.id;
+  person.mass_kg = subject.mass_kg;
+  person.file = "synthetic";
+  for (int t = 0; t < options.frames; ++t) {
+    const PendulumState<double>& state = made.path.At(t, n);
+    const Vector4<double>& q = state.q;
+    const Body body = BodyNow(made.scene.people[n].body, state.rod, made.parameters[n][kRodLift]);
+    const double sigma = t == 0 && !options.noise_at_first_frame ? 0.0 : options.joint_noise_m;
+    const auto observed = [&](const Vector3<double>& position) {
+      const double x = noise->Normal(), y = noise->Normal(), z = noise->Normal();
+      return Vector3<double>(position + sigma * Vector3<double>(x, y, z));
+    };
+    const Vector3<double> cart(q[0], q[1], body.cart_height);
+    person.hip.push_back(observed(HipPosition(body, q)));
+    person.left_ankle.push_back(observed(cart + subject.skeleton.HalfStance()));
+    person.right_ankle.push_back(observed(cart - subject.skeleton.HalfStance()));
+  }
+  return person;
+}
+
+std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
+  std::vector<Subject> subjects;
+  for (int s = 0; s < options.subjects; ++s) {
+    // To 0.1 kg, as scales show it.
+    const double mass =
+        std::round(10.0 * people->Uniform(options.min_mass_kg, options.max_mass_kg)) / 10.0;
+    const SyntheticSkeleton skeleton(people->Uniform(options.min_rod_m, options.max_rod_m));
+    subjects.push_back({"S" + TwoDigits(s + 1), mass, skeleton,
+                        Spread(options.parameters, options.subject_spread, spread)});
+  }
+  return subjects;
+}
+
+// The row of people of one recording, the pushed one first, in the posture and place they start in.
+void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>& row,
+              Random* motion, Random* spread, SyntheticRecording* made) {
+  double x = 0.0;
+  for (const Subject* subject : row) {
+    made->skeletons.push_back(subject->skeleton);
+    made->parameters.push_back(Spread(subject->parameters, options.recording_spread, spread));
+    ScenePerson person;
+    person.body = {subject->mass_kg, subject->skeleton.rod_length(),
+                   subject->skeleton.cart_height()};
+    double y = 0.0;
+    if (row.size() > 1) {
+      y = motion->Normal(0.0, options.sideways_sigma_m);
+      if (!made->scene.people.empty()) {
+        x += motion->Uniform(options.min_spacing_m, options.max_spacing_m);
+      }
+    }
+    const double theta = motion->Normal(0.0, options.lean_sigma_rad);
+    const double phi = motion->Normal(0.0, options.lean_sigma_rad);
+    person.start.q = {x, y, theta, phi};
+    made->scene.people.push_back(person);
+  }
+}
+
+}  // namespace
+
+ModelOptions SyntheticOptions::TailModel() {
+  ModelOptions model;
+  model.friction = FrictionKind::kAnisotropic;
+  return model;
+}
+
+ParameterSet<double> PublishedTailParameters() {
+  // They are known per mass, per m g l and per m l^2 of the point mass.
+  const double point_mass = (1.0 - kCartShare) * kReferenceMass;
+  const double stiffness = point_mass * kGravity * kReferenceRod;     // N m/rad
+  const double damping = point_mass * kReferenceRod * kReferenceRod;  // N m s/rad
+  ParameterSet<double> p{};
+  p[kMu] = 0.34 * kReferenceMass;
+  p[kMuY] = 1.2 * kReferenceMass;
+  p[kKpTheta] = 2.19 * stiffness;
+  p[kKpPhi] = 2.1 * stiffness;
+  p[kKdTheta] = p[kKdPhi] = 1.0 * damping;
+  p[kAx] = -9.2;
+  p[kTailGain] = 1.15;
+  p[kTailTorque] = 0.33;
+  p[kTailTime] = 11.5 / 60.0;
+  p[kTailExponent] = 1.55;
+  return p;
+}
+
+MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
+  const auto range = [](const std::string& what, double low, double high, double min,
+                        double max) -> MaybeError {
+    if (low >= min && low <= high && high <= max) return {};  // false for NaN
+    const std::string within = Rounded(min) + " to " + Rounded(max);
+    if (!(low < high || low > high))
+      return Error{what + " is " + Rounded(low) + "; it must be " + within};
+    return Error{what + " from " + Rounded(low) + " to " + Rounded(high) +
+                 ": must be an ascending range within " + within};
+  };
+  constexpr double kMany = 100000;
+  if (o.strengths.empty()) return Error{"no push strengths given: name at least one"};
+  for (const PushStrength& strength : o.strengths) {
+    // It becomes part of ids and file names.
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
+    if (!std::all_of(strength.name.begin(), strength.name.end(), plain) || strength.name.empty()) {
+      return Error{"push strength '" + strength.name + "': use letters, digits, - and _"};
+    }
+    if (!(std::abs(strength.acceleration) <= 100.0)) {
+      return Error{"push strength '" + strength.name + "' of " +
+                   std::to_string(strength.acceleration) + " m/s^2: must be within +-100"};
+    }
+  }
+  if (o.push_start_frame > o.frames - 2) {
+    return Error{"push_start_frame " + std::to_string(o.push_start_frame) +
+                 " leaves no frame to push: must be at most frames - 2"};
+  }
+  for (const MaybeError& wrong :
+       {range("subjects", o.subjects, o.subjects, 1, kMany),
+        range("recordings_per_subject", o.recordings_per_subject, o.recordings_per_subject, 1,
+              kMany),
+        range("frames", o.frames, o.frames, 3, 10 * kMany), range("fps", o.fps, o.fps, 1, 10000),
+        range("mass_kg", o.min_mass_kg, o.max_mass_kg, 1, 400),
+        range("rod_m", o.min_rod_m, o.max_rod_m, 0.1, 3),
+        range("lean_sigma_rad", o.lean_sigma_rad, o.lean_sigma_rad, 0, 1),
+        range("push_s", o.min_push_s, o.max_push_s, 0, 1000),
+        range("push_start_frame", o.push_start_frame, o.push_start_frame, 0, 10 * kMany),
+        range("direction_sigma_rad", o.direction_sigma_rad, o.direction_sigma_rad, 0, 10),
+        range("height", o.min_height, o.max_height, -1, 3),
+        range("recording_spread", o.recording_spread, o.recording_spread, 0, 2),
+        range("subject_spread", o.subject_spread, o.subject_spread, 0, 2),
+        range("people_in_row", o.people_in_row, o.people_in_row, 1, o.subjects),
+        range("spacing_m", o.min_spacing_m, o.max_spacing_m, 0.05, 100),
+        range("sideways_sigma_m", o.sideways_sigma_m, o.sideways_sigma_m, 0, 10),
+        range("joint_noise_m", o.joint_noise_m, o.joint_noise_m, 0, 0.1)}) {
+    if (wrong) return wrong;
+  }
+  return {};
+}
+
+Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticOptions& options) {
+  if (const MaybeError wrong = CheckSyntheticOptions(options)) return *wrong;
+  Random root(options.seed);
+  Random people(root.Fork()), motion(root.Fork()), spread(root.Fork());
+  const uint64_t own_noise = root.Fork();
+  Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
+
+  const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
+  std::vector<SyntheticRecording> result;
+  for (int s = 0; s < options.subjects; ++s) {
+    std::vector<const Subject*> row;
+    for (int n = 0; n < options.people_in_row; ++n) {
+      row.push_back(&subjects[(s + n) % subjects.size()]);
+    }
+    for (int r = 0; r < options.recordings_per_subject; ++r) {
+      const PushStrength& strength = options.strengths[r % options.strengths.size()];
+      const std::string id = row[0]->id + "_" + TwoDigits(r) + "_" + strength.name;
+      SyntheticRecording made;
+      made.scene.dt = 1.0 / options.fps;
+      PlaceRow(options, row, &motion, &spread, &made);
+      std::vector<Vector4<double>> rows =
+          DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
+      const size_t room = options.frames - 1 - options.push_start_frame;
+      if (rows.size() > room) rows.resize(room);
+      made.scene.pushes.push_back(
+          MakeScenePush(0, options.push_start_frame, options.push_kind, rows));
+
+      RolloutStatus status = AbsorbOtherForces(options, &made);
+      if (status.ok) status = Roll(options, options.model, &made);
+      if (!status.ok) {
+        return Error{"simulated recording " + id + " leaves the model at frame " +
+                     std::to_string(status.frame) + " (" + std::string(status.quantity) +
+                     "): choose weaker pushes, firmer gains or less spread"};
+      }
+      Recording& recording = made.recording;
+      for (size_t n = 0; n < row.size(); ++n) {
+        recording.people.push_back(
+            ObservePerson(options, made, *row[n], static_cast<int>(n), &noise));
+      }
+      recording.id = id;
+      recording.magnitude = strength.name;
+      recording.setting = row.size() > 1 ? "row" : "single";
+      recording.fps = options.fps;
+      recording.push_kind = options.push_kind;
+      const ScenePush& push = made.scene.pushes[0];
+      recording.pushes.push_back({0, push.start_frame, push.force, "synthetic"});
+      result.push_back(std::move(made));
+    }
+  }
+  return result;
+}
+
+std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic) {
+  std::vector<Recording> recordings;
+  for (const SyntheticRecording& made : synthetic) recordings.push_back(made.recording);
+  return recordings;
+}
+
+}  // namespace pushid

@@ -1,0 +1,109 @@
+// datasets: recordings made by the model itself, with known parameters, for recovery and coverage
+// studies, for tests, and as an example of the file formats.
+//
+//   SyntheticOptions options;
+//   options.joint_noise_m = 0.002;
+//   Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
+//   MaybeError failed = WriteSyntheticRecordings("out", options, made.value());  //
+//   out/manifest.json
+//
+// Every recording is one person, or a row of them one behind the other, who stand; the last in the
+// row (the first along +x) is pushed mostly forwards and partly to the side; all move as Rollout
+// says. The same options and seed give the same bytes everywhere. Noise, gain
+// variation and motion draw from separate streams: changing one leaves the others as they were.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/recording.h"
+#include "datasets/synthetic/synthetic_skeleton.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+// A push's strength: its label, and its peak force over the body's mass.
+struct PushStrength {
+  std::string name;
+  double acceleration;  // m/s^2
+};
+
+// The settled seven-parameter model for the person of 85 kg and 0.95 m: the values identified from
+// the published recordings of single people.
+ParameterSet<double> PublishedTailParameters();
+
+struct SyntheticOptions {
+  // The truth. model.push decides what a `net` push is: with kAdded, a force beside all others;
+  // with kAsRecorded, the whole generalized force on the person while it lasts.
+  ModelOptions model = TailModel();
+  ParameterSet<double> parameters = PublishedTailParameters();
+
+  int subjects = 4;
+  int recordings_per_subject = 6;  // with this subject pushed; the strengths in turn
+  // People in a row in every recording: the pushed subject and the ones after it. More than one
+  // make sense with model.interaction.
+  int people_in_row = 1;
+  double min_spacing_m = 0.40, max_spacing_m = 0.50;  // between neighbours' carts
+  double sideways_sigma_m = 0.03;                     // of everybody's place
+  std::vector<PushStrength> strengths = {{"weak", 2.0}, {"medium", 3.0}, {"strong", 4.0}};
+  double fps = 60.0;
+  int frames = 90;  // per recording
+  uint64_t seed = 1;
+
+  // People, drawn evenly from these ranges.
+  double min_mass_kg = 55.0, max_mass_kg = 115.0;
+  double min_rod_m = 0.82, max_rod_m = 1.02;
+  double lean_sigma_rad = 0.02;  // of both angles at frame 0, about upright
+
+  // Pushes. `net`: the rising quarter of a sine, which the model's tail completes. `external`: a
+  // half-sine. Zero durations: 0.05-0.15 s for net ones, 0.15-0.35 s for external ones.
+  PushKind push_kind = PushKind::kNet;
+  double min_push_s = 0.0, max_push_s = 0.0;
+  int push_start_frame = 0;
+  double direction_sigma_rad = 0.25;           // of the direction to both sides of forward
+  double min_height = 0.80, max_height = 1.0;  // of the contact, fraction of the rod
+
+  // Spread of all non-zero parameters about the truth: every one is multiplied by exp(spread N),
+  // drawn once per recording or once per subject.
+  double recording_spread = 0.0;
+  double subject_spread = 0.0;
+
+  // Normal noise on every coordinate of hip and ankles, m (1 sigma).
+  double joint_noise_m = 0.0;
+  // Frame 0 sets rod length, start and posture of a fit; false keeps it exact, for studies that
+  // must not mix errors in the motion with errors in these.
+  bool noise_at_first_frame = true;
+  // Not zero: the noise is drawn from this seed, so that one set of motions can be had with many.
+  uint64_t noise_seed = 0;
+
+  static ModelOptions TailModel();
+};
+
+// What is wrong with the options, if anything: names option, value and constraint.
+MaybeError CheckSyntheticOptions(const SyntheticOptions& options);
+
+struct SyntheticRecording {
+  Recording recording;                           // with noise
+  std::vector<ParameterSet<double>> parameters;  // the truth of each person in this very recording
+  Scene scene;                                   // what was rolled out
+  RolloutPath<double> path;                      // the motion without noise
+  std::vector<SyntheticSkeleton> skeletons;      // one per person
+};
+
+// Fails on unsound options, and when somebody falls (names recording, frame and quantity).
+Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticOptions& options);
+
+// The recordings alone.
+std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthetic);
+
+// Writes folder/manifest.json, folder/bvh/<id>.bvh (mm; <id>_<n>.bvh for person n of a row) and
+// folder/push/<id>.csv, making the folders. The manifest's key `synthetic` holds seed, noise and
+// the true parameters by name.
+MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
+                                    const std::vector<SyntheticRecording>& recordings);
+
+}  // namespace pushid

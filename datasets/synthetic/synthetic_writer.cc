@@ -1,0 +1,97 @@
+// datasets: synthetic recordings as files, through the writers that users have.
+#include <filesystem>
+#include <system_error>
+
+#include "datasets/formats/push_csv.h"
+#include "datasets/manifest/manifest.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+
+namespace pushid {
+namespace {
+
+constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
+
+BvhMotion Motion(const SyntheticRecording& made, int n) {
+  BvhMotion motion;
+  motion.skeleton = made.skeletons[n].Bvh(kUnit);
+  motion.length_unit = kUnit;
+  motion.frame_time_s = 1.0 / made.recording.fps;
+  const RecordedPerson& person = made.recording.people[n];
+  for (int t = 0; t < made.recording.num_frames(); ++t) {
+    const Vector4<double>& q = made.path.At(t, n).q;
+    made.skeletons[n].AppendFrame(
+        {q[2], q[3], person.hip[t], person.left_ankle[t], person.right_ankle[t]}, kUnit,
+        &motion.values);
+  }
+  return motion;
+}
+
+ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
+                        const std::string& csv) {
+  const Recording& recording = made.recording;
+  const std::vector<BvhJoint> joints = made.skeletons[0].Bvh(kUnit).joints;
+  ManifestRecording entry;
+  entry.id = recording.id;
+  entry.setting = recording.setting;
+  entry.fps = recording.fps;
+  for (const RecordedPerson& person : recording.people) {
+    entry.subjects.push_back({person.subject_id, person.mass_kg});
+  }
+  entry.pushed_person = recording.pushed_person;
+  entry.bvh = bvh;
+  entry.push_kind = recording.push_kind;
+  entry.magnitude = recording.magnitude;
+  entry.initial_velocity = recording.initial_velocity;
+  entry.frames = recording.num_frames();
+  entry.joints.hip = JointReference{joints[kHipJoint].name};
+  entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
+  entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
+  const int start = recording.pushes[0].start_frame;
+  if (start == 0) {
+    entry.push_csv = csv;
+  } else {
+    entry.pushes = {{0, csv, start}};
+  }
+  return entry;
+}
+
+}  // namespace
+
+MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
+                                    const std::vector<SyntheticRecording>& recordings) {
+  for (const char* sub : {"bvh", "push"}) {
+    std::error_code failed;
+    std::filesystem::create_directories(std::filesystem::path(folder) / sub, failed);
+    if (failed) {
+      return Error{"cannot make the folder '" + std::string(sub) + "': " + failed.message(),
+                   folder};
+    }
+  }
+  Manifest manifest;
+  manifest.length_unit = kUnit;
+  auto& about = manifest.json["synthetic"];
+  about["seed"] = options.seed;
+  about["joint_noise_m"] = options.joint_noise_m;
+  for (int i = 0; i < kNumParameters; ++i) {
+    about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
+  }
+  for (const SyntheticRecording& made : recordings) {
+    const std::string csv = "push/" + made.recording.id + ".csv";
+    const int people = made.scene.num_people();
+    std::vector<std::string> bvh;
+    for (int n = 0; n < people; ++n) {
+      const std::string suffix = people > 1 ? "_" + std::to_string(n) : "";
+      bvh.push_back("bvh/" + made.recording.id + suffix + ".bvh");
+      if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n), kUnit)) {
+        return failed;
+      }
+    }
+    if (MaybeError failed = WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force)) {
+      return failed;
+    }
+    manifest.recordings.push_back(Entry(made, bvh, csv));
+  }
+  return WriteManifest(folder + "/manifest.json", manifest);
+}
+
+}  // namespace pushid

@@ -1,0 +1,40 @@
+// ident: restored bodies beside the yardsticks that any restoration has to beat.
+//
+//   restoration        predicted pendulum, restored
+//   true_pendulum      the recorded pendulum, restored: what the restoration itself errs
+//   rigid              predicted pendulum, first pose carried by the rod's tip
+//   static             nobody moves
+//   constant_velocity  the recording until the last push ends, then the pose carried on with the
+//                      hip's last velocity
+//   recorded           the recording against itself: its own FSE
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ident/bodies/body_metrics.h"
+#include "ident/results/fit_result.h"
+#include "models/restoration/postprocess.h"
+#include "models/restoration/restoration.h"
+
+namespace pushid {
+
+// Restored and post-processed.
+std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
+                                      const PostprocessOptions& options,
+                                      const std::vector<RestorationInput>& people);
+
+std::vector<BodyMotion> StaticBodies(const BodyRecording& recording);
+std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording);
+
+// By the names above; the scores in the order of the calls.
+using BodyScores = std::map<std::string, std::vector<BodyScore>>;
+void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
+                      const PostprocessOptions& options, const BodyRecording& recording,
+                      BodyScores* scores);
+
+using BodyEvaluation = std::map<std::string, BodySummary>;
+BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores);
+
+}  // namespace pushid

@@ -1,0 +1,118 @@
+// ident: scores of bodies and their means.
+#include "ident/bodies/body_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+constexpr double kTouchHeight = 0.025;  // m
+constexpr double kCentimetres = 100.0;  // per m
+
+// The metrics of one person, but the FSE.
+BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame) {
+  BodyMetrics sum{};
+  const int frames = static_cast<int>(recorded.size());
+  for (int t = first_frame; t < frames; ++t) {
+    const Pose error = predicted[t] - recorded[t];
+    const Eigen::Vector3d hip = error.col(0);
+    sum[kMpjpe] += error.colwise().norm().mean();
+    sum[kHipAde] += hip.norm();
+    sum[kMble] +=
+        (BoneLengths(predicted[t]) - BoneLengths(recorded[t])).cwiseAbs().sum() / (kBodyJoints - 1);
+    sum[kRelativeMpjpe] += (error.colwise() - hip).colwise().norm().mean();
+    const Pose carried = recorded[t].colwise() + hip;
+    sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
+  }
+  for (double& value : sum) value /= frames - first_frame;
+  sum[kHipFde] = (predicted.back() - recorded.back()).col(0).norm();
+  return sum;
+}
+
+using Scores = std::vector<const BodyScore*>;
+
+BodyMean Mean(const Scores& scores, bool by_frames) {
+  BodyMean mean;
+  mean.recordings = static_cast<int>(scores.size());
+  const auto weight = [by_frames](const BodyScore* s) { return by_frames ? s->frames - 1.0 : 1.0; };
+  double total = 0.0;
+  for (const BodyScore* s : scores) total += weight(s);
+  const double n = static_cast<double>(scores.size());
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    double squares = 0.0;
+    for (const BodyScore* s : scores) mean.value[m] += weight(s) / total * s->value[m];
+    for (const BodyScore* s : scores) {
+      squares += std::pow(weight(s) / total * (s->value[m] - mean.value[m]), 2);
+    }
+    if (n > 1) mean.error[m] = std::sqrt(squares * n / (n - 1.0));
+  }
+  return mean;
+}
+
+}  // namespace
+
+const char* KeyOf(BodyMetric metric) {
+  static constexpr std::array<const char*, kNumBodyMetrics> kKeys = {
+      "MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m", "bound_MPJPE_m"};
+  return kKeys[metric];
+}
+
+double FootSkate(const BodyMotion& motion) {
+  double sum = 0.0;
+  int contacts = 0;
+  for (const int ankle : {kRightAnkle, kLeftAnkle}) {
+    for (size_t t = 1; t < motion.size(); ++t) {
+      const double height = motion[t](2, ankle) - motion[0](2, ankle);
+      if (height >= kTouchHeight) continue;
+      const double way = (motion[t] - motion[t - 1]).col(ankle).head<2>().norm();
+      sum += way * (2.0 - std::exp2(std::max(0.0, height) / kTouchHeight));
+      ++contacts;
+    }
+  }
+  return contacts > 0 ? kCentimetres * sum / contacts : -1.0;
+}
+
+BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
+                      int first_frame) {
+  BodyScore score;
+  score.id = recording.pendulum.id;
+  score.frames = recording.num_frames();
+  const int people = recording.num_people();
+  int touching = 0;
+  for (int n = 0; n < people; ++n) {
+    const BodyMetrics of_person = ScorePerson(recording.bodies[n], predicted[n], first_frame);
+    for (int m = 0; m < kNumBodyMetrics; ++m) score.value[m] += of_person[m] / people;
+    const double skate = FootSkate(predicted[n]);
+    if (skate < 0.0) continue;
+    score.value[kFse] += skate;
+    ++touching;
+  }
+  score.value[kFse] /= std::max(1, touching);
+  return score;
+}
+
+BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
+                            std::vector<BodyScore> scores) {
+  BodySummary summary;
+  summary.recordings = std::move(scores);
+  Scores all;
+  std::map<std::string, Scores> magnitude, subject, setting;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const BodyScore& score = summary.recordings[i];
+    if (!score.failure.empty()) continue;
+    const PendulumRecording& recording = recordings[i].pendulum;
+    all.push_back(&score);
+    magnitude[recording.magnitude].push_back(&score);
+    subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
+    setting[recording.setting].push_back(&score);
+  }
+  summary.mean = Mean(all, false);
+  summary.frame_weighted = Mean(all, true);
+  for (const auto& [key, group] : magnitude) summary.by_magnitude[key] = Mean(group, false);
+  for (const auto& [key, group] : subject) summary.by_subject[key] = Mean(group, false);
+  for (const auto& [key, group] : setting) summary.by_setting[key] = Mean(group, false);
+  return summary;
+}
+
+}  // namespace pushid

@@ -1,0 +1,63 @@
+// ident: how far predicted bodies are from recorded ones.
+//
+// For one recording, means over frames 1 .. T-1, people and all 22 joints unless said otherwise:
+//   MPJPE      |joint - recorded joint|, m
+//   hipADE     the same of the hip alone; hipFDE: at the last frame
+//   MBLE       | |bone| - |recorded bone| |, over 21 bones, m
+//   FSE        of ankles in contact (below H = 2.5 cm above their own height at frame 0):
+//   horizontal
+//              way since the frame before times (2 - 2^(h/H)), h above the height at frame 0 and at
+//              least 0; cm per frame. Mean over the contacts of a person, then over people.
+//   relative   MPJPE of joint - hip against recorded joint - hip (the hip counts as a joint, zero)
+//   bound      MPJPE of the recorded shape carried by the predicted hip: what is left when the
+//              shape is right
+// Means over recordings have standard errors over recordings, as those of hipADE.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ident/bodies/body_recording.h"
+
+namespace pushid {
+
+enum BodyMetric { kMpjpe, kHipAde, kHipFde, kMble, kFse, kRelativeMpjpe, kBoundMpjpe };
+inline constexpr int kNumBodyMetrics = 7;
+using BodyMetrics = std::array<double, kNumBodyMetrics>;
+
+// "MPJPE_m", ...: as files spell them.
+const char* KeyOf(BodyMetric metric);
+
+struct BodyScore {
+  std::string id;
+  int frames = 0;
+  BodyMetrics value{};
+  std::string failure;  // why there is no score; such a recording is in no mean
+};
+
+// predicted: one motion per person, with as many frames as the recording. first_frame: the first
+// that counts, for predictors that are given more than frame 0; FSE is of all frames all the same.
+BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
+                      int first_frame = 1);
+
+// FSE of one motion, cm per frame; negative when no ankle ever touches the floor.
+double FootSkate(const BodyMotion& motion);
+
+struct BodyMean {
+  int recordings = 0;
+  BodyMetrics value{}, error{};  // mean and its standard error
+};
+
+struct BodySummary {
+  std::vector<BodyScore> recordings;
+  BodyMean mean, frame_weighted;
+  std::map<std::string, BodyMean> by_magnitude, by_subject, by_setting;
+};
+
+// scores in the order of recordings. By subject: the pushed person.
+BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
+                            std::vector<BodyScore> scores);
+
+}  // namespace pushid

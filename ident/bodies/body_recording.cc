@@ -1,0 +1,89 @@
+// ident: recordings as bodies.
+#include "ident/bodies/body_recording.h"
+
+#include <algorithm>
+
+namespace pushid {
+namespace {
+
+MaybeError CheckSkeleton(const Recording& recording, const RecordedPerson& person) {
+  const bool same =
+      person.joint_parents.size() == kBodyParents.size() &&
+      std::equal(kBodyParents.begin(), kBodyParents.end(), person.joint_parents.begin());
+  if (same) return std::nullopt;
+  return Error{"recording " + recording.id + ": the skeleton has " +
+                   std::to_string(person.joint_parents.size()) +
+                   " joints; restoring bodies needs the 22 joints of the published recordings in "
+                   "their order (hip, spine, right arm, left arm, right leg, left leg)",
+               person.file};
+}
+
+std::vector<RestorationInput> People(const BodyRecording& recording) {
+  const Scene& scene = recording.pendulum.scene;
+  double push_start = 0.0;
+  for (size_t i = 0; i < scene.pushes.size(); ++i) {
+    const double start = scene.pushes[i].start_frame * scene.dt;
+    push_start = i == 0 ? start : std::min(push_start, start);
+  }
+  std::vector<RestorationInput> people(recording.num_people());
+  for (int n = 0; n < recording.num_people(); ++n) {
+    people[n].first_pose = recording.bodies[n].front();
+    people[n].body = scene.people[n].body;
+    people[n].dt = scene.dt;
+    people[n].push_start = push_start;
+  }
+  return people;
+}
+
+}  // namespace
+
+Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping) {
+  BodyRecording result;
+  result.pendulum = MakePendulumRecording(recording, mapping);
+  for (const RecordedPerson& person : recording.people) {
+    if (MaybeError error = CheckSkeleton(recording, person)) return *error;
+    BodyMotion motion(person.joints.size());
+    for (size_t t = 0; t < motion.size(); ++t) {
+      for (int j = 0; j < kBodyJoints; ++j) motion[t].col(j) = person.joints[t][j];
+    }
+    result.bodies.push_back(std::move(motion));
+  }
+  result.joint_names = recording.people.front().joint_names;
+  return result;
+}
+
+Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
+                                                      SkeletonMapping mapping) {
+  std::vector<BodyRecording> bodies;
+  for (const Recording& recording : recordings) {
+    Result<BodyRecording> body = MakeBodyRecording(recording, mapping);
+    if (!body.ok()) return body.error();
+    bodies.push_back(std::move(body.value()));
+  }
+  return bodies;
+}
+
+std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings) {
+  std::vector<PendulumRecording> pendulums;
+  for (const BodyRecording& recording : recordings) pendulums.push_back(recording.pendulum);
+  return pendulums;
+}
+
+std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
+                                              const RolloutPath<double>& path) {
+  std::vector<RestorationInput> people = People(recording);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    for (int t = 0; t < path.num_frames(); ++t) people[n].q.push_back(path.At(t, n).q);
+  }
+  return people;
+}
+
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording) {
+  std::vector<RestorationInput> people = People(recording);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    for (const auto& state : recording.pendulum.states[n]) people[n].q.push_back(state.q);
+  }
+  return people;
+}
+
+}  // namespace pushid

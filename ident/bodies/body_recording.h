@@ -1,0 +1,35 @@
+// ident: recordings with whole bodies, and what a restoration is told of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "models/restoration/restoration.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+struct BodyRecording {
+  PendulumRecording pendulum;
+  std::vector<BodyMotion> bodies;        // one per person
+  std::vector<std::string> joint_names;  // of the first person
+
+  int num_frames() const { return pendulum.num_frames(); }
+  int num_people() const { return pendulum.num_people(); }
+};
+
+// The recording must have been read with all joints. Errors: a skeleton that is not the 22 joints
+// of body.h.
+Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping);
+Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
+                                                      SkeletonMapping mapping);
+std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
+
+// People with predicted pendulums, or with those seen in the recording.
+std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
+                                              const RolloutPath<double>& path);
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording);
+
+}  // namespace pushid

@@ -1,0 +1,21 @@
+// ident: scores of bodies as JSON and as tables.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "ident/bodies/body_evaluation.h"
+
+namespace pushid {
+
+// Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (result_json.h): to the
+// means, groups and recordings at the top, to baselines.static and baselines.constant_velocity, and
+// as new entries baselines.rigid (and a peer's), true_pendulum and recorded.
+void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
+
+nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
+
+// A row per predictor, a column per metric; then the restoration by strength, setting and subject.
+std::string BodyText(const BodyEvaluation& evaluation);
+
+}  // namespace pushid

@@ -1,0 +1,43 @@
+// ident: a restoration in a folder: restoration.json (what it is, how it was trained) and
+// weights.npy (its numbers, float32). Both load without the training code and without LibTorch.
+//
+//   {"format": 1, "kind": "window", "weights": "weights.npy", "weights_hash": "...",
+//    "tensors": [{"name": "network.0.weights", "rows": 256, "columns": 107}, ...],
+//    "training": {...}}
+//
+// The tensors stand in weights.npy one after the other, each column by column.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "datasets/files/error.h"
+#include "models/restoration/restoration.h"
+#include "models/restoration/tensors.h"
+
+namespace pushid {
+
+inline constexpr int kRestorationFormat = 1;
+
+struct RestorationFile {
+  std::string kind;                                                    // window, cvae, ...
+  nlohmann::ordered_json settings = nlohmann::ordered_json::object();  // of the kind
+  nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
+  TensorList tensors;
+};
+
+// The JSON comes last: without it the folder is no restoration.
+MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file);
+
+// Errors: no such folder, a newer format, weights that are not those of the JSON (by their hash).
+Result<RestorationFile> ReadRestorationFile(const std::string& folder);
+
+// The restoration a file describes. Errors: an unknown kind, missing or misshapen tensors by name.
+Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
+                                                     const std::string& folder);
+
+// Both. "rigid" needs no folder: the name is enough.
+Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder);
+
+}  // namespace pushid

@@ -1,0 +1,186 @@
+// ident: what the residuals of a fit say, recording by recording and lag by lag.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/problem/time_series.h"
+#include "ident/uncertainty/covariance.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kLags = 20;
+constexpr double kOutlierWeight = 0.5;
+
+// A channel: which of a frame's residuals, and which component of the push drives it.
+struct Channel {
+  const char* name;
+  int residual;
+  int push;
+};
+constexpr Channel kChannels[] = {{"hip x", 0, 0},      {"hip y", 1, 1},   {"velocity x", 3, 0},
+                                 {"velocity y", 4, 1}, {"theta", 5, 2},   {"phi", 6, 3},
+                                 {"theta rate", 7, 2}, {"phi rate", 8, 3}};
+
+// One residual of one person over frames 1 .. T - 1.
+std::vector<double> Series(const PendulumRecording& recording, const std::vector<double>& raw,
+                           int person, int residual) {
+  std::vector<double> series;
+  for (int t = 1; t < recording.num_frames(); ++t) {
+    const int row = ((t - 1) * recording.num_people() + person) * kFrameResiduals;
+    series.push_back(raw[row + residual]);
+  }
+  return series;
+}
+
+// The push that drives the step to each frame 1 .. T - 1.
+std::vector<double> PushSeries(const PendulumRecording& recording, int person, int component) {
+  std::vector<double> series(recording.num_frames() - 1, 0.0);
+  for (const ScenePush& push : recording.scene.pushes) {
+    if (push.person != person) continue;
+    for (int t = 0; t < static_cast<int>(series.size()); ++t) {
+      if (push.Active(t)) series[t] += push.force[t - push.start_frame][component];
+    }
+  }
+  return series;
+}
+
+// Short recordings allow fewer lags.
+int LagsOf(const PendulumRecording& recording) {
+  return std::clamp((recording.num_frames() - 1) / 3, 1, kLags);
+}
+
+void AddFrames(const PendulumRecording& recording, const std::vector<double>& raw,
+               const ResidualSigmas& sigmas, RecordingDiagnostics* d) {
+  double error = 0.0, motion = 0.0;
+  for (int t = 1; t < recording.num_frames(); ++t) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      const int row = ((t - 1) * recording.num_people() + n) * kFrameResiduals;
+      const Eigen::Map<const FrameVector<double>> r(raw.data() + row);
+      error += (sigmas.hip * r.head<2>()).squaredNorm();
+      motion += (recording.hip[n][t] - recording.hip[n][0]).head<2>().squaredNorm();
+      const double w = RobustWeight<double>(r.squaredNorm(), sigmas.robust);
+      if (w * w < kOutlierWeight) d->outliers.push_back({t, n, r.norm(), w * w});
+    }
+  }
+  d->explained = motion > 0.0 ? 100.0 * (1.0 - error / motion) : 0.0;
+}
+
+}  // namespace
+
+std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
+                                                     const FitPoint& point) {
+  std::vector<RecordingDiagnostics> diagnostics;
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  for (int g = 0; g < static_cast<int>(problem.recordings().size()); ++g) {
+    const PendulumRecording& recording = problem.recordings()[g];
+    RecordingDiagnostics d;
+    d.id = recording.id;
+    for (const auto& [id, cluster] : built.blocks) {
+      if (cluster == g) built.problem->EvaluateResidualBlock(id, false, &d.cost, nullptr, nullptr);
+    }
+    const std::vector<double> raw = problem.RawResiduals(point, g);
+    if (!raw.empty()) {
+      AddFrames(recording, raw, problem.options().sigmas, &d);
+      const std::vector<double> forward = Series(recording, raw, recording.pushed_person, 0);
+      const int lags = LagsOf(recording);
+      const std::vector<double> r = Autocorrelation(forward, lags);
+      d.lag1 = r[0];
+      d.ljung_box = LjungBox(r, static_cast<int>(forward.size()));
+      d.ljung_box_p = ChiSquareTail(d.ljung_box, lags);
+    }
+    diagnostics.push_back(d);
+  }
+  return diagnostics;
+}
+
+std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoint& point) {
+  const auto& recordings = problem.recordings();
+  int lags = kLags, frames = 0, counted = 0, freedom = 0;
+  std::vector<std::vector<double>> raw;
+  for (size_t g = 0; g < recordings.size(); ++g) {
+    raw.push_back(problem.RawResiduals(point, static_cast<int>(g)));
+    if (raw.back().empty()) continue;
+    lags = std::min(lags, LagsOf(recordings[g]));
+    frames += recordings[g].num_frames() - 1;
+    ++counted;
+  }
+  std::vector<Whiteness> all;
+  if (counted == 0) return all;
+  freedom = counted * lags;
+  for (const Channel& channel : kChannels) {
+    Whiteness w;
+    w.channel = channel.name;
+    w.band = 1.96 / std::sqrt(static_cast<double>(frames) / counted);
+    w.mean_band = 1.96 / std::sqrt(static_cast<double>(frames));
+    std::vector<std::vector<double>> self(lags), push(lags + 1);  // by lag, then recording
+    for (size_t g = 0; g < recordings.size(); ++g) {
+      if (raw[g].empty()) continue;
+      const int person = recordings[g].pushed_person;
+      const std::vector<double> series = Series(recordings[g], raw[g], person, channel.residual);
+      const std::vector<double> r = Autocorrelation(series, lags);
+      w.ljung_box += LjungBox(r, static_cast<int>(series.size()));
+      const std::vector<double> c =
+          CrossCorrelation(series, PushSeries(recordings[g], person, channel.push), lags);
+      for (int k = 0; k < lags; ++k) self[k].push_back(r[k]);
+      for (int k = 0; k <= lags; ++k) push[k].push_back(c[k]);
+    }
+    for (const std::vector<double>& at_lag : self) {
+      const MeanAndError m = MeanOf(at_lag);
+      w.autocorrelation.push_back(m.mean);
+      w.error.push_back(m.error);
+    }
+    for (const std::vector<double>& at_lag : push) {
+      const MeanAndError m = MeanOf(at_lag);
+      w.push.push_back(m.mean);
+      w.push_error.push_back(m.error);
+    }
+    w.ljung_box_p = ChiSquareTail(w.ljung_box, freedom);
+    all.push_back(w);
+  }
+  return all;
+}
+
+Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
+                         const Uncertainty& uncertainty) {
+  Leverage l;
+  const auto& fitted = problem.map().fitted;
+  for (const FittedParameter& f : fitted) {
+    l.parameters.push_back(problem.options().table[f.parameter].name);
+    l.units.push_back(problem.options().table[f.parameter].unit);
+  }
+  const Covariance covariance = CovarianceAt(problem, point);
+  for (int g = 0; g < static_cast<int>(covariance.moves.cols()); ++g) {
+    std::vector<double> change, in_errors;
+    for (int i = 0; i < problem.map().num_shared(); ++i) {
+      const Transform transform = fitted[i].transform;
+      const double move = covariance.moves(i, g);
+      const double error = std::sqrt(std::max(0.0, uncertainty.covariance(i, i)));
+      change.push_back(ToNatural(transform, point.shared[i] + move) -
+                       ToNatural(transform, point.shared[i]));
+      const bool known = uncertainty.estimates[i].status != EstimateStatus::kUnidentifiable;
+      in_errors.push_back(known && error > 0.0 ? move / error : 0.0);
+    }
+    l.recordings.push_back(problem.recordings()[covariance.clusters[g]].id);
+    l.change.push_back(change);
+    l.in_errors.push_back(in_errors);
+  }
+  return l;
+}
+
+Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
+                     const Uncertainty& uncertainty) {
+  Diagnostics d;
+  d.start = DiagnoseStart(problem, best);
+  d.recordings = DiagnoseRecordings(problem, best.to);
+  d.whiteness = DiagnoseWhiteness(problem, best.to);
+  d.leverage = ComputeLeverage(problem, best.to, uncertainty);
+  for (const SolveStage& stage : best.stages) {
+    d.trace.insert(d.trace.end(), stage.trace.begin(), stage.trace.end());
+  }
+  return d;
+}
+
+}  // namespace pushid

@@ -1,0 +1,172 @@
+// ident: drawing panels.
+#include "ident/figures/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace pushid {
+namespace {
+
+constexpr double kAbove = 22, kBelow = 36, kBefore = 52, kAfter = 12;
+
+struct Range {
+  double from = INFINITY, to = -INFINITY;
+
+  void Add(double value) {
+    if (!std::isfinite(value)) return;
+    from = std::min(from, value);
+    to = std::max(to, value);
+  }
+  void Add(const ChartPoints& points, double std::pair<double, double>::*axis) {
+    for (const auto& point : points) Add(point.*axis);
+  }
+  Range Widened(double share) const {
+    if (!(from <= to)) return {0.0, 1.0};
+    const double air = from < to ? share * (to - from) : std::max(1e-9, 0.05 * std::abs(from));
+    return {from - air, to + air};
+  }
+};
+
+Range RangeOf(const Chart& chart, double std::pair<double, double>::*axis) {
+  Range range;
+  for (const ChartLine& line : chart.lines) range.Add(line.points, axis);
+  for (const ChartBand& band : chart.bands) {
+    range.Add(band.lower, axis);
+    range.Add(band.upper, axis);
+  }
+  return range;
+}
+
+class Panel {
+ public:
+  Panel(const Chart& chart, const SvgBox& box, SvgPicture* svg)
+      : chart_(chart),
+        left_(box.x + kBefore),
+        right_(box.x + box.width - kAfter),
+        top_(box.y + kAbove),
+        bottom_(box.y + box.height - kBelow),
+        x_(XScale()),
+        y_(YScale()),
+        svg_(*svg) {}
+
+  void Draw() {
+    svg_.Text(left_, top_ - 8, chart_.title, "ink bold");
+    Axes();
+    for (const ChartBand& band : chart_.bands) {
+      ChartPoints outline = Placed(band.lower);
+      const ChartPoints back = Placed(band.upper);
+      outline.insert(outline.end(), back.rbegin(), back.rend());
+      svg_.Polyline(outline, band.look);
+    }
+    for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
+    for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
+    for (const ChartLine& line : chart_.lines) Line(line);
+  }
+
+ private:
+  SvgScale XScale() const {
+    Range range = RangeOf(chart_, &std::pair<double, double>::first);
+    for (double mark : chart_.marks) range.Add(mark);
+    range = range.Widened(0.0);
+    return {range.from, range.to, left_, right_};
+  }
+  SvgScale YScale() const {
+    Range range = RangeOf(chart_, &std::pair<double, double>::second);
+    for (double level : chart_.levels) range.Add(level);
+    range = range.Widened(0.06);
+    if (!chart_.y_categories.empty()) {
+      // Names run downwards.
+      return {-0.6, static_cast<double>(chart_.y_categories.size()) - 0.4, top_, bottom_};
+    }
+    return {chart_.y_from.value_or(range.from), chart_.y_to.value_or(range.to), bottom_, top_};
+  }
+
+  ChartPoints Placed(const ChartPoints& points) const {
+    ChartPoints placed;
+    for (const auto& [x, y] : points) {
+      if (!std::isfinite(x) || !std::isfinite(y)) continue;
+      placed.emplace_back(x_(x), std::clamp(y_(y), top_ - 2.0, bottom_ + 2.0));
+    }
+    return placed;
+  }
+
+  void Line(const ChartLine& line) {
+    const ChartPoints placed = Placed(line.points);
+    if (line.dots) {
+      for (const auto& [x, y] : placed) svg_.Circle(x, y, 3.0, line.look);
+    } else {
+      svg_.Polyline(placed, line.look);
+    }
+  }
+
+  void Axes() {
+    svg_.Line(left_, bottom_, right_, bottom_, "axis");
+    for (double tick : x_.Ticks(5)) {
+      svg_.Line(x_(tick), bottom_, x_(tick), bottom_ + 4, "axis");
+      svg_.Text(x_(tick), bottom_ + 15, TickText(tick), "ink small middle");
+    }
+    svg_.Text(0.5 * (left_ + right_), bottom_ + 29, chart_.x_label, "faint small middle");
+    if (!chart_.y_categories.empty()) {
+      for (size_t i = 0; i < chart_.y_categories.size(); ++i) {
+        const double y = y_(static_cast<double>(i));
+        svg_.Line(left_, y, right_, y, "grid");
+        svg_.Text(left_ - 6, y + 4, chart_.y_categories[i], "ink small end");
+      }
+      return;
+    }
+    for (double tick : y_.Ticks(4)) {
+      if (chart_.logarithmic && tick != std::floor(tick)) continue;
+      svg_.Line(left_, y_(tick), right_, y_(tick), "grid");
+      const std::string text = chart_.logarithmic ? "1e" + SvgNumber(tick) : TickText(tick);
+      svg_.Text(left_ - 5, y_(tick) + 3.5, text, "faint small end");
+    }
+    if (!chart_.y_label.empty()) {
+      svg_.Text(right_, top_ - 8, chart_.y_label, "faint small end");
+    }
+  }
+
+  // "0.002", "1e-05": enough digits for round numbers.
+  static std::string TickText(double tick) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", std::abs(tick) < 1e-12 ? 0.0 : tick);
+    return text;
+  }
+
+  const Chart& chart_;
+  double left_, right_, top_, bottom_;
+  SvgScale x_, y_;
+  SvgPicture& svg_;
+};
+
+}  // namespace
+
+void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {
+  Panel(chart, box, svg).Draw();
+}
+
+std::string DrawCharts(const std::vector<Chart>& charts, const std::string& title, int columns,
+                       double width, double height) {
+  const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
+  SvgPicture svg(width * columns, height * rows, title);
+  for (size_t i = 0; i < charts.size(); ++i) {
+    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+    DrawChart(charts[i], {width * column, height * row, width, height}, &svg);
+  }
+  return svg.ToInline();
+}
+
+void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg) {
+  for (const LegendEntry& entry : entries) {
+    const bool filled = entry.look.find("stroke:none") != std::string::npos;
+    if (filled) {
+      svg->Rect({x, y - 9, 18, 10}, entry.look);
+    } else {
+      svg->Polyline({{x, y - 4}, {x + 18, y - 4}}, entry.look);
+    }
+    svg->Text(x + 23, y, entry.name, "ink small");
+    x += 46 + 5.6 * static_cast<double>(entry.name.size());
+  }
+}
+
+}  // namespace pushid

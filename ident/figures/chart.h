@@ -1,0 +1,58 @@
+// ident: panels with axes, lines and bands, drawn into an SVG picture.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ident/figures/svg.h"
+
+namespace pushid {
+
+using ChartPoints = std::vector<std::pair<double, double>>;
+
+// Told apart on light and on dark paper, by the colour-blind and in grey.
+inline constexpr char kMeasuredLook[] = "ink";
+inline constexpr char kPredictedLook[] = "fill:none;stroke-width:1.8;stroke:#3b82f6";
+inline constexpr char kWideBandLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.16";
+inline constexpr char kNarrowBandLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.26";
+inline constexpr char kLimitLook[] = "fill:none;stroke-dasharray:5 4;stroke:#d55e00";
+inline constexpr char kMarkLook[] = "fill:none;stroke-width:1.2;stroke:#d55e00";
+
+struct ChartLine {
+  ChartPoints points;
+  std::string look;
+  bool dots = false;
+};
+
+struct ChartBand {
+  ChartPoints lower, upper;
+  std::string look;
+};
+
+struct Chart {
+  std::string title, x_label, y_label;
+  std::vector<ChartBand> bands;
+  std::vector<ChartLine> lines;
+  std::vector<double> levels;             // dashed, across
+  std::vector<double> marks;              // upright
+  std::optional<double> y_from, y_to;     // instead of the data's own range
+  bool logarithmic = false;               // powers of ten upwards; y given as log10
+  std::vector<std::string> y_categories;  // names at y = 0, 1, ... instead of numbers
+};
+
+// Axes and labels lie within the box.
+void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
+
+// Small panels side by side, `columns` in a row.
+std::string DrawCharts(const std::vector<Chart>& charts, const std::string& title, int columns,
+                       double width, double height);
+
+// What the lines of a picture mean, from x on.
+struct LegendEntry {
+  std::string name, look;
+};
+void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
+
+}  // namespace pushid

@@ -1,0 +1,235 @@
+// ident: SVG text.
+#include "ident/figures/svg.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace pushid {
+namespace {
+
+// Viewers that do not know prefers-color-scheme show the light picture.
+constexpr char kStyle[] =
+    "text{font:12px system-ui,sans-serif}.small{font-size:10px}.bold{font-weight:600}"
+    ".middle{text-anchor:middle}.end{text-anchor:end}"
+    ".paper{fill:#fff}.ink,.axis{fill:#222}.faint{fill:#666}"
+    "line,polyline{fill:none}polyline{stroke-linejoin:round}"
+    "line.axis,polyline.ink{stroke:#222}line.grid{stroke:#ddd}polyline.ink{fill:none}"
+    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}polyline.net{stroke-width:3}"
+    "@media(prefers-color-scheme:dark){.paper{fill:#15181c}.ink,.axis{fill:#e8e8e8}"
+    ".faint{fill:#a0a0a0}line.axis,polyline.ink{stroke:#e8e8e8}line.grid{stroke:#3a3f46}"
+    "polyline.ink{fill:none}.ring{stroke:#e8e8e8}}";
+
+using Points = std::vector<std::pair<double, double>>;
+
+constexpr double kTolerance = 0.1;  // pixels
+
+// Douglas and Peucker: keeps the farthest point of a stretch while it is too far from the chord.
+void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* kept) {
+  const auto [x1, y1] = points[first];
+  const double dx = points[last].first - x1, dy = points[last].second - y1;
+  const double length = std::hypot(dx, dy);
+  double farthest = kTolerance;
+  size_t at = first;
+  for (size_t i = first + 1; i < last; ++i) {
+    const double px = points[i].first - x1, py = points[i].second - y1;
+    const double off = length > 0.0 ? std::abs(px * dy - py * dx) / length : std::hypot(px, py);
+    if (off > farthest) {
+      farthest = off;
+      at = i;
+    }
+  }
+  if (at == first) return;
+  (*kept)[at] = true;
+  Thin(points, first, at, kept);
+  Thin(points, at, last, kept);
+}
+
+}  // namespace
+
+std::string_view SvgStyle() { return kStyle; }
+
+std::string EscapeXml(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\'':
+        escaped += "&#39;";
+        break;
+      default:
+        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return escaped;
+}
+
+std::string SvgNumber(double value) {
+  char number[64];
+  std::snprintf(number, sizeof number, "%.2f", value);
+  std::string text = number;
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text == "-0" ? "0" : text;
+}
+
+SvgPicture::SvgPicture(double width, double height, std::string_view title)
+    : width_(width), height_(height) {
+  body_ = "<title>" + EscapeXml(title) + "</title>\n";
+  Rect({0, 0, width, height}, "paper");
+}
+
+void SvgPicture::Open(std::string_view element) {
+  body_ += '<';
+  body_ += element;
+}
+
+void SvgPicture::Number(std::string_view name, double value) {
+  body_ += ' ';
+  body_ += name;
+  body_ += "=\"" + SvgNumber(value) + '"';
+}
+
+void SvgPicture::Look(std::string_view look) {
+  const bool css = look.find(':') != std::string_view::npos;
+  body_ += (css ? " style=\"" : " class=\"") + EscapeXml(look) + '"';
+}
+
+void SvgPicture::Rect(const SvgBox& box, std::string_view look, std::string_view tooltip) {
+  Open("rect");
+  Number("x", box.x);
+  Number("y", box.y);
+  Number("width", box.width);
+  Number("height", box.height);
+  Look(look);
+  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></rect>\n";
+}
+
+void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_view look) {
+  Open("line");
+  Number("x1", x1);
+  Number("y1", y1);
+  Number("x2", x2);
+  Number("y2", y2);
+  Look(look);
+  body_ += "/>\n";
+}
+
+void SvgPicture::Circle(double x, double y, double radius, std::string_view look,
+                        std::string_view tooltip) {
+  Open("circle");
+  Number("cx", x);
+  Number("cy", y);
+  Number("r", radius);
+  Look(look);
+  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></circle>\n";
+}
+
+void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
+                          std::string_view look) {
+  if (points.size() < 2) return;
+  Open("polyline");
+  Look(look);
+  body_ += " points=\"";
+  std::vector<bool> kept(points.size(), false);
+  kept.front() = kept.back() = true;
+  Thin(points, 0, points.size() - 1, &kept);
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (kept[i]) body_ += SvgNumber(points[i].first) + ',' + SvgNumber(points[i].second) + ' ';
+  }
+  body_.back() = '"';
+  body_ += "/>\n";
+}
+
+void SvgPicture::Text(double x, double y, std::string_view text, std::string_view look) {
+  Open("text");
+  Number("x", x);
+  Number("y", y);
+  Look(look);
+  body_ += '>' + EscapeXml(text) + "</text>\n";
+}
+
+std::string SvgPicture::ToString() const {
+  return Drawn("<style>" + std::string(kStyle) + "</style>\n");
+}
+
+std::string SvgPicture::ToInline() const { return Drawn(""); }
+
+std::string SvgPicture::Drawn(std::string_view style) const {
+  const std::string width = SvgNumber(width_), height = SvgNumber(height_);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+         "\" viewBox=\"0 0 " + width + ' ' + height + "\" role=\"img\">\n" + std::string(style) +
+         body_ + "</svg>\n";
+}
+
+SvgScale::SvgScale(double from, double to, double from_pixel, double to_pixel)
+    : from_(from), to_(to > from ? to : from + 1.0), from_pixel_(from_pixel), to_pixel_(to_pixel) {}
+
+double SvgScale::operator()(double value) const {
+  return from_pixel_ + (value - from_) / (to_ - from_) * (to_pixel_ - from_pixel_);
+}
+
+std::vector<double> SvgScale::Ticks(int wanted) const {
+  const double raw = (to_ - from_) / std::max(1, wanted);
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  const double lead = raw / power;  // 1 .. 10
+  const double step = power * (lead < 1.5 ? 1.0 : lead < 3.5 ? 2.0 : lead < 7.5 ? 5.0 : 10.0);
+  std::vector<double> ticks;
+  const double slack = 1e-9 * (to_ - from_);
+  for (long k = std::lround(std::ceil((from_ - slack) / step)); k * step <= to_ + slack; ++k) {
+    ticks.push_back(k * step);
+  }
+  return ticks;
+}
+
+namespace {
+
+using Rgb = std::array<double, 3>;
+
+// Between stops of even distance; at in [0, 1], clamped.
+template <size_t N>
+std::string Blend(const std::array<Rgb, N>& stops, double at) {
+  const double place = std::clamp(at, 0.0, 1.0) * (N - 1);
+  const size_t low = std::min(static_cast<size_t>(place), N - 2);
+  std::array<int, 3> rgb{};
+  for (int i = 0; i < 3; ++i) {
+    const double from = stops[low][i], to = stops[low + 1][i];
+    rgb[i] = static_cast<int>(std::lround(from + (place - low) * (to - from)));
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+  return text;
+}
+
+}  // namespace
+
+std::string ColourOf(double fraction) {
+  static constexpr std::array<Rgb, 6> kStops = {
+      {{68, 1, 84}, {65, 68, 135}, {42, 120, 142}, {34, 168, 132}, {122, 209, 81}, {253, 231, 37}}};
+  return Blend(kStops, fraction);
+}
+
+std::string SignedColourOf(double fraction) {
+  static constexpr std::array<Rgb, 7> kStops = {{{127, 59, 8},
+                                                 {217, 120, 20},
+                                                 {250, 190, 120},
+                                                 {244, 244, 244},
+                                                 {146, 197, 222},
+                                                 {50, 120, 180},
+                                                 {5, 48, 97}}};
+  return Blend(kStops, 0.5 + 0.5 * fraction);
+}
+
+}  // namespace pushid

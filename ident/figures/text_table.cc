@@ -1,0 +1,40 @@
+// ident: padding columns.
+#include "ident/figures/text_table.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pushid {
+
+std::string Significant(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
+    : rows_{std::move(header)}, left_(std::move(left)) {}
+
+void TextTable::Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+void TextTable::AddGap() { rows_.emplace_back(); }
+
+std::string TextTable::ToString() const {
+  std::vector<size_t> width(left_.size(), 0);
+  for (const auto& row : rows_) {
+    for (size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  }
+  std::string text;
+  for (const auto& row : rows_) {
+    std::string line;
+    for (size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(width[i] - row[i].size(), ' ');
+      line += (i > 0 ? "  " : "") + (left_[i] ? row[i] + padding : padding + row[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace pushid

@@ -1,0 +1,166 @@
+// ident: the picture of what acts on whom.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ident/figures/svg.h"
+#include "ident/formations/formation_pictures.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kTop = 78, kHeight = 66, kGap = 8, kWidth = 1000;
+constexpr double kLeft[] = {96, 566}, kPanelWidth = 410;
+constexpr int kRows[] = {0, 2};  // of the generalized force: along x, about y
+constexpr const char* kHeads[] = {"force along the push (N)",
+                                  "torque about y (N m); every panel has its own scale"};
+
+using Points = std::vector<std::pair<double, double>>;
+
+// After Okabe and Ito: told apart by the colour-blind, on light and on dark paper.
+std::string PartColour(std::string_view part) {
+  static const std::map<std::string_view, const char*> colours = {
+      {"push", "#d55e00"},
+      {"tail", "#cc79a7"},
+      {"friction", "#e69f00"},
+      {"balance", "#56b4e9"},
+      {"linear", "#009e73"},
+      {"interaction", "#9333ea"},
+      {"drive", "#b45309;stroke-dasharray:4 2"},
+      {"network", "#6b7280;stroke-dasharray:7 2"}};
+  const auto found = colours.find(part);
+  return found == colours.end() ? "#999999" : found->second;
+}
+
+std::string PartLook(std::string_view part) {
+  return "fill:none;stroke-width:1.5;stroke:" + PartColour(part);
+}
+
+constexpr char kNetLook[] = "ink net";
+constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up
+constexpr double kNothing = 1e-6;        // N or N m
+constexpr double kLegendStep = 104.0;    // pixels
+constexpr double kLabelRoom = 6.0;       // pixels from a panel's edge to a tick with a label
+
+class ForcesPicture {
+ public:
+  ForcesPicture(const FormationRun& run, const std::string& title)
+      : run_(run),
+        parts_(ActingParts(run)),
+        svg_(kWidth, kTop + (kHeight + kGap) * run.num_people() + 40, title) {
+    svg_.Text(kLeft[0], 22, title, "ink bold");
+  }
+
+  SvgPicture Draw() {
+    Legend();
+    for (int n = 0; n < run_.num_people(); ++n) {
+      svg_.Text(16, Top(n) + 0.5 * kHeight + 4, "person " + std::to_string(n), "ink small bold");
+      for (int column : {0, 1}) Panel(n, column);
+    }
+    for (int column : {0, 1}) Axis(column);
+    return svg_;
+  }
+
+ private:
+  double Top(int person) const { return kTop + (kHeight + kGap) * person; }
+  SvgScale Time(int column) const {
+    return {0.0, run_.Seconds(run_.num_frames() - 1), kLeft[column], kLeft[column] + kPanelWidth};
+  }
+
+  // Lowest and highest of what a panel shows.
+  std::pair<double, double> Range(int person, int column) const {
+    const int row = kRows[column];
+    double lowest = 0.0, highest = 0.0;
+    const auto include = [&](double force) {
+      lowest = std::min(lowest, force);
+      highest = std::max(highest, force);
+    };
+    for (int t = 0; t < run_.num_frames(); ++t) {
+      const NetForce<double>& force = run_.Force(person, t);
+      include(force.Total()[row]);
+      for (const ForcePart& part : parts_) include((force.*part.value)[row]);
+    }
+    return {lowest, highest};
+  }
+
+  void Legend() {
+    double x = kLeft[0];
+    const auto entry = [&](std::string_view name, const std::string& look) {
+      svg_.Polyline({{x, 40}, {x + 18, 40}}, look);
+      svg_.Text(x + 23, 44, name, "ink small");
+      x += kLegendStep;
+    };
+    entry("net (the sum)", kNetLook);
+    for (const ForcePart& part : parts_) entry(part.name, PartLook(part.name));
+    for (int column : {0, 1}) svg_.Text(kLeft[column], kTop - 12, kHeads[column], "ink");
+  }
+
+  void Ticks(int person, int column, const SvgScale& value) {
+    for (double tick : value.Ticks(4)) {
+      const double y = value(tick);
+      svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, tick == 0.0 ? "axis" : "grid");
+      // Near the edge a label would run into the next panel's.
+      if (y < Top(person) + kLabelRoom || y > Top(person) + kHeight - kLabelRoom) continue;
+      svg_.Text(kLeft[column] - 5, y + 3.5, SvgNumber(tick), "faint small end");
+    }
+  }
+
+  void Panel(int person, int column) {
+    const auto [lowest, highest] = Range(person, column);
+    if (highest - lowest < kNothing) {
+      const double y = Top(person) + 0.5 * kHeight;
+      svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, "axis");
+      svg_.Text(kLeft[column] + 4, y - 5, "nothing", "faint small");
+      return;
+    }
+    // Each panel its own, with a fifth of air: what the tenth person feels is a fraction of the
+    // push.
+    const double air = 0.1 * std::max(kSmallestRange, highest - lowest);
+    const SvgScale value(lowest - air, highest + air, Top(person) + kHeight, Top(person));
+    Ticks(person, column, value);
+    const auto line = [&](auto force_at, const std::string& look) {
+      Points points;
+      bool acts = false;
+      const SvgScale time = Time(column);
+      for (int t = 0; t < run_.num_frames(); ++t) {
+        const double force = force_at(run_.Force(person, t))[kRows[column]];
+        acts = acts || force != 0.0;
+        points.emplace_back(time(run_.Seconds(t)), value(force));
+      }
+      if (acts) svg_.Polyline(points, look);
+    };
+    // Thick and first, so that a part that is all of it shows on top.
+    line([](const NetForce<double>& force) { return force.Total(); }, kNetLook);
+    for (const ForcePart& part : parts_) {
+      line([&part](const NetForce<double>& force) { return force.*part.value; },
+           PartLook(part.name));
+    }
+  }
+
+  void Axis(int column) {
+    const double bottom = Top(run_.num_people()) - kGap;
+    const SvgScale time = Time(column);
+    svg_.Line(kLeft[column], bottom, kLeft[column] + kPanelWidth, bottom, "axis");
+    for (double t : time.Ticks(6)) {
+      svg_.Line(time(t), bottom, time(t), bottom + 4, "axis");
+      svg_.Text(time(t), bottom + 16, SvgNumber(t), "ink small middle");
+    }
+    svg_.Text(kLeft[column] + 0.5 * kPanelWidth, bottom + 32, "time (s)", "ink middle");
+  }
+
+  const FormationRun& run_;
+  const std::vector<ForcePart> parts_;
+  SvgPicture svg_;
+};
+
+}  // namespace
+
+SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title) {
+  return ForcesPicture(run, title).Draw();
+}
+
+std::string ForcesSvg(const FormationRun& run, const std::string& title) {
+  return ForcesPictureOf(run, title).ToString();
+}
+
+}  // namespace pushid

@@ -1,0 +1,31 @@
+// ident: bodies for people who were never recorded: a formation's people get the skeleton and pose
+// of somebody recorded, or of the synthetic skeleton, and a restoration moves them.
+#pragma once
+
+#include <vector>
+
+#include "ident/bodies/body_recording.h"
+#include "ident/formations/formation_run.h"
+#include "models/restoration/postprocess.h"
+
+namespace pushid {
+
+// The synthetic skeleton of this rod length, upright, over a cart at the origin; z = 0 is the
+// floor.
+Pose SyntheticPose(double rod_length);
+
+// First poses of everybody in recordings, in their order.
+std::vector<Pose> FirstPoses(const std::vector<BodyRecording>& recordings);
+
+// Puts poses (in turn, should there be fewer than people) where the formation's people stand,
+// facing +x, and gives those people the pendulum that goes with the pose: rod length, cart height
+// and lean. Masses and pushes stay. Returns everybody's first pose.
+std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene);
+
+// Restored and post-processed, one motion per person. first_poses: as TakePoses returned them.
+std::vector<BodyMotion> FormationBodies(const FormationRun& run,
+                                        const std::vector<Pose>& first_poses,
+                                        const Restoration& restoration,
+                                        const PostprocessOptions& options);
+
+}  // namespace pushid

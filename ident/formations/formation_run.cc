@@ -1,0 +1,129 @@
+// ident: rollout of a formation and what it says about each person.
+#include "ident/formations/formation_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "ident/figures/text_table.h"
+#include "ident/prediction/propagation.h"
+#include "ident/problem/behaviour.h"
+
+namespace pushid {
+namespace {
+
+// p00, p01, ...: names that sort in the order of the people.
+std::string PersonName(int person, int people) {
+  const std::string number = std::to_string(person);
+  const size_t width = std::to_string(std::max(10, people - 1)).size();
+  return "p" + std::string(width - number.size(), '0') + number;
+}
+
+PendulumRecording AsRecording(const Scene& scene) {
+  PendulumRecording recording;
+  recording.id = recording.setting = "formation";
+  recording.scene = scene;
+  if (!scene.pushes.empty()) recording.pushed_person = scene.pushes.front().person;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    recording.subject_ids.push_back(PersonName(n, scene.num_people()));
+  }
+  return recording;
+}
+
+Outcome Judge(const FormationRun& run, int person, int onset_frame) {
+  const RolloutPath<double>& path = run.prediction.path;
+  for (int t = 0; t < run.num_frames(); ++t) {
+    if (path.At(t, person).q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) return Outcome::kFell;
+  }
+  if (onset_frame < 0) return Outcome::kUnmoved;
+  const Scene& scene = run.recording.scene;
+  const int judged = std::max(scene.LastPushEnd(), onset_frame) +
+                     static_cast<int>(std::lround(kWaitSeconds / scene.dt));
+  if (judged >= run.num_frames()) return Outcome::kNotJudged;
+  const PendulumState<double>& end = path.At(judged, person);
+  const Vector4<double>& rest = scene.people[person].start.q;
+  const bool settled = end.qd.head<2>().norm() < kSettledSpeed &&
+                       (end.q - rest).tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
+  return settled ? Outcome::kSettled : Outcome::kSlow;
+}
+
+PersonSummary Summarize(const FormationRun& run, int person) {
+  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
+  PersonSummary summary;
+  for (int t = 0; t < run.num_frames(); ++t) {
+    summary.peak_speed = std::max(summary.peak_speed, HipSpeed(run, person, t));
+  }
+  summary.onset_frame = OnsetFrame(hip);
+  summary.displacement = hip.back().x() - hip.front().x();
+  summary.outcome = Judge(run, person, summary.onset_frame);
+  return summary;
+}
+
+}  // namespace
+
+std::string_view Name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kSettled:
+      return "settled";
+    case Outcome::kUnmoved:
+      return "unmoved";
+    case Outcome::kSlow:
+      return "slow to settle";
+    case Outcome::kFell:
+      return "fell";
+    case Outcome::kNotJudged:
+      return "not judged";
+  }
+  return "";
+}
+
+std::string OutcomeLegend() {
+  return "outcome: judged " + Significant(kWaitSeconds) +
+         " s after the last push, or after the onset where that is later; settled: slower than " +
+         Significant(kSettledSpeed) + " m/s\nand within " + Significant(kSettledLean) +
+         " rad of the rest posture then; slow to settle: not yet. fell: at any time. displaced: at "
+         "the end of the run\n";
+}
+
+const std::vector<ForcePart>& ForceParts() {
+  static const std::vector<ForcePart> parts = {
+      {"push", &NetForce<double>::push},         {"tail", &NetForce<double>::tail},
+      {"friction", &NetForce<double>::friction}, {"balance", &NetForce<double>::balance},
+      {"linear", &NetForce<double>::linear},     {"interaction", &NetForce<double>::interaction},
+      {"drive", &NetForce<double>::drive},       {"network", &NetForce<double>::network}};
+  return parts;
+}
+
+std::vector<ForcePart> ActingParts(const FormationRun& run) {
+  std::vector<ForcePart> acting;
+  for (const ForcePart& part : ForceParts()) {
+    bool acts = false;
+    for (int t = 0; t < run.num_frames() && !acts; ++t) {
+      for (int n = 0; n < run.num_people(); ++n) {
+        acts = acts || !(run.Force(n, t).*part.value).isZero(0.0);
+      }
+    }
+    if (acts) acting.push_back(part);
+  }
+  return acting;
+}
+
+FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames) {
+  FormationRun run;
+  run.recording = AsRecording(scene);
+  // Nobody of a formation is a subject of the fit.
+  IdentifiedModel shared = model;
+  shared.by_unit.clear();
+  run.prediction = Predict(shared, run.recording, num_frames);
+  if (!run.prediction.status.ok) return run;
+  for (int n = 0; n < run.num_people(); ++n) run.summaries.push_back(Summarize(run, n));
+  return run;
+}
+
+double HipSpeed(const FormationRun& run, int person, int frame) {
+  if (frame == 0) return 0.0;
+  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
+  return (hip[frame] - hip[frame - 1]).norm() / run.recording.scene.dt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,78 @@
+// ident: what a fit is asked to do. Every field says what it changes and when you would change it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "ident/parameters/parameter_table.h"
+#include "models/skeleton_mapping.h"
+#include "residuals/frame_residual.h"
+
+namespace pushid {
+
+// How much a recording counts.
+enum class RecordingWeight {
+  kFrame,     // every frame counts the same: long recordings count more
+  kRecording  // every recording counts the same, as in the recording mean of hipADE
+};
+
+// Where the first start of a fit comes from.
+enum class FitStart {
+  kNominal,       // the table's nominal values
+  kEquationError  // equation error minimized from the nominal values
+};
+
+struct FitOptions {
+  std::string preset = "tail";
+  SelfForceKind self_force = SelfForceKind::kNone;
+  SkeletonMapping mapping = SkeletonMapping::kExact;
+  ModelOptions model;
+  ParameterTable table;
+
+  ResidualSigmas sigmas;
+  RecordingWeight recording_weight = RecordingWeight::kRecording;
+  // Weight of the demonstrations (80 kg after 4, 25, 80 N s) in the cost; 0 where recovery of known
+  // parameters is measured, more where a fit keeps walking.
+  double settling_weight = 0.0;
+  // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
+  // for models with no term that could feed a mode.
+  double mode_weight = 0.0;
+  double mode_margin = 0.2;
+  // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
+  double stability_weight = 0.0;
+  PoolBy pool_by = PoolBy::kSubject;  // what the parameters that --pool names may differ by
+  // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
+  // a log scale is about 20 %). Acts on the parameters that --pool names.
+  double pooling_sigma = 0.2;
+
+  // The self-force network of `model` (whose weights are the start): standard deviation of the
+  // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
+  // none.
+  double network_prior = 1.0;
+  // Share of the recordings held out to stop a network's training before it learns the rest by
+  // heart; 0: none, the prior alone holds it.
+  double early_stopping = 0.0;
+  // Weight of what the network takes over from friction and balance
+  // (residuals/cost_functions/network_takeover.h).
+  double takeover_weight = 0.0;
+  bool hold_network = false;  // its weights are taken as they are
+  int ensemble = 1;           // networks from so many seeds; predictions are their median
+
+  // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
+  // off while the gains are still wrong.
+  std::vector<int> horizons = {8, 16, 32, 64, 0};
+  FitStart start = FitStart::kEquationError;
+  int num_starts = 1;         // the best of so many; the first is `start`, the rest are random
+  double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way
+  uint64_t seed = 1;
+  int num_threads = 1;
+
+  // Ceres; the defaults reach the optimum to about 1e-9 of the cost.
+  int max_iterations = 200;
+  double function_tolerance = 1e-10;
+  double gradient_tolerance = 1e-12;
+  double parameter_tolerance = 1e-9;
+};
+
+}  // namespace pushid

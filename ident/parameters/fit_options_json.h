@@ -1,0 +1,32 @@
+// ident: what a fit was asked for, as JSON: its options and its parameter table.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "ident/parameters/fit_options.h"
+#include "ident/parameters/option_names.h"
+
+namespace pushid {
+
+nlohmann::ordered_json OptionsJson(const FitOptions& options);
+nlohmann::ordered_json TableJson(const ParameterTable& table);
+
+// Throw what nlohmann's JSON throws for what is missing or of another type, and std::runtime_error
+// for unknown names. What was learned is not in them (self_network_io.h).
+FitOptions OptionsFrom(const nlohmann::ordered_json& json);
+// known: every parameter there is; those that the JSON does not name stay.
+ParameterTable TableFrom(const nlohmann::ordered_json& json, const ParameterTable& known);
+
+// The value of an option by its name in option_names.h.
+template <typename E>
+E EnumFrom(const nlohmann::ordered_json& json, const char* key) {
+  E value{};
+  if (MaybeError error = ParseName(key, json.at(key).get<std::string>(), &value)) {
+    throw std::runtime_error(error->ToString());
+  }
+  return value;
+}
+
+}  // namespace pushid

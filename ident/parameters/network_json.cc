@@ -1,0 +1,118 @@
+// ident: interaction networks in and out of JSON.
+#include "ident/parameters/network_json.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "datasets/files/json_file.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<double> Row(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
+
+Eigen::VectorXd Numbers(const Json& json, const std::string& what) {
+  const auto values = json.get<std::vector<double>>();
+  for (double value : values) {
+    if (!std::isfinite(value))
+      throw std::runtime_error(what + " holds a number that is not finite");
+  }
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Eigen::VectorXd Sized(const Json& json, const char* key, int size) {
+  const Eigen::VectorXd v = Numbers(json.at(key), key);
+  if (v.size() != size) {
+    throw std::runtime_error(std::string(key) + " has " + std::to_string(v.size()) +
+                             " numbers; it must have " + std::to_string(size));
+  }
+  return v;
+}
+
+MlpLayer Layer(const Json& json, const std::string& name, Eigen::Index inputs) {
+  MlpLayer layer;
+  layer.bias = Numbers(json.at("bias"), name + " bias");
+  const Json& rows = json.at("weights");
+  if (static_cast<Eigen::Index>(rows.size()) != layer.bias.size() || rows.empty()) {
+    throw std::runtime_error(name + " has " + std::to_string(rows.size()) +
+                             " rows of weights and " + std::to_string(layer.bias.size()) +
+                             " biases; as many are needed");
+  }
+  layer.weights.resize(layer.bias.size(), inputs);
+  for (Eigen::Index i = 0; i < layer.weights.rows(); ++i) {
+    const Eigen::VectorXd row = Numbers(rows[i], name + " weights");
+    if (row.size() != inputs) {
+      throw std::runtime_error(name + ": row " + std::to_string(i) + " has " +
+                               std::to_string(row.size()) + " weights; " + std::to_string(inputs) +
+                               " come in");
+    }
+    layer.weights.row(i) = row.transpose();
+  }
+  return layer;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const InteractionNetwork& network) {
+  Json layers = Json::array();
+  for (const MlpLayer& layer : network.mlp.layers) {
+    Json rows = Json::array();
+    for (Eigen::Index i = 0; i < layer.weights.rows(); ++i) {
+      rows.push_back(Row(layer.weights.row(i).transpose()));
+    }
+    layers.push_back({{"weights", rows}, {"bias", Row(layer.bias)}});
+  }
+  Json json = {{"activation", network.mlp.activation == Activation::kTanh ? "tanh" : "relu"},
+               {"layers", layers},
+               {"input_mean", Row(network.mean)},
+               {"input_deviation", Row(network.deviation)},
+               {"output_scale", Row(network.scale)},
+               {"output_offset", Row(network.offset)}};
+  if (network.lowest) json["output_lowest"] = Row(*network.lowest);
+  if (network.highest) json["output_highest"] = Row(*network.highest);
+  return json;
+}
+
+std::shared_ptr<const InteractionNetwork> InteractionNetworkFromJson(const Json& json) {
+  auto network = std::make_shared<InteractionNetwork>();
+  const std::string activation = json.at("activation");
+  if (activation != "tanh" && activation != "relu") {
+    throw std::runtime_error("activation is '" + activation + "'; it must be tanh or relu");
+  }
+  network->mlp.activation = activation == "tanh" ? Activation::kTanh : Activation::kRelu;
+  Eigen::Index inputs = kNetworkInputs;
+  for (const Json& layer : json.at("layers")) {
+    const std::string name = "layer " + std::to_string(network->mlp.layers.size());
+    network->mlp.layers.push_back(Layer(layer, name, inputs));
+    inputs = network->mlp.layers.back().bias.size();
+  }
+  if (network->mlp.layers.empty() || inputs != 4) {
+    throw std::runtime_error("the last layer has " + std::to_string(inputs) +
+                             " outputs; it must have 4: Fx, Fy, Ftheta, Fphi");
+  }
+  network->mean = Sized(json, "input_mean", kNetworkInputs);
+  network->deviation = Sized(json, "input_deviation", kNetworkInputs);
+  if (!(network->deviation.minCoeff() > 0.0)) {
+    throw std::runtime_error("input_deviation must be positive");
+  }
+  network->scale = Sized(json, "output_scale", 4);
+  network->offset = Sized(json, "output_offset", 4);
+  if (json.contains("output_lowest")) network->lowest = Sized(json, "output_lowest", 4);
+  if (json.contains("output_highest")) network->highest = Sized(json, "output_highest", 4);
+  return network;
+}
+
+Result<std::shared_ptr<const InteractionNetwork>> ReadInteractionNetwork(const std::string& path) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  try {
+    return InteractionNetworkFromJson(document.value().content);
+  } catch (const std::exception& exception) {
+    return Error{std::string("this is no interaction network: ") + exception.what(), path};
+  }
+}
+
+}  // namespace pushid

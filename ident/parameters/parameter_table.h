@@ -1,0 +1,109 @@
+// ident: the one table of parameters: name, unit, nominal value, bounds, scale, free or fixed,
+// prior. Flags edit it; the solver, the report and the result JSON read it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "residuals/parameter_map.h"
+
+namespace pushid {
+
+struct Prior {
+  double mean;   // in the parameter's unit
+  double sigma;  // in the parameter's unit; on a log scale it becomes sigma / mean
+};
+
+struct ParameterSpec {
+  Parameter id{};
+  std::string name;
+  std::string unit;
+  double nominal = 0.0;  // start of a fit, value when fixed
+  double lower = 0.0, upper = 0.0;
+  double scale = 1.0;  // a typical size, for scaling null directions and judging "weak"
+  Transform transform = Transform::kIdentity;
+  bool free = false;
+  bool pooled = false;  // may deviate by subject or setting
+  std::optional<Prior> prior;
+  std::string meaning;  // one line for people
+};
+
+// Which self-force terms are fitted beyond balance, friction and the preset's own.
+enum class SelfForceKind {
+  kNone,
+  kLinear  // cross terms and quadratic damping
+};
+
+struct ParameterTable {
+  std::vector<ParameterSpec> specs;  // indexed by Parameter
+
+  ParameterSpec& operator[](Parameter id) { return specs[id]; }
+  const ParameterSpec& operator[](Parameter id) const { return specs[id]; }
+  // nullptr when there is none of that name.
+  ParameterSpec* Find(const std::string& name);
+  const ParameterSpec* Find(const std::string& name) const;
+  std::vector<Parameter> Free() const;
+  ParameterSet<double> Values() const;  // nominal values
+  ParameterMap Map() const;             // fitted = free, in table order
+};
+
+// Settings of the models (the README has their scores).
+//   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
+//   ldp:   one person: plain PD balance and friction from upright; six free parameters
+//   group: people who touch: tail with all linear self forces and contact, every parameter
+//          partially pooled by setting; eighteen shared parameters
+struct Preset {
+  std::string name;
+  ModelOptions model;
+  ParameterTable table;
+  SelfForceKind self_force = SelfForceKind::kNone;
+  double settling_weight = 0.0;
+  std::string pool;  // as --pool
+  PoolBy pool_by = PoolBy::kSubject;
+  double pooling_sigma = 0.2;
+  double function_tolerance = 1e-10;
+};
+// Errors: no such preset.
+Result<Preset> MakePreset(const std::string& name);
+
+// Whether some parameter may differ by unit.
+bool AnyPooled(const ParameterTable& table);
+
+// Frees the terms of a self force, where the model's options let them act.
+void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
+
+// Frees the cart's lift where the model has a law for the rod, with a weak prior as wide as its
+// centre: a rod that is learned while the cart stays low predicts the hip worse than a constant
+// one.
+void FreeRod(const ModelOptions& model, ParameterTable* table);
+
+// Frees the terms of the interaction, with weak priors as wide as their centres. The contact's
+// height stays fixed: heights from the ankles to the chest fit the group recordings alike. Those of
+// LDP's discrete form stay fixed too: it has no derivatives.
+void FreeInteraction(const InteractionTerms& terms, ParameterTable* table);
+
+// Whether a parameter has any effect under the options.
+bool Acts(Parameter id, const ModelOptions& model);
+
+// The flags --fix, --free, --prior, --set and --pool: comma-separated
+//   fix:   name or name=value      free: name or name=start value
+//   prior: name:mean:sigma         set:  name=value (also of a fixed one)
+//   pool:  names, or all, or none
+struct TableEdits {
+  std::string fix, free, prior, set, pool;
+  PoolBy pool_by = PoolBy::kSubject;
+};
+MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
+
+// name=value pairs, for --set in what-ifs.
+struct NamedValue {
+  std::string name;
+  double value;
+};
+Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag);
+
+}  // namespace pushid

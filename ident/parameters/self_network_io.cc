@@ -1,0 +1,222 @@
+// ident: learned self forces and rod laws by name, by seed and by file.
+#include "ident/parameters/self_network_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include "datasets/files/random.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kDefaultHidden = 4;
+constexpr int kLargestSize = 4096;
+constexpr size_t kMostRodLayers = 8;
+constexpr double kOpenForgetGate = 1.0;
+constexpr uint64_t kRodSeed = 7919;  // so that a rod's law does not repeat the self force's weights
+
+const char* const kKinds[] = {"none", "mlp", "gru", "lstm"};
+const char* const kRodKinds[] = {"constant", "linear", "mlp"};
+
+// The kind of that name; kNone for any other.
+NetworkKind KindOf(const std::string& name) {
+  for (NetworkKind kind : {NetworkKind::kMlp, NetworkKind::kGru, NetworkKind::kLstm}) {
+    if (name == kKinds[static_cast<int>(kind)]) return kind;
+  }
+  return NetworkKind::kNone;
+}
+
+// A size between 1 and kLargestSize, or 0.
+int Size(const std::string& text) {
+  if (text.empty() || text.size() > 4 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    return 0;
+  }
+  const int size = std::stoi(text);
+  return size <= kLargestSize ? size : 0;
+}
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::stringstream list(text);
+  for (std::string part; std::getline(list, part, separator);) parts.push_back(part);
+  return parts;
+}
+
+Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
+  const std::vector<std::string> parts = Split(text, ':');
+  NetworkShape shape;
+  shape.kind = parts.empty() ? NetworkKind::kNone : KindOf(parts[0]);
+  shape.hidden = kDefaultHidden;
+  const bool known =
+      shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
+  if (parts.size() > 1) shape.hidden = Size(parts[1]);
+  if (parts.size() > 2) shape.embedding = Size(parts[2]);
+  if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
+  return Error{flag + " is '" + text +
+               "'; it must be none, linear, mlp:4, gru:4, lstm:4 or lstm:256:32 (hidden size, "
+               "embedding; 1 to " +
+               std::to_string(kLargestSize) + "), or linear and a network, as linear,gru:4"};
+}
+
+}  // namespace
+
+Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
+  SelfForceChoice choice;
+  for (const std::string& part : Split(text, ',')) {
+    if (part == "none") continue;
+    if (part == "linear") {
+      choice.kind = SelfForceKind::kLinear;
+      continue;
+    }
+    if (choice.network.any()) return Error{flag + " names more than one network"};
+    const Result<NetworkShape> shape = ParseNetwork(flag, part);
+    if (!shape.ok()) return shape.error();
+    choice.network = shape.value();
+  }
+  return choice;
+}
+
+std::string SelfForceText(SelfForceKind kind, const SelfNetwork* network) {
+  const bool linear = kind == SelfForceKind::kLinear;
+  if (network == nullptr || !network->shape.any()) return linear ? "linear" : "none";
+  return (linear ? "linear," : "") + NetworkName(network->shape);
+}
+
+Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
+  if (text == "constant") return RodShape{};
+  if (text == "linear") return RodShape{RodKind::kLinear, {}};
+  const size_t colon = text.find(':');
+  const std::string sizes =
+      colon == std::string::npos ? std::to_string(kDefaultHidden) : text.substr(colon + 1);
+  RodShape shape{RodKind::kMlp, {}};
+  for (const std::string& size : Split(sizes, '-')) shape.hidden.push_back(Size(size));
+  const bool sound = !shape.hidden.empty() && shape.hidden.size() <= kMostRodLayers &&
+                     sizes.back() != '-' &&
+                     *std::min_element(shape.hidden.begin(), shape.hidden.end()) > 0;
+  if (text.substr(0, colon) == "mlp" && sound) return shape;
+  return Error{flag + " is '" + text +
+               "'; it must be constant, linear, mlp:4 or mlp:256-128-256 (hidden sizes of 1 to " +
+               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostRodLayers) +
+               " layers)"};
+}
+
+std::string LearnedName(const SelfNetwork& network) {
+  const std::string rod = network.rod.moves() ? "rod " + RodName(network.rod) : "";
+  if (!network.shape.any()) return rod;
+  return NetworkName(network.shape) + (rod.empty() ? "" : " and " + rod);
+}
+
+std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
+  Random random(seed);
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  const auto fill = [&](int first, int last, int fan_in) {
+    for (int i = first; i < last; ++i) weights[i] = random.Normal() / std::sqrt(fan_in);
+  };
+  fill(0, shape.gates_at(), shape.num_inputs());
+  fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
+  fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
+  if (shape.kind == NetworkKind::kLstm) {
+    for (int row = shape.hidden; row < 2 * shape.hidden; ++row) {
+      weights[shape.gates_at() + (row + 1) * shape.gate_width() - 1] += kOpenForgetGate;
+    }
+  }
+  return weights;
+}
+
+std::shared_ptr<const SelfNetwork> InitialNetwork(const NetworkShape& shape, uint64_t seed,
+                                                  const RodShape& rod) {
+  SelfNetwork network{shape, InitialWeights(shape, seed), rod};
+  Random random(seed + kRodSeed);
+  int width = RodShape::kInputs + 1;
+  for (int hidden : rod.hidden) {
+    for (int i = 0; i < hidden * width; ++i) {
+      network.weights.push_back(random.Normal() / std::sqrt(width));
+    }
+    width = hidden + 1;
+  }
+  network.weights.resize(network.num_weights(), 0.0);
+  return std::make_shared<const SelfNetwork>(std::move(network));
+}
+
+namespace {
+
+RodShape RodFromJson(const Json& json) {
+  const std::string kind = json.at("kind");
+  const auto* known = std::find(std::begin(kRodKinds), std::end(kRodKinds), kind);
+  if (known == std::end(kRodKinds)) {
+    throw std::runtime_error("rod: '" + kind + "' is no kind (constant, linear, mlp)");
+  }
+  RodShape rod;
+  rod.kind = static_cast<RodKind>(known - kRodKinds);
+  rod.hidden = json.at("hidden").get<std::vector<int>>();
+  const bool layers_fit = rod.kind == RodKind::kMlp
+                              ? !rod.hidden.empty() && rod.hidden.size() <= kMostRodLayers
+                              : rod.hidden.empty();
+  if (!layers_fit) throw std::runtime_error("rod: no " + kind + " has so many layers");
+  for (int size : rod.hidden) {
+    if (size < 1 || size > kLargestSize) {
+      throw std::runtime_error("rod: sizes must lie between 1 and " + std::to_string(kLargestSize));
+    }
+  }
+  return rod;
+}
+
+}  // namespace
+
+Json ToJson(const SelfNetwork& network) {
+  const NetworkShape& s = network.shape;
+  return {
+      {"kind", kKinds[static_cast<int>(s.kind)]},
+      {"hidden", s.hidden},
+      {"embedding", s.embedding},
+      {"rod_input", s.rod_input},
+      {"rod",
+       {{"kind", kRodKinds[static_cast<int>(network.rod.kind)]}, {"hidden", network.rod.hidden}}},
+      {"weights", network.weights}};
+}
+
+std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
+  SelfNetwork network;
+  NetworkShape& s = network.shape;
+  const std::string kind = json.at("kind");
+  s.kind = KindOf(kind);
+  if (!s.any() && kind != kKinds[0]) {
+    throw std::runtime_error("network: '" + kind + "' is no kind (none, mlp, gru, lstm)");
+  }
+  if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
+  if (!s.any() && !network.rod.moves()) throw std::runtime_error("network: nothing is learned");
+  for (const char* size : {"hidden", "embedding"}) {
+    if (!json.at(size).is_number_integer()) {
+      throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
+    }
+  }
+  s.hidden = json.at("hidden");
+  s.embedding = json.at("embedding");
+  s.rod_input = json.at("rod_input");
+  if (s.rod_input && !(s.any() && network.rod.moves())) {
+    throw std::runtime_error("network: rod_input is for a network beside a rod that moves");
+  }
+  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < 0 ||
+      s.embedding > kLargestSize) {
+    throw std::runtime_error("network: sizes must lie between 1 and " +
+                             std::to_string(kLargestSize));
+  }
+  network.weights = json.at("weights").get<std::vector<double>>();
+  if (static_cast<int>(network.weights.size()) != network.num_weights()) {
+    throw std::runtime_error("network: " + LearnedName(network) + " has " +
+                             std::to_string(network.num_weights()) + " weights, not " +
+                             std::to_string(network.weights.size()));
+  }
+  for (double weight : network.weights) {
+    if (!std::isfinite(weight)) throw std::runtime_error("network: a weight is not finite");
+  }
+  return std::make_shared<const SelfNetwork>(std::move(network));
+}
+
+}  // namespace pushid

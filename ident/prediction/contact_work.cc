@@ -1,0 +1,34 @@
+// ident: work and impulse of contact along a rollout.
+#include "ident/prediction/contact_work.h"
+
+namespace pushid {
+
+ContactBooks KeepBooks(const RolloutPath<double>& path, const ForceTrace& forces, double dt) {
+  const int people = path.num_people();
+  ContactBooks books;
+  books.work.assign(people, 0.0);
+  books.impulse.assign(people, Vector4<double>::Zero());
+  for (int t = 0; t + 1 < path.num_frames(); ++t) {
+    double total = 0.0;
+    for (int n = 0; n < people; ++n) {
+      const Vector4<double> step = path.At(t + 1, n).q - path.At(t, n).q;
+      const Vector4<double>& now = forces.At(t, n).interaction;
+      const double work = 0.5 * (now + forces.At(t + 1, n).interaction).dot(step);
+      books.work[n] += work;
+      books.impulse[n] += dt * now;
+      total += work;
+    }
+    (total < 0.0 ? books.absorbed : books.returned) += std::abs(total);
+  }
+  return books;
+}
+
+Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt) {
+  Vector4<double> impulse = Vector4<double>::Zero();
+  for (int t = 0; t + 1 < forces.num_frames(); ++t) {
+    impulse += dt * (forces.At(t, person).push + forces.At(t, person).tail);
+  }
+  return impulse;
+}
+
+}  // namespace pushid

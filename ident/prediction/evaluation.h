@@ -1,0 +1,64 @@
+// ident: prediction errors of a model and of the baselines.
+//
+// hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
+// the last frame. Means over recordings and, beside them, weighted by frames. Baselines: static
+// (nobody moves) and constant velocity (the recording until the last push ends, then on with the
+// last hip velocity).
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "ident/prediction/prediction.h"
+#include "ident/prediction/propagation.h"
+
+namespace pushid {
+
+struct RecordingScore {
+  std::string id;
+  int frames = 0;
+  double hip_ade = 0.0, hip_fde = 0.0;  // m
+  std::string failure;                  // why there is no score; such a recording is in no mean
+  bool fell = false;                    // somebody leaned beyond 1.0 rad
+  bool fell_harder = false;             // FallsWhenPushedHarder, where it was asked
+  PropagationScore propagation = {};    // empty for a single person and after a failure
+};
+
+struct MeanScore {
+  int recordings = 0;
+  double hip_ade = 0.0, hip_fde = 0.0;
+  double hip_ade_error = 0.0, hip_fde_error = 0.0;  // standard error of the mean over recordings
+};
+
+struct ScoreSummary {
+  std::vector<RecordingScore> recordings;
+  MeanScore mean, frame_weighted;
+  std::map<std::string, MeanScore> by_magnitude, by_subject, by_setting;
+  PropagationSummary propagation;  // over recordings of more than one person
+  std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
+};
+
+// Hip positions over time: [person][frame].
+using HipPaths = std::vector<std::vector<Vector3<double>>>;
+RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted);
+
+HipPaths StaticBaseline(const PendulumRecording& recording);
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording);
+
+// Scores in the order of recordings; a failed rollout is a named failure.
+RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording);
+
+// Whether anybody falls with every push times 1.4, until 40 frames past the recording's end.
+bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
+
+// `by subject` uses the pushed person.
+ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
+                       std::vector<RecordingScore> scores);
+
+struct Evaluation {
+  ScoreSummary model, static_baseline, constant_velocity;
+};
+Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings);
+
+}  // namespace pushid

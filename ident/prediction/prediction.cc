@@ -1,0 +1,104 @@
+// ident: rollouts of an identified model.
+#include "ident/prediction/prediction.h"
+
+#include <cstdio>
+
+#include "datasets/files/atomic_file.h"
+#include "models/self_network.h"
+#include "residuals/cost_functions/rollout_residual.h"
+
+namespace pushid {
+namespace {
+
+std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
+                                                    const PendulumRecording& recording) {
+  std::vector<ParameterSet<double>> sets;
+  for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
+    sets.push_back(model.For(unit));
+  }
+  return sets;
+}
+
+Prediction PredictOne(const ModelOptions& options,
+                      const std::vector<ParameterSet<double>>& parameters,
+                      const PendulumRecording& recording, int frames) {
+  Prediction prediction;
+  prediction.rod_moves = RodMoves(options);
+  for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
+  prediction.status =
+      Rollout(recording.scene, options, parameters, InitialVelocities(recording.scene), frames,
+              &prediction.path, &prediction.forces);
+  if (!prediction.status.ok) return prediction;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    std::vector<Vector3<double>> hip;
+    for (int t = 0; t < frames; ++t) {
+      hip.push_back(
+          HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q));
+    }
+    prediction.hip.push_back(std::move(hip));
+  }
+  return prediction;
+}
+
+}  // namespace
+
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
+                   int num_frames) {
+  const int frames = num_frames > 0 ? num_frames : recording.num_frames();
+  std::vector<Prediction> stayed, left;  // in the model's domain, or not
+  const auto add = [&](Prediction prediction) {
+    (prediction.status.ok ? stayed : left).push_back(std::move(prediction));
+  };
+  add(PredictOne(model.options, PeoplesParameters(model, recording), recording, frames));
+  for (const EnsembleMember& member : model.others) {
+    ModelOptions options = model.options;
+    options.self_network = member.network;
+    add(PredictOne(options, {member.parameters}, recording, frames));
+  }
+  if (left.size() >= stayed.size()) return left.front();
+  return stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
+}
+
+MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
+                              const Prediction& prediction) {
+  std::string text =
+      "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
+      "hip_x_m,hip_y_m,hip_z_m";
+  for (const char* part :
+       {"friction", "balance", "linear", "push", "tail", "interaction", "drive", "network"}) {
+    for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
+      text += std::string(",") + part + "_" + row;
+    }
+  }
+  if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
+  text += "\n";
+  char number[32];
+  auto add = [&text, &number](double value) {
+    std::snprintf(number, sizeof number, ",%.9g", value + 0.0);  // no -0
+    text += number;
+  };
+  const int frames = prediction.status.ok ? prediction.path.num_frames() : prediction.status.frame;
+  for (int t = 0; t < frames; ++t) {
+    for (int n = 0; n < recording.scene.num_people(); ++n) {
+      const PendulumState<double>& state = prediction.path.At(t, n);
+      text += std::to_string(t);
+      add(t * recording.scene.dt);
+      text += "," + std::to_string(n) + "," + recording.subject_ids[n];
+      for (int i = 0; i < 4; ++i) add(state.q[i]);
+      for (int i = 0; i < 4; ++i) add(state.qd[i]);
+      const Body body = prediction.BodyAt(recording.scene, t, n);
+      const Vector3<double> hip = HipPosition(body, state.q);
+      for (int i = 0; i < 3; ++i) add(hip[i]);
+      const NetForce<double>& force = prediction.forces.At(t, n);
+      for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
+                               &force.tail, &force.interaction, &force.drive, &force.network}) {
+        for (int i = 0; i < 4; ++i) add((*part)[i]);
+      }
+      if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
+      text += "\n";
+    }
+  }
+  return WriteFileAtomically(path, text);
+}
+
+}  // namespace pushid

@@ -1,0 +1,39 @@
+// ident: what a model says will happen in a scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/results/fit_result.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+struct Prediction {
+  RolloutStatus status;
+  RolloutPath<double> path;                       // frames before a failure are valid
+  ForceTrace forces;                              // what drove it, part by part
+  std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
+  bool rod_moves = false;
+  std::vector<double> rod_lift;  // of each person, or one for everybody
+
+  double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
+  // A person with the rod and the cart's height of one frame.
+  Body BodyAt(const Scene& scene, int frame, int person) const {
+    const Body& body = scene.people[person].body;
+    return rod_moves ? BodyNow(body, path.At(frame, person).rod, Lift(person)) : body;
+  }
+};
+
+// From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
+                   int num_frames = 0);
+
+// Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV, and the
+// rod's length and the cart's height where the model has a law for them;
+// after a failure, the frames before it.
+MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
+                              const Prediction& prediction);
+
+}  // namespace pushid

@@ -1,0 +1,198 @@
+// ident: sampling, rolling out, and quantiles by frame.
+#include "ident/prediction/predictive_bands.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/random.h"
+#include "ident/uncertainty/bootstrap.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kShares[] = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+// Velocity that the recorded push gives the pushed person, m/s.
+double PushSpeed(const PendulumRecording& recording) {
+  double impulse = 0.0;
+  for (const ScenePush& push : recording.scene.pushes) {
+    impulse += push.mean.head<2>().norm() * static_cast<double>(push.force.size()) *
+               recording.scene.dt / recording.scene.people[push.person].body.mass;
+  }
+  return impulse;
+}
+
+std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
+                                                 const BandOptions& options) {
+  const std::vector<Parameter> free = result.options.table.Free();
+  const Eigen::Index size = static_cast<Eigen::Index>(free.size());
+  const Uncertainty& u = result.uncertainty;
+  // Null directions make it semi-definite: roots by eigenvalues.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      u.covariance.topLeftCorner(size, size));
+  const Eigen::MatrixXd root =
+      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const int freedom = std::max(1, u.freedom);
+  Random random(options.seed);
+  std::vector<ParameterSet<double>> sets;
+  for (int s = 0; s < options.samples; ++s) {
+    Eigen::VectorXd z(size);
+    for (Eigen::Index i = 0; i < size; ++i) z[i] = random.Normal();
+    double chi_square = 0.0;
+    for (int i = 0; i < freedom; ++i) chi_square += std::pow(random.Normal(), 2);
+    const Eigen::VectorXd move = root * z / std::sqrt(chi_square / freedom);
+    ParameterSet<double> set = result.parameters;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const ParameterSpec& spec = result.options.table[free[i]];
+      const double value =
+          ToNatural(spec.transform, ToFitted(spec.transform, set[free[i]]) + move[i]);
+      set[free[i]] = std::clamp(value, spec.lower, spec.upper);
+    }
+    sets.push_back(set);
+  }
+  return sets;
+}
+
+std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
+                                                const BandOptions& options) {
+  const Bootstrap& b = *result.bootstrap;
+  Random random(options.seed);
+  std::vector<ParameterSet<double>> sets;
+  for (int s = 0; s < options.samples; ++s) {
+    const size_t row =
+        std::min(b.values.size() - 1, static_cast<size_t>(random.Unit() * b.values.size()));
+    ParameterSet<double> set = result.parameters;
+    for (size_t i = 0; i < b.names.size(); ++i) {
+      const ParameterSpec* spec = result.options.table.Find(b.names[i]);  // none for combinations
+      if (spec != nullptr) set[spec->id] = b.values[row][i];
+    }
+    sets.push_back(set);
+  }
+  return sets;
+}
+
+BandPoint PointOf(const Vector3<double>& hip, const PendulumState<double>& state) {
+  BandPoint point;
+  point << hip, state.q.tail<2>();
+  return point;
+}
+
+BandPoint PointOf(const Prediction& prediction, int frame, int person) {
+  return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
+}
+
+// The model with another draw of its shared values; units it knows keep their deviation from them
+// on the fitted scale.
+IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
+  IdentifiedModel drawn = model;
+  drawn.parameters = shared;
+  const auto shift = [&](ParameterSet<double>* set) {
+    for (const ParameterSpec& spec : model.table.specs) {
+      const auto fitted = [&](const ParameterSet<double>& of) {
+        return ToFitted(spec.transform, of[spec.id]);
+      };
+      double& value = (*set)[spec.id];
+      if (value == model.parameters[spec.id]) {
+        value = shared[spec.id];
+      } else {
+        value = ToNatural(spec.transform, fitted(shared) + fitted(*set) - fitted(model.parameters));
+      }
+    }
+  };
+  for (auto& [unit, set] : drawn.by_unit) shift(&set);
+  for (EnsembleMember& member : drawn.others) shift(&member.parameters);
+  return drawn;
+}
+
+// Quantiles over samples of one person's path.
+PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
+  PathBand band;
+  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.median, &band.upper50,
+                                          &band.upper90};
+  const size_t frames = paths[0].size();
+  for (auto* row : rows) row->assign(frames, BandPoint::Zero());
+  std::vector<double> values(paths.size());
+  for (size_t t = 0; t < frames; ++t) {
+    for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
+      for (size_t s = 0; s < paths.size(); ++s) values[s] = paths[s][t][axis];
+      for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
+    }
+  }
+  return band;
+}
+
+}  // namespace
+
+Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
+                                                           const BandOptions& options) {
+  if (!options.from_bootstrap) return FromCovariance(result, options);
+  if (!result.bootstrap || result.bootstrap->values.empty()) {
+    return Error{"the model holds no bootstrap; fit it with --bootstrap=199"};
+  }
+  return FromBootstrap(result, options);
+}
+
+std::vector<ErrorPath> ErrorPaths(const FitResult& result,
+                                  const std::vector<PendulumRecording>& fitted) {
+  std::vector<ErrorPath> paths;
+  const IdentifiedModel model = ModelOf(result);
+  for (const PendulumRecording& recording : fitted) {
+    const double speed = PushSpeed(recording);
+    const Prediction prediction = Predict(model, recording);
+    if (!prediction.status.ok || speed <= 0.0) continue;
+    ErrorPath path{recording.id, {}};
+    const int person = recording.pushed_person;
+    for (int t = 0; t < recording.num_frames(); ++t) {
+      const BandPoint measured = PointOf(recording.hip[person][t], recording.states[person][t]);
+      path.path.push_back((measured - PointOf(prediction, t, person)) / speed);
+    }
+    paths.push_back(path);
+  }
+  return paths;
+}
+
+PredictiveBands ComputeBands(const FitResult& result,
+                             const std::vector<ParameterSet<double>>& samples,
+                             const std::vector<ErrorPath>& errors,
+                             const PendulumRecording& recording, uint64_t seed) {
+  PredictiveBands bands;
+  bands.id = recording.id;
+  bands.samples = static_cast<int>(samples.size());
+  const double speed = PushSpeed(recording);
+  Random random(seed);
+  std::vector<const ErrorPath*> others;
+  for (const ErrorPath& error : errors) {
+    if (error.recording != recording.id) others.push_back(&error);
+  }
+  std::vector<std::vector<std::vector<BandPoint>>> paths(recording.scene.num_people());
+  const IdentifiedModel model = ModelOf(result);
+  for (const ParameterSet<double>& sample : samples) {
+    const double draw = random.Unit();
+    const Prediction prediction = Predict(WithShared(model, sample), recording);
+    if (!prediction.status.ok) {
+      ++bands.failed;
+      continue;
+    }
+    for (int n = 0; n < recording.scene.num_people(); ++n) {
+      std::vector<BandPoint> path;
+      for (int t = 0; t < prediction.path.num_frames(); ++t) {
+        path.push_back(PointOf(prediction, t, n));
+      }
+      if (!others.empty() && n == recording.pushed_person) {
+        const size_t last = others.size() - 1;
+        const size_t drawn = static_cast<size_t>(draw * static_cast<double>(others.size()));
+        const std::vector<BandPoint>& error = others[std::min(last, drawn)]->path;
+        for (size_t t = 0; t < path.size(); ++t) {
+          path[t] += speed * error[std::min(t, error.size() - 1)];
+        }
+      }
+      paths[n].push_back(std::move(path));
+    }
+  }
+  if (bands.failed == bands.samples) return bands;
+  for (const auto& person : paths) bands.people.push_back(QuantilesOf(person));
+  return bands;
+}
+
+}  // namespace pushid

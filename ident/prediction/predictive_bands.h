@@ -1,0 +1,80 @@
+// ident: how far a prediction may be off: bands of hip paths over time.
+//
+// Two things make a person leave the predicted path. The parameters are known only so well: they
+// are drawn from the clustered covariance (multivariate Student's t of G - 1 degrees of freedom on
+// the fitted scale) or from the bootstrap's rows, and rolled out. And no two people, nor two
+// pushes, are alike, which no parameter tells: to every rollout the error path of a randomly drawn
+// fitted recording is added, per impulse over mass, so that a harder push errs farther. Without the
+// second part the bands say where the *mean* person goes; they hold a new recording far less often
+// than their name says (pushid-crossvalidate --bands measures both).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/prediction/prediction.h"
+#include "ident/results/fit_result.h"
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+
+// Hip (m), theta and phi (rad) at one frame.
+using BandPoint = Eigen::Matrix<double, 5, 1>;
+
+// Quantiles by frame.
+struct PathBand {
+  std::vector<BandPoint> lower90, lower50, median, upper50, upper90;
+};
+
+struct PredictiveBands {
+  std::string id;
+  int samples = 0, failed = 0;   // rollouts that left the domain are in no band
+  std::vector<PathBand> people;  // empty when every rollout failed
+};
+
+struct BandOptions {
+  int samples = 200;
+  uint64_t seed = 1;
+  bool from_bootstrap = false;  // draw parameters from result.bootstrap's rows
+  bool model_error = true;      // add error paths of fitted recordings
+};
+
+// Parameter sets, natural units. Errors: asked for a bootstrap that the result does not hold.
+Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
+                                                           const BandOptions& options);
+
+// Of the pushed person: measured less predicted, over impulse per mass, frame by frame.
+struct ErrorPath {
+  std::string recording;
+  std::vector<BandPoint> path;
+};
+std::vector<ErrorPath> ErrorPaths(const FitResult& result,
+                                  const std::vector<PendulumRecording>& fitted);
+
+// errors: empty for bands of the parameters alone. A recording's own path is no guess about it and
+// is left out.
+PredictiveBands ComputeBands(const FitResult& result,
+                             const std::vector<ParameterSet<double>>& samples,
+                             const std::vector<ErrorPath>& errors,
+                             const PendulumRecording& recording, uint64_t seed);
+
+// Share of frames and people whose measured hip lies within a band, by axis x and y; means over
+// recordings with standard errors over them.
+struct BandCoverage {
+  bool model_error = false;
+  int recordings = 0;
+  double inside50[2] = {0.0, 0.0}, inside50_error[2] = {0.0, 0.0};
+  double inside90[2] = {0.0, 0.0}, inside90_error[2] = {0.0, 0.0};
+  double width90[2] = {0.0, 0.0};  // mean, m
+};
+
+// Of recordings that were not fitted, with and without model error.
+std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording>& recordings,
+                                             const std::vector<Fold>& folds,
+                                             const FitOptions& options, const BandOptions& bands,
+                                             int num_threads,
+                                             const JobProgress& progress = nullptr);
+
+std::string BandCoverageText(const std::vector<BandCoverage>& coverage);
+
+}  // namespace pushid

@@ -1,0 +1,215 @@
+// ident: onsets, speed and momentum of a push that travels.
+#include "ident/prediction/propagation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ident/prediction/contact_work.h"
+
+namespace pushid {
+namespace {
+
+using HipPath = std::vector<Vector3<double>>;
+using Vector2d = Eigen::Vector2d;
+
+constexpr int kMinMovers = 3;     // for a speed
+constexpr int kHalfVelocity = 3;  // frames on either side of a velocity: 2 mm of noise are 0.03 m/s
+
+// Horizontal direction of what the pushes on the pushed person add up to; +x where they cancel.
+Vector2d PushDirection(const PendulumRecording& recording) {
+  Vector2d sum = Vector2d::Zero();
+  for (const ScenePush& push : recording.scene.pushes) {
+    if (push.person != recording.pushed_person) continue;
+    sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
+  }
+  return sum.norm() > 0.0 ? Vector2d(sum.normalized()) : Vector2d(1.0, 0.0);
+}
+
+// People without onsets and momenta: rank and distance.
+std::vector<PersonPropagation> RankedPeople(const PendulumRecording& recording) {
+  const int people = recording.num_people();
+  const Vector2d from = recording.scene.people[recording.pushed_person].start.q.head<2>();
+  std::vector<PersonPropagation> ranked(people);
+  for (int n = 0; n < people; ++n) {
+    ranked[n].distance = (recording.scene.people[n].start.q.head<2>() - from).norm();
+  }
+  std::vector<int> order(people);
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return ranked[a].distance < ranked[b].distance; });
+  for (int rank = 0; rank < people; ++rank) ranked[order[rank]].rank = rank;
+  return ranked;
+}
+
+// Persons by rank.
+std::vector<int> ByRank(const std::vector<PersonPropagation>& people) {
+  std::vector<int> order(people.size());
+  for (size_t n = 0; n < people.size(); ++n) order[people[n].rank] = static_cast<int>(n);
+  return order;
+}
+
+double PeakMomentum(const HipPath& hip, double mass, const Vector2d& along, double dt) {
+  double peak = 0.0;
+  const int frames = static_cast<int>(hip.size());
+  for (int t = 0; t + 2 * kHalfVelocity < frames; ++t) {
+    const Vector2d step = (hip[t + 2 * kHalfVelocity] - hip[t]).head<2>();
+    peak = std::max(peak, mass * step.dot(along) / (2 * kHalfVelocity * dt));
+  }
+  return peak;
+}
+
+std::optional<double> SlownessOf(const std::vector<PersonPropagation>& people,
+                                 int PersonPropagation::*onset, double dt) {
+  std::vector<double> distance, time;
+  for (const PersonPropagation& person : people) {
+    if (person.*onset < 0) continue;
+    distance.push_back(person.distance);
+    time.push_back(person.*onset * dt);
+  }
+  return Slowness(distance, time);
+}
+
+void AddOnset(const PersonPropagation& person, int frames, PropagationScore* score) {
+  auto& f = score->figures;
+  const int measured = person.onset_measured, predicted = person.onset_predicted;
+  auto add = [&f](PropagationFigure figure, double value) {
+    f[figure].sum += value;
+    f[figure].weight += 1.0;
+  };
+  if (measured < 0) {
+    add(kFalseMovers, predicted >= 0 ? 1.0 : 0.0);
+    add(kBystanderFrames, frames);
+    return;
+  }
+  add(kMissedMovers, predicted < 0 ? 1.0 : 0.0);
+  add(kOnsetErrorWithMissed, std::abs((predicted < 0 ? frames - 1 : predicted) - measured));
+  if (predicted < 0) return;
+  add(kOnsetError, std::abs(predicted - measured));
+  add(kOnsetBias, predicted - measured);
+  if (person.rank > 0) add(kOnsetErrorReached, std::abs(predicted - measured));
+}
+
+void AddSpeed(double dt, PropagationScore* score) {
+  const auto measured = SlownessOf(score->people, &PersonPropagation::onset_measured, dt);
+  const auto predicted = SlownessOf(score->people, &PersonPropagation::onset_predicted, dt);
+  auto& f = score->figures;
+  if (measured) f[kSlownessMeasured] = {*measured, 1.0};
+  if (predicted) f[kSlownessPredicted] = {*predicted, 1.0};
+  if (measured && predicted) f[kSlownessDifference] = {*predicted - *measured, 1.0};
+}
+
+}  // namespace
+
+const PropagationFigureInfo& Info(PropagationFigure figure) {
+  static const PropagationFigureInfo kInfo[kNumPropagationFigures] = {
+      {"onset_error_frames", "onset error, frames (who move in both)"},
+      {"onset_error_reached_frames", "  without the pushed person"},
+      {"onset_bias_frames", "  predicted - measured"},
+      {"onset_error_with_missed_frames", "  missed movers as if at the last frame"},
+      {"missed_movers_share", "missed movers / movers"},
+      {"false_movers_share", "false movers / bystanders"},
+      {"bystander_watched_frames", "a bystander is watched for, frames"},
+      {"slowness_measured_s_per_m", "slowness measured, s/m"},
+      {"slowness_predicted_s_per_m", "slowness predicted, s/m"},
+      {"slowness_difference_s_per_m", "  predicted - measured"},
+      {"momentum_passed_on_measured", "momentum passed on, measured"},
+      {"momentum_passed_on_predicted", "momentum passed on, predicted"},
+      {"push_passed_on", "  push's impulse passed on by contact"},
+      {"contact_impulse_passed_on", "  contact's impulse passed on"},
+      {"contact_work_J", "work of contact per recording, J"},
+      {"contact_absorbed_J", "  taken from people's motion, J"},
+      {"contact_returned_share", "  share given back (restitution squared)"},
+  };
+  return kInfo[figure];
+}
+
+int OnsetFrame(const std::vector<Vector3<double>>& hip, double distance) {
+  for (size_t t = 0; t < hip.size(); ++t) {
+    if ((hip[t] - hip[0]).head<2>().norm() >= distance) return static_cast<int>(t);
+  }
+  return -1;
+}
+
+std::optional<double> Slowness(const std::vector<double>& distance_m,
+                               const std::vector<double>& onset_s) {
+  const double n = static_cast<double>(distance_m.size());
+  if (distance_m.size() < kMinMovers) return std::nullopt;
+  const double s_mean = std::accumulate(distance_m.begin(), distance_m.end(), 0.0) / n;
+  const double t_mean = std::accumulate(onset_s.begin(), onset_s.end(), 0.0) / n;
+  double ss = 0.0, st = 0.0;
+  for (size_t i = 0; i < distance_m.size(); ++i) {
+    ss += (distance_m[i] - s_mean) * (distance_m[i] - s_mean);
+    st += (distance_m[i] - s_mean) * (onset_s[i] - t_mean);
+  }
+  if (ss < 1e-6 * n) return std::nullopt;  // within a millimetre: no line
+  return st / ss;
+}
+
+void PropagationScore::Add(const PropagationScore& other) {
+  for (int i = 0; i < kNumPropagationFigures; ++i) {
+    figures[i].sum += other.figures[i].sum;
+    figures[i].weight += other.figures[i].weight;
+  }
+}
+
+void PropagationScore::Divide(double by) {
+  for (Ratio& ratio : figures) ratio = {ratio.sum / by, ratio.weight / by};
+}
+
+PropagationScore ScorePropagation(const PendulumRecording& recording,
+                                  const std::vector<HipPath>& predicted) {
+  PropagationScore score;
+  if (recording.scene.num_people() < 2) return score;
+  const Vector2d along = PushDirection(recording);
+  const double dt = recording.scene.dt;
+  score.people = RankedPeople(recording);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    PersonPropagation& person = score.people[n];
+    const double mass = recording.scene.people[n].body.mass;
+    person.onset_measured = OnsetFrame(recording.hip[n]);
+    person.onset_predicted = OnsetFrame(predicted[n]);
+    person.peak_momentum_measured = PeakMomentum(recording.hip[n], mass, along, dt);
+    person.peak_momentum_predicted = PeakMomentum(predicted[n], mass, along, dt);
+    AddOnset(person, recording.num_frames(), &score);
+  }
+  AddSpeed(dt, &score);
+  const std::vector<int> order = ByRank(score.people);
+  for (size_t k = 1; k < order.size(); ++k) {
+    const PersonPropagation &before = score.people[order[k - 1]], &now = score.people[order[k]];
+    score.figures[kMomentumMeasured].sum += now.peak_momentum_measured;
+    score.figures[kMomentumMeasured].weight += before.peak_momentum_measured;
+    score.figures[kMomentumPredicted].sum += now.peak_momentum_predicted;
+    score.figures[kMomentumPredicted].weight += before.peak_momentum_predicted;
+  }
+  return score;
+}
+
+void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& recording,
+                       const Prediction& prediction, PropagationScore* score) {
+  if (score->people.empty() || !model.options.interaction.Any()) return;
+  const double dt = recording.scene.dt;
+  const ContactBooks books = KeepBooks(prediction.path, prediction.forces, dt);
+  const Vector2d along = PushDirection(recording);
+  const std::vector<int> order = ByRank(score->people);
+  double crossed = 0.0;  // from the last in rank to the first
+  for (size_t k = order.size(); k-- > 0;) {
+    PersonPropagation& person = score->people[order[k]];
+    person.impulse_on = crossed;
+    person.contact_work = books.work[order[k]];
+    crossed += books.impulse[order[k]].head<2>().dot(along);
+  }
+  const Vector4<double> push = PushImpulse(prediction.forces, recording.pushed_person, dt);
+  auto& f = score->figures;
+  f[kPushPassedOn] = {score->people[order[0]].impulse_on, push.head<2>().dot(along)};
+  for (size_t k = 1; k + 1 < order.size(); ++k) {  // the last in rank has nobody to pass it to
+    f[kContactPassedOn].sum += score->people[order[k]].impulse_on;
+    f[kContactPassedOn].weight += score->people[order[k - 1]].impulse_on;
+  }
+  f[kContactWork] = {books.TotalWork(), 1.0};
+  f[kContactAbsorbed] = {books.absorbed, 1.0};
+  // Of mutual contact alone: LDP's terms and networks push without taking anything first.
+  if (!model.options.interaction.AtCarts()) f[kRestitution] = {books.returned, books.absorbed};
+}
+
+}  // namespace pushid

@@ -1,0 +1,180 @@
+// ident: the demonstrations and the free modes.
+#include "ident/problem/behaviour.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "models/rollout.h"
+#include "models/self_network.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kMasses[] = {60.0, 80.0, 100.0};
+constexpr double kImpulses[] = {4.0, 25.0, 80.0};
+constexpr double kLineMass = 80.0;
+constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};
+
+Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double>& parameters,
+                          double mass, double impulse, int people) {
+  Demonstration result;
+  result.people = people;
+  result.mass = mass;
+  result.impulse = impulse;
+  const Scene scene = DemonstrationScene(mass, impulse, people);
+  const int frames =
+      scene.LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / scene.dt)) + 1;
+  RolloutPath<double> path;
+  const RolloutStatus status =
+      Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
+  const int last = status.ok ? frames - 1 : status.frame - 1;
+  result.fell = !status.ok;
+  for (int n = 0; n < people; ++n) {
+    for (int t = 0; t <= last; ++t) {
+      const double lean = path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();
+      result.fell = result.fell || lean > kFallAngle;
+    }
+    const PendulumState<double>& end = path.At(last, n);
+    const Vector4<double> moved = end.q - scene.people[n].start.q;
+    result.speed = std::max(result.speed, end.qd.head<2>().norm());
+    result.lean = std::max(result.lean, end.q.tail<2>().cwiseAbs().maxCoeff());
+    result.distance += moved.head<2>().norm() / people;
+    result.advance += moved.x() / people;
+    if (n == 0) result.pushed_advance = moved.x();
+  }
+  result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
+  return result;
+}
+
+// The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
+// cart's derivative is made), and what is learned of the rod and a network's memory.
+constexpr int kPreviousAt = 6, kRodAt = 8, kMemoryAt = 9;
+
+// One step of what is learned, about rest, by central differences (it is smooth, and its values are
+// of order one): d[force; rod's velocity; memory]/d(free state).
+Eigen::MatrixXd LearnedStep(const SelfNetwork& network, const SelfForce& self,
+                            const ParameterSet<double>& parameters) {
+  constexpr double kDifference = 1e-5;
+  const NetworkShape& shape = network.shape;
+  const int hidden = shape.recurrent() ? shape.hidden : 0;
+  const int cells = shape.kind == NetworkKind::kLstm ? shape.hidden : 0;
+  const auto step = [&](const Eigen::VectorXd& from) {
+    const Vector4<double> qd = from.segment<4>(2);
+    Eigen::VectorXd to = Eigen::VectorXd::Zero(5 + hidden + cells);
+    if (shape.any()) {
+      NetworkState<double> memory(shape, self.body);
+      if (hidden > 0) memory.hidden = from.segment(kMemoryAt, hidden);
+      if (cells > 0) memory.cell = from.tail(cells);
+      SetNetworkInputs<double>(from[0], from[1], qd, from[kRodAt], &memory);
+      to.head<4>() = StepNetwork(shape, network.weights.data(), self.body.mass, &memory);
+      if (hidden > 0) to.segment(5, hidden) = memory.hidden;
+      if (cells > 0) to.tail(cells) = memory.cell;
+    }
+    if (network.rod.moves()) {
+      const PendulumState<double> state{{0.0, 0.0, from[0], from[1]}, qd, from[kRodAt]};
+      const Vector4<double> before{from[kPreviousAt], from[kPreviousAt + 1], 0.0, 0.0};
+      RodLayers<double> layers(network.rod);
+      SetRodInputs<double>(from[0], from[1], qd,
+                           self.Total(parameters, state, before) + to.head<4>(), state.rod,
+                           self.body.mass, &layers);
+      to[4] = RodVelocity(network.rod, network.weights.data() + network.rod_at(), &layers);
+    }
+    return to;
+  };
+  Eigen::MatrixXd jacobian(5 + hidden + cells, kMemoryAt + hidden + cells);
+  for (int i = 0; i < jacobian.cols(); ++i) {
+    const Eigen::VectorXd move = kDifference * Eigen::VectorXd::Unit(jacobian.cols(), i);
+    jacobian.col(i) = (step(move) - step(-move)) / (2.0 * kDifference);
+  }
+  return jacobian;
+}
+
+// Eigenvalues of one free step about rest, as growth rates. Where the cart stands does not matter:
+// x and y are no part of the state.
+double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
+  const Scene scene = DemonstrationScene(80.0, 0.0);
+  const Body& body = scene.people[0].body;
+  const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
+  SelfForce::Jacobian jacobian;
+  self.TotalJacobian(parameters, {}, Vector4<double>::Zero(), &jacobian);
+  Eigen::Matrix<double, 4, 8> force = jacobian.by_state;
+  const double mgl = body.point_mass() * kGravity * body.rod_length;
+  force(2, 2) += mgl;  // minus the derivative of gravity at rest; none by the rod, which is upright
+  force(3, 3) += mgl;
+  const Eigen::Matrix4d inverse = InverseMassMatrix<double>(body, Vector4<double>::Zero());
+  Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
+  if (options.self_network != nullptr) {
+    learned = LearnedStep(*options.self_network, self, parameters);
+  }
+  const Eigen::Index size = learned.cols(), memory = size - kMemoryAt;
+  Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);
+  auto velocity = step.middleRows<4>(2);
+  velocity.middleCols<4>(2).setIdentity();
+  velocity.leftCols<6>() += scene.dt * inverse * force.rightCols<6>();
+  velocity.middleCols<2>(kPreviousAt) +=
+      scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+  velocity += scene.dt * inverse * learned.topRows<4>();
+  step.topLeftCorner<2, 2>().setIdentity();
+  step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
+  step.block<2, 2>(kPreviousAt, 2).setIdentity();
+  // A law that is switched off leaves the rod where it is, which tells nothing of the person.
+  if (!learned.row(4).isZero(0.0)) {
+    step.row(kRodAt) = scene.dt * learned.row(4);
+    step(kRodAt, kRodAt) += 1.0;
+  }
+  step.bottomRows(memory) = learned.bottomRows(memory);
+  return std::log(step.eigenvalues().cwiseAbs().maxCoeff()) / scene.dt;
+}
+
+}  // namespace
+
+const Demonstration* Behaviour::FarthestBehind() const {
+  const Demonstration* farthest = nullptr;
+  for (const Demonstration& d : demonstrations) {
+    if (d.fell || d.pushed_advance > -kBehind) continue;
+    if (farthest == nullptr || d.pushed_advance < farthest->pushed_advance) farthest = &d;
+  }
+  return farthest;
+}
+
+void Behaviour::Add(const Behaviour& other, const std::string& setting) {
+  for (Demonstration d : other.demonstrations) {
+    d.setting = setting;
+    demonstrations.push_back(d);
+  }
+  fastest_growth = std::max(fastest_growth, other.fastest_growth);
+  settles = settles && other.settles;
+  harder_moves_farther = harder_moves_farther && other.harder_moves_farther;
+  self_propelling = self_propelling || other.self_propelling;
+}
+
+Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
+  Behaviour behaviour;
+  std::vector<Demonstration>& all = behaviour.demonstrations;
+  for (double mass : kMasses) {
+    for (double impulse : kImpulses) {
+      all.push_back(Demonstrate(options, parameters, mass, impulse, 1));
+    }
+  }
+  if (options.interaction.Any()) {
+    const size_t first = all.size();
+    for (double impulse : kLineImpulses) {
+      all.push_back(Demonstrate(options, parameters, kLineMass, impulse, kLinePeople));
+    }
+    for (size_t i = first + 1; i < all.size(); ++i) {
+      behaviour.harder_moves_farther =
+          behaviour.harder_moves_farther && all[i - 1].advance < all[i].advance;
+    }
+  }
+  behaviour.fastest_growth = FastestGrowth(options, parameters);
+  behaviour.settles = true;
+  behaviour.self_propelling = behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
+  for (const Demonstration& d : all) {
+    behaviour.settles = behaviour.settles && d.settled;
+    behaviour.self_propelling = behaviour.self_propelling || d.fell;
+  }
+  return behaviour;
+}
+
+}  // namespace pushid

@@ -1,0 +1,138 @@
+// ident: what a problem knows of a point. fit_problem_build.cc puts its blocks together.
+#include "ident/problem/fit_problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pushid {
+
+FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                       std::vector<int> counts)
+    : recordings_(recordings),
+      options_(options),
+      counts_(std::move(counts)),
+      map_(options.table.Map()) {
+  map_.pool_by = options.pool_by;
+  if (options.model.self_network != nullptr && !options.hold_network) {
+    map_.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  }
+}
+
+FitPoint FitProblem::NominalPoint() const {
+  FitPoint point;
+  for (const FittedParameter& f : map_.fitted) {
+    point.shared.push_back(ToFitted(f.transform, options_.table[f.parameter].nominal));
+  }
+  for (size_t i = 0; i < recordings_.size(); ++i) {
+    const PendulumRecording& recording = recordings_[i];
+    if (map_.num_deviations > 0) {
+      for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
+        point.unit[unit].assign(map_.num_deviations, 0.0);
+      }
+    }
+    if (recording.initial_velocity != InitialVelocity::kFree) continue;
+    std::vector<double>& velocity = point.velocity[static_cast<int>(i)];
+    for (const ScenePerson& person : recording.scene.people) {
+      velocity.insert(velocity.end(), person.start.qd.data(), person.start.qd.data() + 4);
+    }
+  }
+  if (map_.num_weights > 0) point.weights = options_.model.self_network->weights;
+  return point;
+}
+
+ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::string& unit) const {
+  const auto found = point.unit.find(unit);
+  return map_.Apply<double>(point.shared.data(),
+                            found == point.unit.end() ? nullptr : found->second.data());
+}
+
+ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
+  ModelOptions model = options_.model;
+  if (map_.num_weights == 0) return model;
+  SelfNetwork network = *model.self_network;
+  network.weights = point.weights;
+  model.self_network = std::make_shared<const SelfNetwork>(std::move(network));
+  return model;
+}
+
+Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
+  const ModelOptions model = ModelAt(point);
+  Behaviour all = ComputeBehaviour(model, Parameters(point, ""));
+  if (map_.pool_by != PoolBy::kSetting) return all;
+  for (const auto& [unit, deviations] : point.unit) {
+    all.Add(ComputeBehaviour(model, Parameters(point, unit)), unit);
+  }
+  return all;
+}
+
+double FitProblem::DataCost(const FitPoint& point) const {
+  FitPoint copy = point;
+  double cost = 0.0;
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
+    const RolloutResidual residual(
+        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0));
+    Eigen::VectorXd values(residual.num_residuals());
+    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
+    if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    cost += 0.5 * values.squaredNorm();
+  }
+  return cost;
+}
+
+std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
+  std::vector<FailedRollout> failures;
+  FitPoint copy = point;
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
+    const auto problem =
+        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
+    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
+    const SensitivityInputs inputs =
+        RolloutInputs(recordings_[i].scene, map_, problem->layout, blocks.data());
+    RolloutPath<double> path;
+    const RolloutStatus status = Rollout<double>(
+        recordings_[i].scene, options_.model, inputs.parameters, inputs.initial_velocity,
+        problem->horizon, &path, nullptr, inputs.network_weights);
+    if (!status.ok) failures.push_back({i, status});
+  }
+  return failures;
+}
+
+std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recording) const {
+  FitPoint copy = point;
+  ResidualSigmas plain = options_.sigmas;
+  plain.robust = 0.0;
+  const RolloutResidual residual(
+      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0));
+  std::vector<double> values(residual.num_residuals());
+  const std::vector<double*> blocks = RecordingBlocks(&copy, recording);
+  if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) values.clear();
+  return values;
+}
+
+std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
+  std::vector<double*> blocks = {point->shared.data()};
+  const BlockLayout layout(map_, PoolingUnits(recordings_[recording], map_.pool_by), false);
+  if (map_.num_deviations > 0) {
+    for (const std::string& unit : layout.units) blocks.push_back(point->unit[unit].data());
+  }
+  const auto velocity = point->velocity.find(recording);
+  if (velocity != point->velocity.end()) blocks.push_back(velocity->second.data());
+  if (map_.num_weights > 0) blocks.push_back(point->weights.data());
+  return blocks;
+}
+
+double FitProblem::Weight(int recording, int horizon) const {
+  const double counted = std::sqrt(static_cast<double>(Count(recording)));
+  if (options_.recording_weight == RecordingWeight::kFrame) return counted;
+  // A recording's frames are far from independent: together they count as one.
+  const PendulumRecording& r = recordings_[recording];
+  const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
+  return counted / std::sqrt(std::max(1, frames - 1));
+}
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// ident: the nonlinear least-squares problem of a fit: its parameter blocks and its residual
+// blocks.
+#pragma once
+
+#include <ceres/problem.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/problem/behaviour.h"
+#include "ident/problem/fit_point.h"
+#include "residuals/cost_functions/rollout_residual.h"
+
+namespace pushid {
+
+class FitProblem {
+ public:
+  // recordings and options must outlive the problem. counts: how often each recording counts (a
+  // bootstrap replica; 0 leaves it out); empty: each once.
+  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+             std::vector<int> counts = {});
+
+  const ParameterMap& map() const { return map_; }
+  const std::vector<PendulumRecording>& recordings() const { return recordings_; }
+  const FitOptions& options() const { return options_; }
+  // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
+  double Weight(int recording, int horizon) const;
+  const std::vector<int>& counts() const { return counts_; }  // empty: each once
+  // How often a recording counts.
+  int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
+
+  // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them,
+  // weights as the options' network holds them.
+  FitPoint NominalPoint() const;
+
+  // The parameters of a unit (any name, even one that was not fitted) at a point.
+  ParameterSet<double> Parameters(const FitPoint& point, const std::string& unit) const;
+
+  // The options with the network of a point.
+  ModelOptions ModelAt(const FitPoint& point) const;
+
+  // What people do after a push at a point; where settings differ, in each setting.
+  Behaviour BehaviourAt(const FitPoint& point) const;
+
+  // Half the squared residuals of the recordings alone, as they count; infinite where a rollout
+  // leaves the domain.
+  double DataCost(const FitPoint& point) const;
+
+  // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
+  std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
+
+  // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
+  // then person. Empty where its rollout leaves the domain.
+  std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
+
+  // Clusters of what is not data.
+  static constexpr int kPriorCluster = -1;  // priors on parameters, settling, stability
+  // What ties the units' deviations, or a network's weights, to zero.
+  static constexpr int kPoolingCluster = -2;
+
+  // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
+  // to the frames before their failure; `shortened` names them.
+  struct Built {
+    std::unique_ptr<ceres::Problem> problem;
+    // Residual blocks by cluster: the recording they belong to, or one of the clusters below.
+    std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
+    std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
+    std::vector<FailedRollout> shortened;
+    int rests_left_out = 0;  // demonstrations that could not be rolled out to their end here
+  };
+
+  // hold_network: its weights are constant.
+  Built Build(FitPoint* point, int horizon, bool hold_network = false) const;
+
+  // The same blocks with equation-error residuals instead of rollouts.
+  Built BuildEquationError(FitPoint* point) const;
+
+ private:
+  std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
+  void AddParameterBlocks(FitPoint* point, Built* built) const;
+  void AddPriors(FitPoint* point, Built* built) const;
+  void AddStagePriors(FitPoint* point, Built* built) const;
+  void AddRest(FitPoint* point, Built* built) const;
+
+  const std::vector<PendulumRecording>& recordings_;
+  const FitOptions& options_;
+  std::vector<int> counts_;
+  ParameterMap map_;
+};
+
+}  // namespace pushid

@@ -1,0 +1,190 @@
+// ident: the parameter blocks and residual blocks of a problem.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/problem/fit_problem.h"
+#include "residuals/cost_functions/equation_error_residual.h"
+#include "residuals/cost_functions/mode_residual.h"
+#include "residuals/cost_functions/network_takeover.h"
+#include "residuals/cost_functions/prior_residual.h"
+#include "residuals/cost_functions/rest_residual.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kDemonstrationMass = 80.0;                     // kg
+constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
+constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};           // N s, on the first in a line
+constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
+
+}  // namespace
+
+void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
+  built->problem = std::make_unique<ceres::Problem>();
+  auto add = [built](std::vector<double>* values) {
+    built->problem->AddParameterBlock(values->data(), static_cast<int>(values->size()));
+    built->parameter_blocks.push_back(values->data());
+  };
+  add(&point->shared);
+  for (auto& [name, values] : point->unit) add(&values);
+  for (auto& [index, values] : point->velocity) add(&values);
+  if (map_.num_weights > 0) add(&point->weights);
+  for (size_t i = 0; i < map_.fitted.size(); ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    const int index = static_cast<int>(i);
+    built->problem->SetParameterLowerBound(point->shared.data(), index,
+                                           ToFitted(spec.transform, spec.lower));
+    built->problem->SetParameterUpperBound(point->shared.data(), index,
+                                           ToFitted(spec.transform, spec.upper));
+  }
+}
+
+void FitProblem::AddPriors(FitPoint* point, Built* built) const {
+  const int size = static_cast<int>(point->shared.size());
+  for (int i = 0; i < size; ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    if (!spec.prior) continue;
+    const double sigma = spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean);
+    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.prior->mean), sigma);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
+  }
+  for (auto& [name, values] : point->unit) {
+    for (const FittedParameter& f : map_.fitted) {
+      if (f.deviation < 0) continue;
+      // On an identity scale the deviation is in units of the parameter's typical size.
+      const double unit =
+          f.transform == Transform::kIdentity ? options_.table[f.parameter].scale : 1.0;
+      auto* prior =
+          new PriorResidual(map_.num_deviations, f.deviation, 0.0, options_.pooling_sigma * unit);
+      built->blocks.push_back(
+          {built->problem->AddResidualBlock(prior, nullptr, values.data()), kPoolingCluster});
+    }
+  }
+  if (map_.num_weights > 0 && options_.network_prior > 0.0) {
+    auto* prior = new RidgeResidual(map_.num_weights, options_.network_prior);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->weights.data()), kPoolingCluster});
+  }
+  if (map_.num_weights > 0 && options_.takeover_weight > 0.0) {
+    auto* takeover = new TakeoverResidual(recordings_, options_.model, options_.takeover_weight);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(takeover, nullptr, point->weights.data()),
+         kPriorCluster});
+  }
+}
+
+// A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
+// wandering off to its bounds, whence later stages need not come back.
+void FitProblem::AddStagePriors(FitPoint* point, Built* built) const {
+  const int size = static_cast<int>(point->shared.size());
+  for (int i = 0; i < size; ++i) {
+    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    if (spec.prior) continue;
+    const double sigma = spec.transform == Transform::kIdentity
+                             ? kStagePrior * std::max(std::abs(spec.nominal), spec.scale)
+                             : std::log(kStagePrior);
+    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.nominal), sigma);
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
+  }
+}
+
+void FitProblem::AddRest(FitPoint* point, Built* built) const {
+  auto add = [built](RestProblem rest, const std::vector<double*>& blocks) {
+    auto residual = std::make_unique<RestResidual>(std::move(rest));
+    std::vector<double> values(residual->num_residuals());
+    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) {
+      ++built->rests_left_out;  // Ceres cannot start from a block that fails
+      return;
+    }
+    built->blocks.push_back(
+        {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
+  };
+  // Where settings differ, people must stand again in each of them.
+  std::vector<std::string> units = {""};
+  if (map_.num_deviations > 0 && map_.pool_by == PoolBy::kSetting) {
+    for (const auto& [unit, values] : point->unit) units.push_back(unit);
+  }
+  for (const std::string& unit : units) {
+    std::vector<double*> blocks = {point->shared.data()};
+    if (!unit.empty()) blocks.push_back(point->unit[unit].data());
+    std::vector<double*> rollout_blocks = blocks;
+    if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
+    const auto settle = [&](double impulse, int people) {
+      const Scene scene = DemonstrationScene(kDemonstrationMass, impulse, people);
+      add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight,
+                          unit),
+          rollout_blocks);
+    };
+    if (options_.settling_weight > 0.0) {
+      for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
+      if (options_.model.interaction.Any()) {
+        for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
+      }
+    }
+    if (options_.mode_weight > 0.0) {
+      const Body body = DemonstrationScene(kDemonstrationMass, 0.0).people[0].body;
+      auto* cost = new ModeResidual(options_.model, body, map_, options_.mode_margin,
+                                    options_.mode_weight, !unit.empty());
+      built->blocks.push_back(
+          {built->problem->AddResidualBlock(cost, nullptr, blocks), kPriorCluster});
+    }
+  }
+  if (options_.stability_weight > 0.0) {
+    for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+      if (Count(i) == 0) continue;
+      const double weight = options_.stability_weight * std::sqrt(static_cast<double>(Count(i)));
+      for (double factor : {1.0, kStrongerPush}) {
+        add(StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
+                             options_.sigmas, weight),
+            RecordingBlocks(point, i));
+      }
+    }
+  }
+}
+
+FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network) const {
+  Built built;
+  AddParameterBlocks(point, &built);
+  built.shortened = Failures(*point, horizon);
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    int frames = horizon;
+    for (const FailedRollout& failed : built.shortened) {
+      if (failed.recording == i) frames = failed.status.frame;
+    }
+    if (Count(i) == 0) continue;
+    if (frames == 1) continue;  // fails in its very first step: nothing left to compare
+    auto* residual = new RolloutResidual(MakeRolloutProblem(
+        recordings_[i], options_.model, map_, options_.sigmas, Weight(i, horizon), frames));
+    built.blocks.push_back(
+        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+  }
+  AddPriors(point, &built);
+  // The demonstrations are long rollouts: they join once the horizon is as long.
+  if (horizon == 0) {
+    AddRest(point, &built);
+  } else {
+    AddStagePriors(point, &built);
+  }
+  if (hold_network && map_.num_weights > 0) {
+    built.problem->SetParameterBlockConstant(point->weights.data());
+  }
+  return built;
+}
+
+FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
+  Built built;
+  AddParameterBlocks(point, &built);
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
+    auto* residual = new EquationErrorResidual(recordings_[i], options_.model, map_);
+    built.blocks.push_back(
+        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+  }
+  AddPriors(point, &built);
+  if (map_.num_weights > 0) built.problem->SetParameterBlockConstant(point->weights.data());
+  return built;
+}
+
+}  // namespace pushid

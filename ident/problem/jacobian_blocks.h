@@ -1,0 +1,31 @@
+// ident: residuals and Jacobian of a built problem, gathered by recording.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ident/problem/fit_problem.h"
+
+namespace pushid {
+
+struct ScoreBlocks {
+  Eigen::MatrixXd jacobian;  // all residuals x all fitted numbers
+  Eigen::VectorXd residuals;
+  std::vector<int> cluster_of_row;  // recording, or a cluster of FitProblem
+  std::vector<int> clusters;        // the recordings present, ascending
+  int num_data_rows = 0;
+  // What J'J leaves out of the Hessian: the sum over rows of r times its second derivatives. Empty
+  // until AddCurvature.
+  Eigen::MatrixXd curvature;
+
+  std::vector<int> RowsOf(int cluster) const;
+};
+
+ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built);
+
+// Central differences of the gradient J'r, one column at a time, a ten-thousandth of `unit` to
+// either side (0: a column that does not move). Leaves the curvature empty where some residual
+// cannot be evaluated beside the point.
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit, ScoreBlocks* score);
+
+}  // namespace pushid

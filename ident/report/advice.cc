@@ -1,0 +1,208 @@
+// ident: rules from findings to the next command.
+#include "ident/report/advice.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/figures/text_table.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/report/fit_command.h"
+#include "ident/results/interval_agreement.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kStrongCorrelation = 0.95;
+constexpr double kStrongLeverage = 1.0;  // standard errors that one recording moves
+constexpr double kDisagreement = 1.5;    // of interval widths
+constexpr int kFewRecordings = 10;
+constexpr double kPushDependence = 0.15;  // mean correlation that is more than a detail
+constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
+constexpr int kManyIterations = 1000, kManyStarts = 8;
+constexpr int kReplicas = 199, kManyReplicas = 999;
+
+class Adviser {
+ public:
+  explicit Adviser(const FitResult& result) : result_(result) {}
+
+  std::vector<Advice> Run() {
+    Solver();
+    Identifiability();
+    Person();
+    People();
+    Recordings();
+    Intervals();
+    Residuals();
+    return advice_;
+  }
+
+ private:
+  void Add(const std::string& sentence, const FitCommand& command) {
+    advice_.push_back({sentence, command.ToString()});
+  }
+  FitCommand Same() const { return FitCommand("pushid-fit", result_); }
+  FitCommand Bootstrap(int replicas) const {
+    return Same().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
+  }
+  // More of it than the fit had.
+  FitCommand SettleHarder(double weight) const;
+  void Solver();
+  void Identifiability();
+  void Person();
+  void People();
+  void Recordings();
+  void Intervals();
+  void Residuals();
+
+  const FitResult& result_;
+  std::vector<Advice> advice_;
+};
+
+void Adviser::Solver() {
+  if (!result_.converged) {
+    Add("The solver stopped before it converged; give it more iterations and more starts.",
+        Same()
+            .Set("max_iterations",
+                 std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
+            .Set("starts", std::to_string(std::max(kManyStarts, 2 * result_.options.num_starts))));
+  }
+}
+
+void Adviser::Identifiability() {
+  for (const NullDirection& n : result_.uncertainty.null_directions) {
+    if (n.parameters == std::vector<std::string>{"rod_lift"}) {
+      Add("The law of the rod moves nobody's rod; leave it out.", Same().Set("rod", "constant"));
+      continue;
+    }
+    Add("The data cannot say: " + n.sentence + ". Hold one of them.",
+        Same().Append("fix", n.parameters.back()));
+  }
+  for (const Estimate& e : result_.estimates) {
+    if (e.status == EstimateStatus::kAtBound) {
+      Add(e.name +
+              " stands at its bound, so its error is unknown; see whether the data mind its "
+              "being held there.",
+          Same().Append("fix", e.name + "=" + Significant(e.value)));
+    }
+    if (e.status == EstimateStatus::kWeak) {
+      Add(e.name + " is only weakly known; ask which further push would tell most about it.",
+          Same().Set("design", e.name));
+    }
+  }
+  const Uncertainty& u = result_.uncertainty;
+  const int shared = static_cast<int>(result_.options.table.Free().size());
+  for (int i = 0; i < std::min<int>(shared, u.correlation.rows()); ++i) {
+    for (int j = i + 1; j < std::min<int>(shared, u.correlation.cols()); ++j) {
+      if (std::abs(u.correlation(i, j)) < kStrongCorrelation) continue;
+      const Estimate& second = u.estimates[j];
+      const std::string held = second.name + "=" + Significant(second.value);
+      FitCommand compare("pushid-crossvalidate", result_);
+      compare.Set("compare", "held: --fix=" + compare.Appended("fix", held));
+      Add(u.estimates[i].name + " and " + second.name + " trade off (correlation " +
+              Significant(u.correlation(i, j), 2) +
+              "); hold one, and see whether the errors of prediction grow.",
+          compare);
+    }
+  }
+}
+
+FitCommand Adviser::SettleHarder(double weight) const {
+  const double more = std::max(weight, 2.0 * result_.options.settling_weight);
+  return Same().Set("settling_weight", Significant(more, 6));
+}
+
+void Adviser::Person() {
+  if (RodRunsAway(result_)) {
+    Add("The rod runs away, and settling cannot hold it; see what is lost without it.",
+        Same().Set("rod", "constant"));
+  } else if (result_.behaviour.self_propelling) {
+    const bool tail = result_.options.model.push_tail == PushTail::kExponential;
+    Add(tail ? "The fitted person drives herself; hold the fit to people who stand again."
+             : "The fitted person drives herself; let a push tail carry what the recorded push "
+               "leaves out.",
+        tail ? SettleHarder(kMuchSettling) : Same().Set("push_tail", "exponential"));
+  } else if (!result_.behaviour.settles) {
+    Add("The fitted person is slow to stand again; see what holding it to settle costs.",
+        SettleHarder(kSomeSettling));
+  }
+}
+
+void Adviser::People() {
+  const bool groups = std::any_of(result_.recordings.begin(), result_.recordings.end(),
+                                  [](const FittedRecording& r) { return r.people > 1; });
+  if (!groups || result_.options.model.interaction.Any()) return;
+  Add("Several people stand in one recording and do nothing to each other here; let them touch.",
+      Same().Set("interaction", "contact"));
+}
+
+void Adviser::Recordings() {
+  const Leverage& l = result_.diagnostics.leverage;
+  double most = 0.0;
+  size_t recording = 0, parameter = 0;
+  for (size_t g = 0; g < l.in_errors.size(); ++g) {
+    for (size_t p = 0; p < l.in_errors[g].size(); ++p) {
+      if (std::abs(l.in_errors[g][p]) <= most) continue;
+      most = std::abs(l.in_errors[g][p]);
+      recording = g;
+      parameter = p;
+    }
+  }
+  // Of a single one nothing would be left.
+  if (most > kStrongLeverage && l.recordings.size() > 1) {
+    Add("Recording " + l.recordings[recording] + " alone moves " + l.parameters[parameter] +
+            " by " + Significant(most, 2) + " standard errors; look at it, and fit without it.",
+        Same().Append("leave_out", l.recordings[recording]));
+  }
+  if (result_.uncertainty.num_clusters < kFewRecordings) {
+    Add("With " + std::to_string(result_.uncertainty.num_clusters) +
+            " recordings the clustered errors are themselves uncertain; record more, where the "
+            "design says it helps.",
+        Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
+  }
+}
+
+void Adviser::Intervals() {
+  if (result_.profiles.empty()) {
+    Add("The intervals take the cost for quadratic; profiles show its true shape.",
+        Same().Set("profile", "all").Set("num_threads", "2"));
+  }
+  const bool several = result_.recordings.size() > 1;  // a single one is its only resample
+  if (!result_.bootstrap && several) {
+    Add("Resampling the recordings checks the standard errors without any formula.",
+        Bootstrap(kReplicas));
+  }
+  const int had = result_.bootstrap ? result_.bootstrap->replicas : 0;
+  for (const Agreement& row : CompareIntervals(result_)) {
+    if (!several) break;
+    if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
+    Add("The intervals of " + row.name + " differ by a factor of " + Significant(row.ratio, 2) +
+            " in width: its cost is far from quadratic; quote the widest, and more replicas.",
+        Bootstrap(std::max(kManyReplicas, 2 * had)));
+    break;  // one command serves all
+  }
+}
+
+void Adviser::Residuals() {
+  const bool linear = result_.options.self_force == SelfForceKind::kLinear;
+  const SelfNetwork* network = result_.options.model.self_network.get();
+  const bool tail = result_.options.model.push_tail == PushTail::kExponential;
+  if (linear && tail) return;  // nothing is left to switch on
+  for (const Whiteness& w : result_.diagnostics.whiteness) {
+    for (size_t k = 0; k < w.push.size(); ++k) {
+      const double limit = std::max(kPushDependence, 2.0 * w.push_error[k]);
+      if (std::abs(w.push[k]) < limit) continue;
+      Add("The errors of " + w.channel + " follow the push (correlation " +
+              Significant(w.push[k], 2) + " at lag " + std::to_string(k) +
+              "): the model misses part of the answer to it; try more terms.",
+          linear ? Same().Set("push_tail", "exponential")
+                 : Same().Set("self_force", SelfForceText(SelfForceKind::kLinear, network)));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Advice> Advise(const FitResult& result) { return Adviser(result).Run(); }
+
+}  // namespace pushid

@@ -1,0 +1,119 @@
+// ident: how sure, for a terminal.
+#include "ident/report/confidence_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/figures/text_table.h"
+#include "ident/parameters/option_names.h"
+#include "ident/results/interval_agreement.h"
+
+namespace pushid {
+namespace {
+
+constexpr size_t kWorstRecordings = 5;
+constexpr double kDisagreement = 1.5;  // ratio of widths that is worth a word
+
+std::string IntervalText(const std::optional<Interval>& interval) {
+  if (!interval) return "-";
+  const auto side = [](double value) {
+    return std::isfinite(value) ? Significant(value) : std::string("open");
+  };
+  return "[" + side(interval->lower) + ", " + side(interval->upper) + "]";
+}
+
+std::string Disagreements(const std::vector<Agreement>& rows) {
+  std::string names;
+  for (const Agreement& row : rows) {
+    if (row.ratio <= kDisagreement) continue;
+    names += (names.empty() ? "" : ", ") + row.name;
+  }
+  if (names.empty()) return "the widths agree within a factor of 1.5\n";
+  return "widths differ by more than a factor of 1.5, trust the widest: " + names + "\n";
+}
+
+std::string StartText(const StartDiagnostics& start) {
+  std::string text;
+  for (const std::string& note : start.notes) text += "start: " + note + "\n";
+  for (const std::string& warning : start.unit_warnings) text += "units? " + warning + "\n";
+  return text;
+}
+
+// The parameter that leaving a recording out moves most, in standard errors.
+std::string LargestMove(const Leverage& leverage, const std::string& recording) {
+  for (size_t g = 0; g < leverage.recordings.size(); ++g) {
+    if (leverage.recordings[g] != recording) continue;
+    const std::vector<double>& row = leverage.in_errors[g];
+    const auto most = std::max_element(
+        row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    if (most == row.end()) return "";
+    return leverage.parameters[static_cast<size_t>(most - row.begin())] + " " +
+           Significant(*most, 2);
+  }
+  return "";
+}
+
+std::string RecordingsText(const Diagnostics& d) {
+  std::vector<const RecordingDiagnostics*> worst;
+  for (const RecordingDiagnostics& r : d.recordings) worst.push_back(&r);
+  std::sort(worst.begin(), worst.end(),
+            [](const auto* a, const auto* b) { return a->explained < b->explained; });
+  if (worst.size() > kWorstRecordings) worst.resize(kWorstRecordings);
+  TextTable table(
+      {"explained least", "% of motion", "cost", "outlier frames", "without it moves (std errors)"},
+      {true, false, false, false, true});
+  for (const RecordingDiagnostics* r : worst) {
+    table.Add({r->id, Significant(r->explained, 3), Significant(r->cost, 3),
+               std::to_string(r->outliers.size()), LargestMove(d.leverage, r->id)});
+  }
+  return worst.empty() ? "" : table.ToString();
+}
+
+std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
+  std::string text;
+  for (const Whiteness& w : whiteness) {
+    if (w.channel != "hip x" && w.channel != "theta") continue;
+    text += "errors of " + w.channel + ": lag-1 correlation " +
+            Significant(w.autocorrelation.front(), 2) + " (white: +-" +
+            Significant(w.mean_band, 1) + ")\n";
+  }
+  return text.empty() ? ""
+                      : text + "frames of a recording err together: only clustered errors count\n";
+}
+
+}  // namespace
+
+std::string DiagnosticsText(const FitResult& result) {
+  const Diagnostics& d = result.diagnostics;
+  std::string text = StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
+  for (const Advice& advice : d.advice) {
+    text += "advice: " + advice.sentence + "\n";
+    if (!advice.command.empty()) text += "  " + advice.command + "\n";
+  }
+  return text;
+}
+
+TextTable AgreementTable(const FitResult& result) {
+  TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class"},
+                  {true, false, true, true, true, true, true});
+  for (const Agreement& row : CompareIntervals(result)) {
+    table.Add({row.name, Significant(row.value), IntervalText(row.clustered),
+               IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
+               row.classification ? NameOf(*row.classification) : ""});
+  }
+  return table;
+}
+
+std::string AgreementNote(const FitResult& result) {
+  const std::vector<Agreement> rows = CompareIntervals(result);
+  if (rows.empty()) return "";
+  std::string text = Disagreements(rows);
+  if (result.bootstrap) {
+    text += "bootstrap over recordings: " + std::to_string(result.bootstrap->values.size()) +
+            " of " + std::to_string(result.bootstrap->replicas) + " replicas, seed " +
+            std::to_string(result.bootstrap->seed) + "\n";
+  }
+  return text;
+}
+
+}  // namespace pushid

@@ -1,0 +1,20 @@
+// ident: profiles, bootstrap and diagnostics in words and tables for a terminal.
+#pragma once
+
+#include <string>
+
+#include "ident/figures/text_table.h"
+#include "ident/results/fit_result.h"
+
+namespace pushid {
+
+// Clustered, profile and bootstrap intervals side by side (only a header when neither was asked
+// for), and whether they agree.
+TextTable AgreementTable(const FitResult& result);
+std::string AgreementNote(const FitResult& result);
+
+// What was noted before the solve, the recordings that fit worst or move most, whether residuals
+// are white, and what to try next.
+std::string DiagnosticsText(const FitResult& result);
+
+}  // namespace pushid

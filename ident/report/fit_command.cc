@@ -1,0 +1,84 @@
+// ident: flags of a result as a command line.
+#include "ident/report/fit_command.h"
+
+#include <algorithm>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+// Stands for the recordings where a result does not know their place.
+constexpr char kSomeManifest[] = "M/manifest.json";
+
+// gflags writes 0.2 as 0.20000000000000001.
+std::string Shortest(const std::string& value) {
+  double number = 0.0;
+  const bool fraction = value.find_first_of(".e") != std::string::npos;
+  return fraction && ParseDouble(value, &number) ? DoubleText(number) : value;
+}
+
+std::string ShellQuoted(const std::string& value) {
+  constexpr char kPlain[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-+=.,:/@%[]";
+  if (value.find_first_not_of(kPlain) == std::string::npos) return value;
+  std::string quoted = "'";
+  for (const char c : value) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+}  // namespace
+
+FitCommand::FitCommand(std::string program, const FitResult& result)
+    : program_(std::move(program)) {
+  Set("recordings", result.manifest.empty() ? kSomeManifest : result.manifest);
+  // The recordings and the model first, the rest by name.
+  std::vector<std::string> names = {"setting", "ids", "leave_out", "preset"};
+  for (const std::string& name : result.changed_flags) {
+    const bool leads = std::find(names.begin(), names.begin() + 4, name) != names.begin() + 4;
+    const bool tells_more = name == "profile" || name == "bootstrap" || name == "design";
+    if (!leads && !tells_more) names.push_back(name);
+  }
+  for (const std::string& name : names) {
+    const auto& changed = result.changed_flags;
+    const auto at = result.configuration.find(name);
+    if (at == result.configuration.end()) continue;
+    if (std::find(changed.begin(), changed.end(), name) == changed.end()) continue;
+    Set(name, Shortest(at->second));
+  }
+}
+
+std::string* FitCommand::Find(const std::string& flag) {
+  for (auto& [name, value] : flags_) {
+    if (name == flag) return &value;
+  }
+  return nullptr;
+}
+
+FitCommand& FitCommand::Set(const std::string& flag, const std::string& value) {
+  if (std::string* known = Find(flag)) {
+    *known = value;
+  } else {
+    flags_.emplace_back(flag, value);
+  }
+  return *this;
+}
+
+std::string FitCommand::Appended(const std::string& flag, const std::string& item) const {
+  for (const auto& [name, value] : flags_) {
+    if (name == flag && !value.empty()) return value + "," + item;
+  }
+  return item;
+}
+
+FitCommand& FitCommand::Append(const std::string& flag, const std::string& item) {
+  return Set(flag, Appended(flag, item));
+}
+
+std::string FitCommand::ToString() const {
+  std::string text = program_;
+  for (const auto& [flag, value] : flags_) text += " --" + flag + "=" + ShellQuoted(value);
+  return text;
+}
+
+}  // namespace pushid

@@ -1,0 +1,37 @@
+// ident: a command line that repeats a fit, with some flags changed: what advice consists of.
+//
+//   FitCommand("pushid-fit", result).Set("self_force", "linear").ToString()
+//   -> pushid-fit --recordings=M/manifest.json --preset=ldp --self_force=linear
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ident/results/fit_result.h"
+
+namespace pushid {
+
+class FitCommand {
+ public:
+  // Every flag of the fit that was not at its default, but for those that only ask for more to be
+  // told about it (profiles, bootstrap, design).
+  FitCommand(std::string program, const FitResult& result);
+
+  // In place of what the fit had.
+  FitCommand& Set(const std::string& flag, const std::string& value);
+  // One more item of a comma-separated list: the flag given twice would lose the first list.
+  FitCommand& Append(const std::string& flag, const std::string& item);
+  // What Append would make of the list.
+  std::string Appended(const std::string& flag, const std::string& item) const;
+
+  // Values are quoted for a shell where they need it.
+  std::string ToString() const;
+
+ private:
+  std::string* Find(const std::string& flag);
+  std::string program_;
+  std::vector<std::pair<std::string, std::string>> flags_;  // in the order they are printed
+};
+
+}  // namespace pushid

@@ -1,0 +1,57 @@
+// ident: the order of a report.
+#include "ident/report/page/build_report.h"
+
+#include <algorithm>
+
+#include "ident/parameters/option_names.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/report/page/sections.h"
+
+namespace pushid {
+namespace {
+
+// The design needs the fit's own recordings, all of them and as they were.
+ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingView>& views) {
+  ExperimentDesign none;
+  none.refused = "it needs all recordings that were fitted, as they were then, each of one person";
+  if (views.size() != result.recordings.size() || result.best_start < 0) return none;
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : views) {
+    const bool same = std::any_of(
+        result.recordings.begin(), result.recordings.end(), [&](const FittedRecording& r) {
+          return r.id == view.run.recording.id && r.content_hash == view.run.recording.content_hash;
+        });
+    // A candidate is one person alone.
+    if (!same || view.run.recording.num_people() > 1) return none;
+    recordings.push_back(view.run.recording);
+  }
+  const FitProblem problem(recordings, result.options);
+  return DesignExperiments(problem, result.starts[result.best_start].to, result.uncertainty,
+                           DefaultCandidates(recordings));
+}
+
+}  // namespace
+
+Report BuildReport(const FitResult& result, const std::vector<Recording>& recordings,
+                   const BuildReportOptions& options) {
+  Report report;
+  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
+                 result.setting + "), preset " + result.options.preset;
+  report.subtitle =
+      "identified friction, gains and push tails, how sure they are, and what they "
+      "predict; pushid " +
+      result.version;
+  const std::vector<RecordingView> views =
+      ViewRecordings(result, recordings, options.num_threads, options.progress);
+  report.sections = {SummarySection(result),   ParameterSection(result),
+                     UnitSection(result),      IdentifiabilitySection(result),
+                     ProfileSection(result),   BootstrapSection(result),
+                     BehaviourSection(result), FigureSection(views),
+                     MotionSection(views),     RecordingSection(result),
+                     LeverageSection(result),  ResidualSection(result),
+                     SolveSection(result),     DesignSection(DesignOf(result, views)),
+                     ProvenanceSection(result)};
+  return report;
+}
+
+}  // namespace pushid

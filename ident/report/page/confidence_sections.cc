@@ -1,0 +1,188 @@
+// ident: how sure: what the data cannot tell apart, profiles, bootstrap.
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/chart.h"
+#include "ident/figures/heat_map.h"
+#include "ident/figures/text_table.h"
+#include "ident/report/confidence_text.h"
+#include "ident/report/page/sections.h"
+#include "ident/report/report_tables.h"
+#include "ident/results/interval_agreement.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kColumns = 3;
+constexpr double kPanelWidth = 320, kPanelHeight = 200;
+constexpr int kBars = 24;
+
+ReportFigure CorrelationFigure(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  const size_t size = result.options.table.Free().size();  // without deviations and velocities
+  HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0, 2};
+  std::vector<std::string> header = {"parameter"};
+  for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
+  TextTable numbers(header, std::vector<bool>(header.size(), true));
+  for (size_t i = 0; i < size; ++i) {
+    map.rows.push_back(u.estimates[i].name);
+    map.columns.push_back(u.estimates[i].name);
+    std::vector<std::string> cells = {u.estimates[i].name};
+    std::vector<double> row;
+    for (size_t j = 0; j < size; ++j) {
+      row.push_back(u.correlation(static_cast<int>(i), static_cast<int>(j)));
+      cells.push_back(DoubleText(row.back()));
+    }
+    map.values.push_back(row);
+    numbers.Add(cells);
+  }
+  return {"correlation",
+          "Near 1 or -1: the data say what two parameters do together, not what each does.",
+          DrawHeatMap(map), numbers};
+}
+
+// A multiple of one parameter draws that parameter's curve again.
+bool IsAlias(const FitResult& result, const Profile& p) {
+  const bool parameter = result.options.table.Find(p.name) != nullptr;
+  return !parameter &&
+         std::any_of(result.profiles.begin(), result.profiles.end(), [&](const auto& q) {
+           return &q != &p && result.options.table.Find(q.name) != nullptr &&
+                  q.points.size() == p.points.size() && q.threshold == p.threshold &&
+                  q.cost == p.cost &&
+                  std::abs(q.lower95 / q.estimate - p.lower95 / p.estimate) < 1e-9;
+         });
+}
+
+Chart ProfileChart(const Profile& p) {
+  Chart chart;
+  chart.title = p.name;
+  chart.x_label = p.unit == "1" ? "" : p.unit;
+  ChartLine line{{}, kPredictedLook, false}, dots{{}, kPredictedLook, true};
+  for (const ProfilePoint& point : p.points) {
+    line.points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
+  }
+  dots.points = line.points;
+  dots.look = "fill:#3b82f6";
+  chart.lines = {line, dots};
+  chart.levels = {1.0};
+  chart.marks = {p.estimate};
+  chart.y_from = -0.1;
+  chart.y_to = 2.0;
+  return chart;
+}
+
+Chart Histogram(const std::vector<double>& values, const std::string& name, const std::string& unit,
+                double estimate) {
+  Chart chart;
+  chart.title = name;
+  chart.x_label = unit == "1" ? "" : unit;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double width = (*high - *low) / kBars;
+  std::vector<int> counts(kBars, 0);
+  for (double value : values) {
+    ++counts[width > 0.0 ? std::min(kBars - 1, static_cast<int>((value - *low) / width)) : 0];
+  }
+  ChartBand bars{{}, {}, "stroke:none;fill:#cc79a7;fill-opacity:.75"};
+  for (int k = 0; k < kBars; ++k) {
+    for (const double x : {*low + k * width, *low + (k + 1) * width}) {
+      bars.lower.emplace_back(x, 0.0);
+      bars.upper.emplace_back(x, counts[k]);
+    }
+  }
+  chart.bands = {bars};
+  chart.marks = {estimate};
+  chart.y_from = 0.0;
+  return chart;
+}
+
+}  // namespace
+
+ReportSection IdentifiabilitySection(const FitResult& result) {
+  ReportSection section{"identifiability", "What the data can tell apart", {}, {}, {}, {}, {}, ""};
+  const Diagnostics& d = result.diagnostics;
+  section.paragraphs.push_back(
+      "Condition number of the scaled Jacobian: " + Significant(d.start.condition_number, 3) +
+      " at the start, " + Significant(result.uncertainty.condition_number, 3) + " at the optimum.");
+  for (const NullDirection& n : result.uncertainty.null_directions) {
+    section.paragraphs.push_back("Unidentifiable: " + n.sentence);
+  }
+  if (result.uncertainty.null_directions.empty()) {
+    section.paragraphs.push_back("No direction in the space of parameters is left undetermined.");
+  }
+  for (const std::string& note : d.start.notes) section.paragraphs.push_back("Start: " + note);
+  const std::string correlations = CorrelationText(result);
+  if (!correlations.empty()) section.paragraphs.push_back(correlations);
+  section.figures.push_back(CorrelationFigure(result));
+  return section;
+}
+
+ReportSection ProfileSection(const FitResult& result) {
+  ReportSection section{"profiles", "Profile likelihood", {}, {}, {}, {}, {}, ""};
+  if (result.profiles.empty()) return section;
+  section.paragraphs = {
+      "Each parameter is moved away from its estimate and everything else refitted. Where the "
+      "curve "
+      "crosses the dashed line the 95 % interval ends; a flat curve means that the data do not "
+      "know."};
+  section.paragraphs.push_back(AgreementNote(result));
+  section.tables.push_back({"three kinds of intervals", AgreementTable(result)});
+  std::vector<Chart> charts;
+  TextTable ends({"profile of", "why it ended below", "above"}, std::vector<bool>(3, true));
+  TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"},
+                    std::vector<bool>(5, true));
+  for (const Profile& p : result.profiles) {
+    if (p.lower_end != "threshold" || p.upper_end != "threshold") {
+      ends.Add({p.name, p.lower_end, p.upper_end});
+    }
+    if (p.points.size() > 1 && !IsAlias(result, p)) charts.push_back(ProfileChart(p));
+    for (const ProfilePoint& point : p.points) {
+      numbers.Add({p.name, p.unit, DoubleText(point.value), DoubleText(point.cost - p.cost),
+                   DoubleText(p.threshold)});
+    }
+  }
+  section.tables.push_back({"profiles that ended elsewhere than at the threshold", ends});
+  section.figures.push_back(
+      {"profiles",
+       "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
+       DrawCharts(charts, "profiles", kColumns, kPanelWidth, kPanelHeight), numbers});
+  return section;
+}
+
+ReportSection BootstrapSection(const FitResult& result) {
+  ReportSection section{"bootstrap", "Bootstrap over recordings", {}, {}, {}, {}, {}, ""};
+  if (!result.bootstrap || result.bootstrap->values.empty()) return section;
+  const Bootstrap& b = *result.bootstrap;
+  section.paragraphs = {std::to_string(b.values.size()) + " of " + std::to_string(b.replicas) +
+                        " replicas (seed " + std::to_string(b.seed) +
+                        "): the fit repeated on recordings drawn with replacement."};
+  if (result.profiles.empty()) {
+    section.paragraphs.push_back(AgreementNote(result));
+    section.tables.push_back({"two kinds of intervals", AgreementTable(result)});
+  }
+  std::vector<Chart> charts;
+  std::vector<std::string> header;
+  for (size_t i = 0; i < b.names.size(); ++i) {
+    header.push_back(b.names[i] + " (" + b.units[i] + ")");
+    const Estimate* estimate = nullptr;
+    for (const Estimate& e : result.estimates) {
+      if (e.name == b.names[i]) estimate = &e;
+    }
+    if (estimate == nullptr) continue;  // combinations are their parameter on another scale
+    std::vector<double> values;
+    for (const auto& row : b.values) values.push_back(row[i]);
+    charts.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
+  }
+  TextTable numbers(header, std::vector<bool>(header.size(), true));
+  for (const auto& row : b.values) {
+    std::vector<std::string> cells;
+    for (double value : row) cells.push_back(DoubleText(value));
+    numbers.Add(cells);
+  }
+  section.figures.push_back({"bootstrap", "Replicas, and the estimate of the fit (line).",
+                             DrawCharts(charts, "bootstrap", kColumns, kPanelWidth, kPanelHeight),
+                             numbers});
+  return section;
+}
+
+}  // namespace pushid

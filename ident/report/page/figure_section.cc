@@ -1,0 +1,133 @@
+// ident: the moving figure: pendulums measured and predicted, skeletons where they were recorded,
+// as numbers that the page's script draws (page_parts.h).
+//
+// Positions are millimetres as whole numbers, each the difference from the sample before: small,
+// and exact enough for a picture.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/report/page/sections.h"
+
+namespace pushid {
+namespace {
+
+// Skeletons weigh: many of them are drawn more seldom.
+constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 1.0 / 15.0;
+constexpr int kManySkeletons = 100;
+
+class Track {
+ public:
+  void Add(const Vector3<double>& position, size_t channel) {
+    if (last_.size() <= channel) last_.resize(channel + 1, {0, 0, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+      const long now = std::lround(1000.0 * position[axis]);
+      text_ += (text_.empty() ? "" : ",") + std::to_string(now - last_[channel][axis]);
+      last_[channel][axis] = now;
+    }
+  }
+  std::string Json() const { return "[" + text_ + "]"; }
+
+ private:
+  std::string text_;
+  std::vector<std::array<long, 3>> last_;
+};
+
+Vector3<double> Cart(const PendulumState<double>& state, const Body& body) {
+  return {state.q[0], state.q[1], body.cart_height};
+}
+
+std::string PersonJson(const RecordingView& view, int person, int every) {
+  const FormationRun& run = view.run;
+  const PendulumRecording& recording = run.recording;
+  const Body& body = recording.scene.people[person].body;
+  const RecordedPerson& recorded = view.recording->people[person];
+  const int predicted_frames = run.prediction.status.ok ? recording.num_frames() : 0;
+  Track measured, predicted, joints;
+  for (int t = 0; t < recording.num_frames(); t += every) {
+    measured.Add(Cart(recording.states[person][t], body), 0);
+    measured.Add(recording.hip[person][t], 1);
+    if (t < predicted_frames) {
+      predicted.Add(Cart(run.prediction.path.At(t, person), body), 0);
+      predicted.Add(run.prediction.hip[person][t], 1);
+    }
+    if (recorded.joints.empty()) continue;
+    for (size_t j = 0; j < recorded.joints[t].size(); ++j) joints.Add(recorded.joints[t][j], j);
+  }
+  std::string bones;
+  for (size_t j = 0; j < recorded.joint_parents.size(); ++j) {
+    if (recorded.joint_parents[j] < 0) continue;
+    bones += (bones.empty() ? "[" : ",[") + std::to_string(recorded.joint_parents[j]) + "," +
+             std::to_string(j) + "]";
+  }
+  return "{\"m\":" + measured.Json() + ",\"p\":" + predicted.Json() + ",\"j\":" + joints.Json() +
+         ",\"bones\":[" + bones + "]}";
+}
+
+// Ids come from files: nothing in them may end the script element or the string.
+std::string JsonText(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '<') {
+      quoted += "\\u003c";
+    } else {
+      quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return quoted + "\"";
+}
+
+std::string ViewJson(const RecordingView& view, double sample_seconds) {
+  const PendulumRecording& recording = view.run.recording;
+  const int every = std::max(1, static_cast<int>(std::lround(sample_seconds / recording.scene.dt)));
+  std::string people, pushes;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    people += (n > 0 ? "," : "") + PersonJson(view, n, every);
+  }
+  for (const ScenePush& push : recording.scene.pushes) {
+    pushes += (pushes.empty() ? "[" : ",[") + std::to_string(push.person) + "," +
+              std::to_string(push.start_frame / every) + "," +
+              std::to_string(push.EndFrame() / every) + "]";
+  }
+  char step[32];
+  std::snprintf(step, sizeof step, "%.6g", every * recording.scene.dt);
+  return "{\"id\":" + JsonText(recording.id) + ",\"step\":" + step + ",\"people\":[" + people +
+         "],\"pushes\":[" + pushes + "]}";
+}
+
+constexpr char kControls[] = R"html(
+<div class="controls">
+<label>recording <select id="fig-recording"></select></label>
+<button id="fig-play" type="button" aria-pressed="false">play</button>
+<label>time <input id="fig-time" type="range" min="0" max="1" step="1" value="0"></label>
+<output id="fig-clock">0.00 s</output>
+<label>turn <input id="fig-turn" type="range" min="-90" max="90" step="5" value="0"></label>
+</div>
+<svg id="fig-stage" viewBox="0 0 900 420" width="900" height="420" role="img"
+ aria-label="pendulums and skeletons at the chosen time"></svg>
+<p class="key"><span class="measured">measured</span> <span class="predicted">predicted</span>
+ <span class="body">recorded skeleton</span> <span class="pushed">being pushed</span></p>
+<noscript><p>The moving figure needs JavaScript; everything else on this page does not.</p></noscript>
+)html";
+
+}  // namespace
+
+ReportSection FigureSection(const std::vector<RecordingView>& views) {
+  ReportSection section{"figure", "Moving figure", {}, {}, {}, {}, {}, ""};
+  if (views.empty()) return section;
+  section.paragraphs = {
+      "Every recording with what the model predicts from its first frame and the push. The slider "
+      "and the list answer to the arrow keys."};
+  int skeletons = 0;
+  for (const RecordingView& view : views) skeletons += view.run.num_people();
+  const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
+  std::string data;
+  for (const RecordingView& view : views) {
+    data += (data.empty() ? "" : ",\n") + ViewJson(view, seconds);
+  }
+  section.widget = std::string(kControls) + "<script type=\"application/json\" id=\"fig-data\">[" +
+                   data + "]</script>\n";
+  return section;
+}
+
+}  // namespace pushid

@@ -1,0 +1,187 @@
+// ident: parameters with their intervals, and how they differ between people.
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/chart.h"
+#include "ident/figures/text_table.h"
+#include "ident/report/page/sections.h"
+#include "ident/report/report_tables.h"
+#include "ident/results/interval_agreement.h"
+
+namespace pushid {
+namespace {
+
+constexpr char kClusteredLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
+constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
+constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
+constexpr char kNominalLook[] = "fill:none;stroke-width:2;stroke:#d55e00";
+constexpr double kForestWidth = 900, kForestRow = 44, kForestLeft = 150, kForestRight = 820;
+
+struct ForestRow {
+  std::string name, unit;
+  double value = 0.0, nominal = 0.0;
+  bool has_nominal = false;
+  std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
+};
+
+// Every row on a scale of its own: units differ.
+class Forest {
+ public:
+  Forest(std::vector<ForestRow> rows, const std::string& title, bool common_scale)
+      : rows_(std::move(rows)),
+        common_(common_scale),
+        svg_(kForestWidth, 40 + kForestRow * static_cast<double>(rows_.size()), title) {}
+
+  std::string Draw(const std::vector<LegendEntry>& legend) {
+    DrawLegend(legend, kForestLeft, 16, &svg_);
+    for (size_t i = 0; i < rows_.size(); ++i) {
+      Row(rows_[i], 40 + kForestRow * (static_cast<double>(i) + 0.4));
+    }
+    return svg_.ToInline();
+  }
+
+ private:
+  static void Extend(const ForestRow& row, double* from, double* to) {
+    const auto add = [&](double value) {
+      if (!std::isfinite(value)) return;
+      *from = std::min(*from, value);
+      *to = std::max(*to, value);
+    };
+    add(row.value);
+    if (row.has_nominal) add(row.nominal);
+    for (const auto& [interval, look] : row.intervals) {
+      add(interval.lower);
+      add(interval.upper);
+    }
+  }
+
+  SvgScale Scale(const ForestRow& row) const {
+    double from = INFINITY, to = -INFINITY;
+    if (common_) {
+      for (const ForestRow& each : rows_) Extend(each, &from, &to);
+    } else {
+      Extend(row, &from, &to);
+    }
+    const double air = from < to ? 0.06 * (to - from) : std::max(1e-9, 0.1 * std::abs(from));
+    return {from - air, to + air, kForestLeft, kForestRight};
+  }
+
+  void Row(const ForestRow& row, double y) {
+    const SvgScale scale = Scale(row);
+    svg_.Text(kForestLeft - 12, y + 4, row.name, "ink end");
+    svg_.Line(kForestLeft, y + 14, kForestRight, y + 14, "grid");
+    for (double tick : scale.Ticks(6)) {
+      svg_.Line(scale(tick), y + 14, scale(tick), y + 17, "axis");
+      svg_.Text(scale(tick), y + 26, Significant(tick, 6), "faint small middle");
+    }
+    if (row.unit != "1") svg_.Text(kForestRight + 8, y + 17, row.unit, "faint small");
+    double at = y - 3.0 * (static_cast<double>(row.intervals.size()) - 1.0);
+    for (const auto& [interval, look] : row.intervals) {
+      const double lower = std::isfinite(interval.lower) ? scale(interval.lower) : kForestLeft;
+      const double upper = std::isfinite(interval.upper) ? scale(interval.upper) : kForestRight;
+      svg_.Polyline({{lower, at}, {upper, at}}, look);
+      at += 6.0;
+    }
+    svg_.Circle(scale(row.value), y, 4.5, "ink", row.name + " = " + Significant(row.value));
+    if (!row.has_nominal) return;
+    const double x = scale(row.nominal);
+    svg_.Polyline({{x, y - 8}, {x + 5, y}, {x, y + 8}, {x - 5, y}, {x, y - 8}}, kNominalLook);
+  }
+
+  std::vector<ForestRow> rows_;
+  bool common_;
+  SvgPicture svg_;
+};
+
+const Agreement* Find(const std::vector<Agreement>& rows, const std::string& name) {
+  const auto found = std::find_if(rows.begin(), rows.end(),
+                                  [&name](const Agreement& row) { return row.name == name; });
+  return found == rows.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+ReportSection ParameterSection(const FitResult& result) {
+  ReportSection section{"parameters", "Parameters", {}, {}, {}, {}, {}, ""};
+  section.paragraphs = {HowSure(result), ConventionText(result)};
+  section.tables.push_back({"identified and held", EstimateTable(result)});
+  section.tables.push_back({"derived", DerivedTable(result)});
+  const std::vector<Agreement> agreements = CompareIntervals(result);
+  std::vector<ForestRow> rows;
+  TextTable numbers(
+      {"parameter", "unit", "value", "nominal", "clustered_lower95", "clustered_upper95",
+       "profile_lower95", "profile_upper95", "bootstrap_lower95", "bootstrap_upper95"},
+      std::vector<bool>(10, true));
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    const Agreement* agreement = Find(agreements, e.name);
+    ForestRow row{e.name, e.unit, e.value, spec->nominal, true, {}};
+    const Interval clustered{e.standard_error, e.lower95, e.upper95};
+    row.intervals.push_back({clustered, kClusteredLook});
+    std::vector<std::string> cells = {e.name, e.unit, DoubleText(e.value),
+                                      DoubleText(spec->nominal)};
+    const auto add = [&](const Interval* interval, const char* look) {
+      if (interval != nullptr && look != nullptr) row.intervals.push_back({*interval, look});
+      cells.push_back(interval == nullptr ? "" : DoubleText(interval->lower));
+      cells.push_back(interval == nullptr ? "" : DoubleText(interval->upper));
+    };
+    add(&clustered, nullptr);
+    const bool known = agreement != nullptr;
+    add(known && agreement->profile ? &*agreement->profile : nullptr, kProfileLook);
+    add(known && agreement->bootstrap ? &*agreement->bootstrap : nullptr, kBootstrapLook);
+    rows.push_back(row);
+    numbers.Add(cells);
+  }
+  std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
+  if (!result.profiles.empty()) legend.push_back({"profile", kProfileLook});
+  if (result.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
+  legend.push_back({"nominal", kNominalLook});
+  section.figures.push_back(
+      {"forest",
+       "Identified values (dots) with their 95 % intervals against the nominal values (diamonds). "
+       "Every row has its own scale; an open interval runs to the edge.",
+       Forest(rows, "parameters against nominal values", false).Draw(legend), numbers});
+  return section;
+}
+
+ReportSection UnitSection(const FitResult& result) {
+  const bool by_setting = !result.settings.empty();
+  ReportSection section{"units", by_setting ? "By setting" : "By subject", {}, {}, {}, {}, {}, ""};
+  const TextTable pooled = PooledTable(result);
+  if (pooled.rows().size() < 2) return section;
+  section.paragraphs = {
+      "Partially pooled: each differs from the shared value (diamond) as far as "
+      "its recordings insist."};
+  std::map<std::string, std::vector<ForestRow>> by_parameter;
+  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {
+    for (const auto& [name, e] : estimates) {
+      const double shared = result.parameters[result.options.table.Find(name)->id];
+      ForestRow row{unit, e.unit, e.value, shared, true, {}};
+      row.intervals.push_back({{e.standard_error, e.lower95, e.upper95}, kClusteredLook});
+      by_parameter[name].push_back(row);
+    }
+  };
+  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
+  for (const auto& [setting, estimates] : result.settings) add(setting, estimates);
+  const std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook},
+                                           {"shared value", kNominalLook}};
+  for (const auto& [name, rows] : by_parameter) {
+    TextTable numbers({"unit", "value", "lower95", "upper95", "shared"},
+                      std::vector<bool>(5, true));
+    for (const ForestRow& row : rows) {
+      const Interval& interval = row.intervals[0].first;
+      numbers.Add({row.name, DoubleText(row.value), DoubleText(interval.lower),
+                   DoubleText(interval.upper), DoubleText(row.nominal)});
+    }
+    section.folds.push_back(
+        {name,
+         {{"units_" + name, name + " by " + (by_setting ? "setting" : "subject"),
+           Forest(rows, name, true).Draw(legend), numbers}}});
+  }
+  section.tables.push_back({"", pooled});
+  return section;
+}
+
+}  // namespace pushid

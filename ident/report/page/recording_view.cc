@@ -1,0 +1,60 @@
+// ident: predicting what was recorded.
+#include "ident/report/page/recording_view.h"
+
+#include <algorithm>
+
+namespace pushid {
+namespace {
+
+constexpr int kBandSamples = 100;
+
+std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
+                   const Prediction& prediction) {
+  const auto fitted =
+      std::find_if(result.recordings.begin(), result.recordings.end(),
+                   [&recording](const FittedRecording& r) { return r.id == recording.id; });
+  std::string note;
+  if (fitted == result.recordings.end()) {
+    note = "not among the recordings that were fitted";
+  } else if (fitted->content_hash != recording.content_hash) {
+    note = "its files have changed since the fit";
+  }
+  if (prediction.status.ok) return note;
+  return note + (note.empty() ? "" : "; ") + std::string(prediction.status.quantity) +
+         " of person " + std::to_string(prediction.status.person) +
+         " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
+}
+
+}  // namespace
+
+std::vector<RecordingView> ViewRecordings(const FitResult& result,
+                                          const std::vector<Recording>& recordings, int num_threads,
+                                          const JobProgress& progress) {
+  const IdentifiedModel model = ModelOf(result);
+  std::vector<RecordingView> views(recordings.size());
+  std::vector<PendulumRecording> fitted;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    RecordingView& view = views[i];
+    view.recording = &recordings[i];
+    view.run.recording = MakePendulumRecording(recordings[i], model.mapping);
+    view.run.prediction = Predict(model, view.run.recording);
+    view.note = NoteOf(result, view.run.recording, view.run.prediction);
+    if (view.note.empty()) fitted.push_back(view.run.recording);
+  }
+  BandOptions options;
+  options.samples = kBandSamples;
+  const Result<std::vector<ParameterSet<double>>> samples = SampleParameters(result, options);
+  if (!samples.ok()) return views;
+  const std::vector<ErrorPath> errors = ErrorPaths(result, fitted);
+  ParallelFor(
+      static_cast<int>(views.size()), num_threads,
+      [&](int i) {
+        if (!views[i].run.prediction.status.ok) return;
+        views[i].bands =
+            ComputeBands(result, samples.value(), errors, views[i].run.recording, options.seed);
+      },
+      progress);
+  return views;
+}
+
+}  // namespace pushid

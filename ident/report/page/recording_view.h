@@ -1,0 +1,27 @@
+// ident: recordings seen through a model: what was measured, what is predicted from the first frame
+// and the push alone, how sure that is, and which forces do it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/manifest/recording.h"
+#include "ident/formations/formation_run.h"
+#include "ident/prediction/predictive_bands.h"
+#include "ident/problem/parallel.h"
+
+namespace pushid {
+
+struct RecordingView {
+  const Recording* recording = nullptr;  // with all joints where they were read
+  FormationRun run;                      // pendulums and prediction
+  PredictiveBands bands;                 // empty when the rollouts failed
+  std::string note;  // "not among those fitted", "its files have changed since", or a failure
+};
+
+// In the order given. The recordings must outlive the views.
+std::vector<RecordingView> ViewRecordings(const FitResult& result,
+                                          const std::vector<Recording>& recordings, int num_threads,
+                                          const JobProgress& progress = nullptr);
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// ident: what was fitted and what came of it; and where it came from.
+#include "ident/figures/text_table.h"
+#include "ident/parameters/option_names.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/report/page/sections.h"
+#include "ident/report/preparation_text.h"
+#include "ident/report/report_tables.h"
+#include "ident/report/report_text.h"
+
+namespace pushid {
+namespace {
+
+std::string Verdict(const FitResult& result) {
+  std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
+  int unsure = 0, free = 0;
+  for (const Estimate& e : result.estimates) {
+    free += e.status != EstimateStatus::kFixed;
+    unsure += e.status != EstimateStatus::kFixed && e.status != EstimateStatus::kIdentified;
+  }
+  text += std::to_string(free - unsure) + " of " + std::to_string(free) +
+          " free parameters are identified by the data. ";
+  const Behaviour& b = result.behaviour;
+  text += b.self_propelling ? "The fitted person drives herself and never stands still: do not use "
+                              "the gains."
+          : b.settles       ? "The fitted people stand again after every demonstration push."
+                            : "The fitted people are slow to stand again after some pushes.";
+  return text;
+}
+
+double MeanExplained(const FitResult& result) {
+  double sum = 0.0;
+  for (const RecordingDiagnostics& r : result.diagnostics.recordings) sum += r.explained;
+  return sum / static_cast<double>(std::max<size_t>(1, result.diagnostics.recordings.size()));
+}
+
+}  // namespace
+
+ReportSection SummarySection(const FitResult& result) {
+  ReportSection section{"summary", "Summary", {}, {}, {}, {}, {}, ""};
+  section.paragraphs.push_back(Verdict(result));
+  const FitOptions& o = result.options;
+  TextTable facts({"what", "value"}, {true, true});
+  facts.Add({"recordings", std::to_string(result.recordings.size()) + " (" + result.setting + ")"});
+  facts.Add({"preset", o.preset});
+  facts.Add({"posture", NameOf(o.model.posture)});
+  facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
+  facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
+  if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.self_network->rod)});
+  facts.Add({"interaction", NameOf(o.model.interaction)});
+  facts.Add({"cost", Significant(result.cost, 6)});
+  if (!result.diagnostics.recordings.empty()) {
+    facts.Add({"hip motion explained, mean over recordings",
+               Significant(MeanExplained(result), 3) + " %"});
+  }
+  section.tables.push_back({"", facts});
+  if (const std::string network = NetworkText(result); !network.empty()) {
+    section.paragraphs.push_back("Learned on top: " + network + ".");
+  }
+  const std::string prepared = PreparationText(result.configuration);
+  if (!prepared.empty()) section.paragraphs.push_back(prepared);
+  for (const std::string& warning : result.warnings) {
+    section.paragraphs.push_back("Warning: " + warning);
+  }
+  for (const std::string& warning : result.diagnostics.start.unit_warnings) {
+    section.paragraphs.push_back("Units? " + warning);
+  }
+  for (const Advice& advice : result.diagnostics.advice) {
+    section.advice.emplace_back(advice.sentence, advice.command);
+  }
+  return section;
+}
+
+ReportSection BehaviourSection(const FitResult& result) {
+  ReportSection section{"behaviour", "After a push", {}, {}, {}, {}, {}, ""};
+  section.paragraphs = {BehaviourText(result)};
+  section.tables.push_back({"demonstrations: pushed and left alone", BehaviourTable(result)});
+  return section;
+}
+
+ReportSection ProvenanceSection(const FitResult& result) {
+  ReportSection section{"provenance", "Where this comes from", {}, {}, {}, {}, {}, ""};
+  section.paragraphs = {"pushid " + result.version + ", manifest " + result.manifest + " (hash " +
+                        result.manifest_hash + ")"};
+  TextTable flags({"flag", "value"}, {true, true});
+  for (const auto& [name, value] : result.configuration) flags.Add({"--" + name, value});
+  section.tables.push_back({"flags of the fit (what is empty or negative is the preset's)", flags});
+  TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
+  for (const FittedRecording& r : result.recordings) {
+    files.Add({r.id, std::to_string(r.frames), r.content_hash});
+  }
+  section.tables.push_back({"recordings", files});
+  return section;
+}
+
+}  // namespace pushid

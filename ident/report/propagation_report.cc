@@ -1,0 +1,134 @@
+// ident: propagation as JSON and as tables.
+#include "ident/figures/text_table.h"
+#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_text.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json MeanJson(const PropagationMean& mean) {
+  if (!mean.known()) return nullptr;
+  return {{"value", mean.value}, {"standard_error", mean.error}, {"of", mean.weight}};
+}
+
+Json SpeedJson(const PropagationMean& slowness) {
+  const std::optional<PropagationMean> speed = Speed(slowness);
+  return speed ? MeanJson(*speed) : Json(nullptr);
+}
+
+std::string MeanText(const PropagationMean& mean) {
+  if (!mean.known()) return "-";
+  const std::string value = Significant(mean.value, 3);
+  return mean.error > 0.0 ? value + " +- " + Significant(mean.error, 2) : value;
+}
+
+std::string SpeedText(const PropagationMean& slowness) {
+  const std::optional<PropagationMean> speed = Speed(slowness);
+  return speed ? MeanText(*speed) : (slowness.known() ? "undefined" : "-");
+}
+
+// The onset errors of those who move in both say little where most movers are missed: a model that
+// moves only the pushed person would look best.
+bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
+
+bool OfThoseWhoMoveInBoth(int figure) {
+  return figure == kOnsetError || figure == kOnsetErrorReached || figure == kOnsetBias;
+}
+
+std::string CountsText(double part, double whole) {
+  return Significant(part, 3) + " of " + Significant(whole, 4);
+}
+
+std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
+
+}  // namespace
+
+Json ToJson(const PropagationSummary& summary) {
+  Json json = {{"recordings", summary.recordings},
+               {"onset_distance_m", kOnsetDistance},
+               {"movers", summary.movers},
+               {"bystanders", summary.bystanders},
+               {"missed_movers", summary.missed_movers},
+               {"false_movers", summary.false_movers}};
+  for (int i = 0; i < kNumPropagationFigures; ++i) {
+    json[Info(static_cast<PropagationFigure>(i)).key] = MeanJson(summary.figures[i]);
+  }
+  json["speed_measured_m_per_s"] = SpeedJson(summary.figures[kSlownessMeasured]);
+  json["speed_predicted_m_per_s"] = SpeedJson(summary.figures[kSlownessPredicted]);
+  return json;
+}
+
+Json PeopleJson(const PropagationScore& score) {
+  Json json = Json::array();
+  for (const PersonPropagation& person : score.people) {
+    json.push_back({{"rank", person.rank},
+                    {"distance_m", person.distance},
+                    {"onset_measured_frame", person.onset_measured},
+                    {"onset_predicted_frame", person.onset_predicted},
+                    {"peak_momentum_measured_N_s", person.peak_momentum_measured},
+                    {"peak_momentum_predicted_N_s", person.peak_momentum_predicted},
+                    {"impulse_passed_on_N_s", person.impulse_on},
+                    {"contact_work_J", person.contact_work}});
+  }
+  return json;
+}
+
+std::string PropagationText(const std::vector<PropagationColumn>& columns) {
+  std::vector<std::string> header = {"propagation"};
+  for (const PropagationColumn& column : columns) header.push_back(column.name);
+  TextTable table(header, std::vector<bool>(header.size(), true));
+  auto row = [&](const std::string& title, auto&& cell) {
+    std::vector<std::string> cells = {title};
+    for (const PropagationColumn& column : columns) cells.push_back(cell(*column.summary));
+    table.Add(cells);
+  };
+  using S = PropagationSummary;
+  row("recordings", [](const S& s) { return std::to_string(s.recordings); });
+  row("missed movers", [](const S& s) { return CountsText(s.missed_movers, s.movers); });
+  row("false movers", [](const S& s) { return CountsText(s.false_movers, s.bystanders); });
+  for (int i = 0; i < kNumPropagationFigures; ++i) {
+    bool any = false;
+    for (const PropagationColumn& column : columns) any |= column.summary->figures[i].known();
+    if (!any) continue;
+    row(Info(static_cast<PropagationFigure>(i)).title, [i](const S& s) {
+      return OfThoseWhoMoveInBoth(i) && MostMissed(s) ? "-" : MeanText(s.figures[i]);
+    });
+    if (i == kSlownessMeasured || i == kSlownessPredicted) {
+      row("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });
+    }
+  }
+  std::string text = table.ToString();
+  for (const PropagationColumn& column : columns) {
+    if (!MostMissed(*column.summary)) continue;
+    return text + "onset error -: most movers are missed; see the row that counts them\n";
+  }
+  return text;
+}
+
+std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
+  const PropagationMean& onset = s.figures[kOnsetError];
+  const bool says = onset.known() && !MostMissed(s);
+  return {says ? Significant(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
+          CountsText(s.false_movers, s.bystanders)};
+}
+
+std::string OnsetsText(const std::vector<RecordingScore>& scores) {
+  TextTable table({"onset frames", "measured / predicted, from the pushed person on"},
+                  {true, true});
+  for (const RecordingScore& score : scores) {
+    std::vector<std::string> by_rank(score.propagation.people.size());
+    for (const PersonPropagation& person : score.propagation.people) {
+      by_rank[person.rank] =
+          OnsetText(person.onset_measured) + "/" + OnsetText(person.onset_predicted);
+    }
+    std::string line;
+    for (const std::string& cell : by_rank)
+      line += cell + std::string(9 - std::min<size_t>(8, cell.size()), ' ');
+    if (!line.empty()) table.Add({score.id, line});
+  }
+  return table.ToString();
+}
+
+}  // namespace pushid

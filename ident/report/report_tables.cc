@@ -1,0 +1,206 @@
+// ident: tables and sentences of a result.
+#include "ident/report/report_tables.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/figures/text_table.h"
+#include "ident/parameters/option_names.h"
+
+namespace pushid {
+
+bool SettingsDiffer(const Behaviour& behaviour) {
+  return std::any_of(behaviour.demonstrations.begin(), behaviour.demonstrations.end(),
+                     [](const Demonstration& d) { return !d.setting.empty(); });
+}
+
+namespace {
+
+std::string Interval(double lower, double upper) {
+  return "[" + Significant(lower) + ", " + Significant(upper) + "]";
+}
+
+std::string SettlingText(const Behaviour& b) {
+  if (b.settles) {
+    const bool lines = std::any_of(b.demonstrations.begin(), b.demonstrations.end(),
+                                   [](const Demonstration& d) { return d.people > 1; });
+    return std::string(
+               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within "
+               "two seconds") +
+           (lines ? "; so do lines of five after 4, 20 and 80 N s\n" : "\n");
+  }
+  std::string text = "NOT SETTLING, two seconds after a push:\n";
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.settled) continue;
+    text += "  " + DemonstrationName(d, SettingsDiffer(b)) + ": " +
+            (d.fell ? "fell"
+                    : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
+                          " rad from rest") +
+            "\n";
+  }
+  return text;
+}
+
+// Settings in which a harder push does not move the line on farther.
+std::string NoFartherText(const Behaviour& b) {
+  if (b.harder_moves_farther) return "";
+  std::string where;
+  const Demonstration* before = nullptr;
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.people == 1) continue;
+    const std::string name = d.setting.empty() ? "shared values" : d.setting;
+    const bool harder = before != nullptr && before->setting == d.setting;
+    if (harder && d.advance <= before->advance && where.find(name) == std::string::npos) {
+      where += (where.empty() ? ": " : ", ") + name;
+    }
+    before = &d;
+  }
+  return "a harder push does NOT move the line on farther" + (SettingsDiffer(b) ? where : "") +
+         "\n";
+}
+
+}  // namespace
+
+std::string DemonstrationName(const Demonstration& d, bool settings_differ) {
+  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
+  const std::string where = !d.setting.empty() ? d.setting + ": "
+                            : settings_differ  ? "shared values: "
+                                               : "";
+  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+}
+
+TextTable EstimateTable(const FitResult& result) {
+  TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
+                   "naive error", "prior"},
+                  {true, false, false, true, true, true, false, true});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed) {
+      table.Add({e.name, Significant(e.value), "-", "-", e.unit, "fixed", "-", ""});
+      continue;
+    }
+    const std::string prior =
+        spec != nullptr && spec->prior
+            ? Significant(spec->prior->mean, 3) + " +- " + Significant(spec->prior->sigma, 3)
+            : "";
+    const bool unknown = e.status == EstimateStatus::kUnidentifiable;
+    table.Add({e.name, Significant(e.value),
+               unknown ? "infinite" : Significant(e.standard_error, 3),
+               unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
+               unknown ? "infinite" : Significant(e.standard_error_naive, 3), prior});
+  }
+  return table;
+}
+
+std::string HowSure(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
+  const std::string few = u.too_few_clusters
+                              ? "no more recordings than free parameters: clustered errors are "
+                                "rough, no parameter counts "
+                                "as identified, and correlations are those of independent frames\n"
+                              : "";
+  return few + "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
+         "; Student's t = " + Significant(u.t_quantile, 3) + "); naive ones beside them\n";
+}
+
+TextTable DerivedTable(const FitResult& result) {
+  TextTable table({"derived", "value", "std error", "95 % interval", "unit"},
+                  {true, false, false, true, true});
+  for (const Combination& c : result.derived) {
+    const bool fixed = c.standard_error == 0.0;
+    table.Add({c.name, Significant(c.value), fixed ? "-" : Significant(c.standard_error, 3),
+               fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
+  }
+  return table;
+}
+
+std::string ConventionText(const FitResult& result) {
+  const ParameterTable& specs = result.options.table;
+  const std::string held = specs[kKpX].free || specs[kKpY].free
+                               ? "Here Kp is fitted too."
+                               : "Convention: Kp_x = " + Significant(result.parameters[kKpX]) +
+                                     ", Kp_y = " + Significant(result.parameters[kKpY]) +
+                                     " N s/m held, mu = c - Kp.";
+  return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " + held +
+         "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
+         NameOf(result.options.model.gain_scaling) + ").\n";
+}
+
+std::string CorrelationText(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  std::string text;
+  for (int i = 0; i < u.correlation.rows(); ++i) {
+    for (int j = i + 1; j < u.correlation.cols(); ++j) {
+      if (std::abs(u.correlation(i, j)) < 0.9) continue;
+      if (u.estimates[j].name.find('[') != std::string::npos) continue;  // a unit's deviation
+      text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
+              Significant(u.correlation(i, j), 2) + "\n";
+    }
+  }
+  return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
+}
+
+std::string BehaviourText(const FitResult& result) {
+  const Behaviour& b = result.behaviour;
+  return SettlingText(b) + NoFartherText(b) +
+         "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
+         (b.unstable() ? "UNSTABLE" : "stable") + ")\n";
+}
+
+TextTable LinesTable(const FitResult& result) {
+  TextTable table({"a line pushed forwards, two seconds later", "all moved on, m", "the pushed, m",
+                   "either way, m"},
+                  {true, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const Demonstration& d : result.behaviour.demonstrations) {
+    if (d.people == 1) continue;
+    table.Add({DemonstrationName(d, differ), Significant(d.advance, 2),
+               Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
+  }
+  return table;
+}
+
+TextTable BehaviourTable(const FitResult& result) {
+  TextTable table({"demonstration", "two seconds after the push", "m/s", "rad from rest",
+                   "m moved on", "the pushed, m"},
+                  {true, true, false, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const Demonstration& d : result.behaviour.demonstrations) {
+    table.Add({DemonstrationName(d, differ),
+               d.fell      ? "fell"
+               : d.settled ? "stands"
+                           : "still moving",
+               Significant(d.speed, 2), Significant(d.lean, 2), Significant(d.advance, 2),
+               Significant(d.pushed_advance, 2)});
+  }
+  return table;
+}
+
+TextTable PooledTable(const FitResult& result) {
+  const bool by_setting = !result.settings.empty();
+  std::vector<std::string> header = {by_setting ? "setting" : "subject"};
+  std::vector<bool> left = {true};
+  if (!by_setting) header.push_back("kg"), left.push_back(false);
+  header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
+  left.insert(left.end(), {true, false, false, true, true});
+  TextTable table(header, left);
+  const auto add = [&table](const std::vector<std::string>& unit,
+                            const std::map<std::string, Estimate>& pooled) {
+    for (const auto& [name, e] : pooled) {
+      std::vector<std::string> row = unit;
+      row.insert(row.end(), {name, Significant(e.value), Significant(e.standard_error, 3),
+                             Interval(e.lower95, e.upper95), e.unit});
+      table.Add(row);
+    }
+  };
+  if (!by_setting) {
+    for (const auto& [id, subject] : result.subjects) {
+      add({id, Significant(subject.mass_kg)}, subject.pooled);
+    }
+  }
+  for (const auto& [setting, pooled] : result.settings) add({setting}, pooled);
+  return table;
+}
+
+}  // namespace pushid

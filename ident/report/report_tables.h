@@ -1,0 +1,37 @@
+// ident: what a result says, as tables and sentences: the terminal's report and the page show the
+// same ones. Pure functions of the result; empty where there is nothing to say.
+#pragma once
+
+#include <string>
+
+#include "ident/figures/text_table.h"
+#include "ident/results/fit_result.h"
+
+namespace pushid {
+
+TextTable EstimateTable(const FitResult& result);
+std::string HowSure(const FitResult& result);
+
+// c_x, c_y and gains per mass, and by which convention mu is told from Kp.
+TextTable DerivedTable(const FitResult& result);
+std::string ConventionText(const FitResult& result);
+
+// Values of each subject or setting; only a header where nothing is pooled.
+TextTable PooledTable(const FitResult& result);
+
+// Pairs of parameters that the data separate poorly.
+std::string CorrelationText(const FitResult& result);
+
+// "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
+// for the shared values and say so.
+bool SettingsDiffer(const Behaviour& behaviour);
+std::string DemonstrationName(const Demonstration& d, bool settings_differ);
+
+// What people do after a push, in words, and demonstration by demonstration.
+std::string BehaviourText(const FitResult& result);
+// Where lines that are pushed forwards at their first person end up; only a header where nobody
+// touches.
+TextTable LinesTable(const FitResult& result);
+TextTable BehaviourTable(const FitResult& result);
+
+}  // namespace pushid

@@ -1,0 +1,111 @@
+// ident: the report for a terminal.
+#include "ident/report/report_text.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "ident/figures/text_table.h"
+#include "ident/parameters/option_names.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/report/confidence_text.h"
+#include "ident/report/preparation_text.h"
+#include "ident/report/report_tables.h"
+#include "ident/report/starts_text.h"
+#include "ident/solver/large_network_stage.h"
+
+namespace pushid {
+namespace {
+
+std::string Count(int number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+std::string PoolingText(const FitOptions& options) {
+  for (const ParameterSpec& spec : options.table.specs) {
+    if (spec.free && spec.pooled) return ", pooled by " + NameOf(options.pool_by);
+  }
+  return "";
+}
+
+std::string SelfFromText(const FitResult& result) {
+  const auto from = result.configuration.find("self_from");
+  if (from == result.configuration.end() || from->second.empty()) return "";
+  return ", self parameters from " + from->second;
+}
+
+std::string TrainingText(const FitOptions& o) {
+  std::string text =
+      o.network_prior > 0.0 ? "prior " + Significant(o.network_prior) : std::string("no prior");
+  if (o.early_stopping > 0.0) {
+    text += ", stopped early by " + Significant(100.0 * o.early_stopping) + " % of the recordings";
+  }
+  if (o.takeover_weight > 0.0) text += ", takeover weight " + Significant(o.takeover_weight);
+  if (o.model.self_network->num_weights() > kMostGaussNewtonWeights) {
+    text += ", held while the errors above were computed";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string NetworkText(const FitResult& result) {
+  const auto& network = result.options.model.self_network;
+  if (network == nullptr) return "";
+  std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
+                     Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) +
+                     ")";
+  if (!result.others.empty()) {
+    text += ", the first of " + std::to_string(result.others.size() + 1) +
+            " seeds; predictions are their median";
+  }
+  if (!result.takeover) return text;
+  const Takeover& t = *result.takeover;
+  const auto signed_number = [](double value) {
+    return (value < 0.0 ? "" : "+") + Significant(value, 3);
+  };
+  return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
+         signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
+         " N m s/rad beside those above;\n  its force on the cart is " +
+         Significant(t.rms_force, 2) + " m/s^2 times the mass (root mean square)";
+}
+
+std::string ReportText(const FitResult& result) {
+  const FitOptions& o = result.options;
+  std::string text = "pushid " + result.version + ", preset " + o.preset + ": " +
+                     Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
+                     result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
+                     NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
+                     ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
+                     (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") +
+                     ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
+                     SelfFromText(result) + "\n\n";
+  text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
+          DerivedTable(result).ToString() + ConventionText(result) + "\n";
+  for (const NullDirection& n : result.uncertainty.null_directions) {
+    text += "unidentifiable: " + n.sentence + "\n";
+  }
+  const TextTable agreement = AgreementTable(result);
+  if (agreement.rows().size() > 1) {
+    text += agreement.ToString() + AgreementNote(result) + "\n";
+  }
+  if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
+  text += CorrelationText(result);
+  const TextTable pooled = PooledTable(result);
+  if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
+  text += BehaviourText(result);
+  const TextTable lines = LinesTable(result);
+  if (lines.rows().size() > 1) text += lines.ToString();
+  text += "\n";
+  text += "cost " + Significant(result.cost, 6) + " after " +
+          Count(result.starts[result.best_start].iterations, "iteration") + " from " +
+          Count(static_cast<int>(result.starts.size()), "start") + "; " +
+          (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  text += PreparationText(result.configuration);
+  text += AcrossStartsText(result);
+  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  const std::string diagnostics = DiagnosticsText(result);
+  if (!diagnostics.empty()) text += "\n" + diagnostics;
+  return text;
+}
+
+}  // namespace pushid

@@ -1,0 +1,18 @@
+// ident: a fit's result in words and tables for a terminal: a pure function of the result.
+#pragma once
+
+#include <string>
+
+#include "ident/results/fit_result.h"
+
+namespace pushid {
+
+// The parameter table, what is derived, what the data cannot tell apart, what the fitted person
+// does after a push, warnings.
+std::string ReportText(const FitResult& result);
+
+// What is learned on top of the physics, and what it acts like; no line break at the end, and empty
+// where nothing is.
+std::string NetworkText(const FitResult& result);
+
+}  // namespace pushid

@@ -1,0 +1,22 @@
+// ident: profiles, bootstrap and diagnostics as JSON, without loss.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/profile.h"
+
+namespace pushid {
+
+nlohmann::ordered_json ToJson(const std::vector<Profile>& profiles);
+nlohmann::ordered_json ToJson(const Bootstrap& bootstrap);
+nlohmann::ordered_json ToJson(const Diagnostics& diagnostics);
+
+// These throw std::exception on damaged input, as the parts of a reader do.
+std::vector<Profile> ProfilesFromJson(const nlohmann::ordered_json& json);
+Bootstrap BootstrapFromJson(const nlohmann::ordered_json& json);
+Diagnostics DiagnosticsFromJson(const nlohmann::ordered_json& json);
+
+}  // namespace pushid

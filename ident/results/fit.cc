@@ -1,0 +1,264 @@
+// ident: a whole fit, from recordings to a judged result.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/figures/text_table.h"
+#include "ident/report/report_tables.h"
+#include "ident/results/fit_result.h"
+#include "ident/solver/large_network_stage.h"
+
+namespace pushid {
+namespace {
+
+std::string Describe(const RolloutStatus& status) {
+  return std::string(status.quantity) + " of person " + std::to_string(status.person) +
+         " leaves the model's domain at frame " + std::to_string(status.frame);
+}
+
+// Rows of the table: every free parameter, and every fixed one that acts.
+std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
+                                       const ParameterSet<double>& values,
+                                       const Uncertainty& uncertainty) {
+  std::vector<Estimate> rows;
+  const FitOptions& options = problem.options();
+  for (const ParameterSpec& spec : options.table.specs) {
+    const auto& fitted = problem.map().fitted;
+    const auto at = std::find_if(fitted.begin(), fitted.end(), [&spec](const FittedParameter& f) {
+      return f.parameter == spec.id;
+    });
+    if (at != fitted.end()) {
+      rows.push_back(uncertainty.estimates[static_cast<size_t>(at - fitted.begin())]);
+      continue;
+    }
+    // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
+    const bool convention = spec.id == kKpX || spec.id == kKpY;
+    const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
+    const bool acts = Acts(spec.id, options.model) && (!zero || convention);
+    if (!acts) continue;
+    Estimate fixed;
+    fixed.name = spec.name;
+    fixed.unit = spec.unit;
+    fixed.value = fixed.lower95 = fixed.upper95 = values[spec.id];
+    fixed.status = EstimateStatus::kFixed;
+    rows.push_back(fixed);
+  }
+  return rows;
+}
+
+std::vector<Combination> Derived(const FitProblem& problem, const FitPoint& point,
+                                 const Uncertainty& u) {
+  std::vector<Combination> derived;
+  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+    derived.push_back(Combine(problem, point, u, spec));
+  }
+  return derived;
+}
+
+// The pooled parameters of every unit: shared value and deviation together.
+std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitProblem& problem,
+                                                                    const FitPoint& point,
+                                                                    const Uncertainty& u) {
+  std::map<std::string, std::map<std::string, Estimate>> pooled;
+  const auto& fitted = problem.map().fitted;
+  int first = static_cast<int>(point.shared.size());
+  for (const auto& [unit, deviations] : point.unit) {
+    const ParameterSet<double> values = problem.Parameters(point, unit);
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].deviation < 0) continue;
+      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+      const int a = static_cast<int>(i), b = first + fitted[i].deviation;
+      const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
+      const double error = std::sqrt(std::max(0.0, variance));
+      Estimate e;
+      e.name = spec.name;
+      e.unit = spec.unit;
+      e.value = values[spec.id];
+      const double center = ToFitted(spec.transform, e.value);
+      e.standard_error = error * TransformSlope(spec.transform, e.value);
+      e.lower95 = ToNatural(spec.transform, center - u.t_quantile * error);
+      e.upper95 = ToNatural(spec.transform, center + u.t_quantile * error);
+      pooled[unit][spec.name] = e;
+    }
+    first += static_cast<int>(deviations.size());
+  }
+  return pooled;
+}
+
+void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result) {
+  for (const PendulumRecording& recording : problem.recordings()) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      result->subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
+    }
+  }
+  const auto pooled = PooledByUnit(problem, point, result->uncertainty);
+  if (problem.options().pool_by == PoolBy::kSetting) {
+    result->settings = pooled;
+  } else {
+    for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
+  }
+}
+
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best) {
+  std::vector<FittedRecording> fitted;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    FittedRecording one;
+    one.id = recording.id;
+    one.content_hash = recording.content_hash;
+    one.frames = recording.num_frames();
+    one.people = recording.num_people();
+    fitted.push_back(one);
+  }
+  for (const FailedRollout& failed : best.failed) {
+    fitted[failed.recording].failure = Describe(failed.status);
+  }
+  FitPoint copy = best.to;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  for (const auto& [id, cluster] : built.blocks) {
+    if (cluster < 0) continue;
+    double cost = 0.0;
+    built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
+    fitted[cluster].cost = cost;
+  }
+  return fitted;
+}
+
+std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
+  std::vector<std::string> warnings;
+  for (const FittedRecording& recording : result.recordings) {
+    if (!recording.failure.empty()) {
+      warnings.push_back("recording " + recording.id + ": " + recording.failure +
+                         "; only the frames before it were fitted");
+    }
+  }
+  if (!result.converged) warnings.push_back("the solver stopped before it converged");
+  if (RodRunsAway(result)) {
+    warnings.push_back("self-propelling: the rod or the person with it runs away from rest at " +
+                       Significant(result.behaviour.fastest_growth, 2) +
+                       " 1/s; such a fit predicts nothing beyond the data (a smaller "
+                       "--network_prior or --rod=constant holds it)");
+  } else if (result.behaviour.self_propelling) {
+    warnings.push_back(
+        "self-propelling: the fitted person drives herself after a push; such a fit may score well "
+        "and predicts nothing beyond the data (--settling_weight holds it to settle)");
+  } else if (!result.behaviour.settles) {
+    warnings.push_back(
+        "slow to settle: the fitted person stands again later than two seconds after "
+        "some pushes (--settling_weight holds it to settle sooner)");
+  }
+  if (const Demonstration* d = result.behaviour.FarthestBehind()) {
+    warnings.push_back("pushed forwards by " + Significant(d->impulse) + " N s, the pushed person" +
+                       (d->people > 1 ? " of the line" : "") + " ends " +
+                       Significant(-d->pushed_advance, 2) + " m behind the start (" +
+                       DemonstrationName(*d, SettingsDiffer(result.behaviour)) + ")");
+  }
+  if (result.uncertainty.num_clusters == 1) {
+    warnings.push_back("a single recording: errors cannot be clustered and are too small");
+  }
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " stands at its bound");
+  }
+  const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
+  if (has_tail && TailCannotAct(problem.recordings())) {
+    warnings.push_back(
+        "every push is external (measured whole): the push tail does not act; where a push is not "
+        "all of what pushed, say so by push_kind (net) in the manifest");
+  }
+  return warnings;
+}
+
+// What is known of a network's weights says nothing to anybody and fills files: from here on the
+// covariance is that of everything else, whatever the weights are.
+void ForgetWeights(Eigen::Index weights, FitResult* result) {
+  if (weights == 0) return;
+  Uncertainty& u = result->uncertainty;
+  const Eigen::Index size = u.covariance.rows() - weights;
+  u.covariance = u.covariance.topLeftCorner(size, size).eval();
+  u.correlation = u.correlation.topLeftCorner(size, size).eval();
+  u.estimates.resize(size);
+  result->nuisance.resize(result->nuisance.size() - weights);
+}
+
+}  // namespace
+
+FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+              const SolveProgress& progress) {
+  FitResult result;
+  result.options = options;
+  if (NeedsGradientTraining(options)) {
+    const Result<FitOptions> trained = TrainLargeNetwork(recordings, options, progress);
+    if (trained.ok()) return Fit(recordings, trained.value(), progress);
+    result.message = trained.error().ToString();
+    return result;
+  }
+  const FitProblem problem(recordings, options);
+  const Solution solution = Solve(problem, progress);
+  result.starts = solution.starts;
+  result.best_start = solution.best;
+  result.solve_seconds = solution.seconds;
+  if (!result.ok()) {
+    result.message = "no start could be solved: " + solution.starts[0].message;
+    return result;
+  }
+  const SolveStart& best = solution.Best();
+  result.converged = best.converged;
+  result.cost = best.cost;
+  result.message = best.message;
+  result.options.model = problem.ModelAt(best.to);
+  result.parameters = problem.Parameters(best.to, "");
+  if (const auto& network = result.options.model.self_network; network && network->shape.any()) {
+    result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
+  }
+  if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
+  result.uncertainty = ComputeUncertainty(problem, best.to);
+  result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
+  result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
+                         result.uncertainty.estimates.end());
+  result.derived = Derived(problem, best.to, result.uncertainty);
+  AddUnits(problem, best.to, &result);
+  result.diagnostics = Diagnose(problem, best, result.uncertainty);
+  result.behaviour = problem.BehaviourAt(best.to);
+  result.recordings = FittedRecordings(problem, best);
+  result.warnings = Warnings(problem, result);
+  ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
+  return result;
+}
+
+bool RodRunsAway(const FitResult& result) {
+  const Behaviour& b = result.behaviour;
+  return RodMoves(result.options.model) && b.unstable() && b.settles;
+}
+
+IdentifiedModel ModelOf(const FitResult& result) {
+  IdentifiedModel model;
+  model.options = result.options.model;
+  model.mapping = result.options.mapping;
+  model.table = result.options.table;
+  model.parameters = result.parameters;
+  model.others = result.others;
+  model.pool_by = result.options.pool_by;
+  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
+    if (pooled.empty()) return;
+    ParameterSet<double>& own = model.by_unit[unit] = result.parameters;
+    for (const auto& [name, estimate] : pooled) own[model.table.Find(name)->id] = estimate.value;
+  };
+  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) add(setting, pooled);
+  return model;
+}
+
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
+  const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
+  if (!values.ok()) return values.error();
+  TableEdits edits;
+  edits.set = assignments;
+  if (MaybeError error = EditTable(edits, &model->table)) return error;
+  for (const NamedValue& named : values.value()) {
+    const Parameter id = model->table.Find(named.name)->id;
+    model->parameters[id] = named.value;
+    for (auto& [unit, own] : model->by_unit) own[id] = named.value;
+    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// ident: pieces of result JSON.
+#include "ident/results/json_pieces.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace pushid {
+
+using Json = nlohmann::ordered_json;
+
+Json NumberJson(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return "nan";
+  return value > 0 ? "infinity" : "-infinity";
+}
+
+double NumberFrom(const Json& json) {
+  if (json.is_number()) return json.get<double>();
+  const std::string text = json.get<std::string>();
+  if (text == "infinity") return std::numeric_limits<double>::infinity();
+  if (text == "-infinity") return -std::numeric_limits<double>::infinity();
+  if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
+  throw std::runtime_error("'" + text + "' is no number");
+}
+
+Json NumbersJson(const std::vector<double>& values) {
+  Json row = Json::array();
+  for (double value : values) row.push_back(NumberJson(value));
+  return row;
+}
+
+std::vector<double> NumbersFrom(const Json& json) {
+  std::vector<double> values;
+  for (const Json& value : json) values.push_back(NumberFrom(value));
+  return values;
+}
+
+Json RowsJson(const std::vector<std::vector<double>>& rows) {
+  Json all = Json::array();
+  for (const std::vector<double>& row : rows) all.push_back(NumbersJson(row));
+  return all;
+}
+
+std::vector<std::vector<double>> RowsFrom(const Json& json) {
+  std::vector<std::vector<double>> rows;
+  for (const Json& row : json) rows.push_back(NumbersFrom(row));
+  return rows;
+}
+
+Json CombinationJson(const Combination& c) {
+  return {{"name", c.name},
+          {"value", NumberJson(c.value)},
+          {"standard_error", NumberJson(c.standard_error)},
+          {"interval_95", {NumberJson(c.lower95), NumberJson(c.upper95)}},
+          {"unit", c.unit}};
+}
+
+Combination CombinationFrom(const Json& json) {
+  const auto& interval = json.at("interval_95");
+  return {json.at("name"),
+          json.at("unit"),
+          NumberFrom(json.at("value")),
+          NumberFrom(json.at("standard_error")),
+          NumberFrom(interval.at(0)),
+          NumberFrom(interval.at(1))};
+}
+
+Json NullDirectionsJson(const std::vector<NullDirection>& directions) {
+  Json rows = Json::array();
+  for (const NullDirection& n : directions) {
+    Json identified = Json::array();
+    for (const Combination& c : n.identified) identified.push_back(CombinationJson(c));
+    rows.push_back({{"parameters", n.parameters},
+                    {"coefficients", NumbersJson(n.coefficients)},
+                    {"identified", identified},
+                    {"sentence", n.sentence}});
+  }
+  return rows;
+}
+
+std::vector<NullDirection> NullDirectionsFrom(const Json& json) {
+  std::vector<NullDirection> directions;
+  for (const Json& n : json) {
+    NullDirection direction;
+    direction.parameters = n.at("parameters").get<std::vector<std::string>>();
+    direction.coefficients = NumbersFrom(n.at("coefficients"));
+    for (const Json& c : n.at("identified")) direction.identified.push_back(CombinationFrom(c));
+    direction.sentence = n.at("sentence");
+    directions.push_back(direction);
+  }
+  return directions;
+}
+
+}  // namespace pushid

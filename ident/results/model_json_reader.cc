@@ -1,0 +1,273 @@
+// ident: FitResult from JSON. model_json_writer.cc is the inverse.
+#include <algorithm>
+
+#include "datasets/files/json_file.h"
+#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/network_json.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/results/confidence_json.h"
+#include "ident/results/json_pieces.h"
+#include "ident/results/result_json.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Estimate EstimateFrom(const Json& json) {
+  Estimate e;
+  e.name = json.at("name");
+  e.value = NumberFrom(json.at("value"));
+  e.standard_error = NumberFrom(json.at("standard_error"));
+  e.standard_error_naive = NumberFrom(json.at("standard_error_naive"));
+  e.lower95 = NumberFrom(json.at("interval_95").at(0));
+  e.upper95 = NumberFrom(json.at("interval_95").at(1));
+  e.unit = json.at("unit");
+  e.status = EnumFrom<EstimateStatus>(json, "status");
+  return e;
+}
+
+Eigen::MatrixXd MatrixFrom(const Json& json) {
+  Eigen::MatrixXd matrix(json.size(), json.empty() ? 0 : json[0].size());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = NumberFrom(json.at(i).at(j));
+  }
+  return matrix;
+}
+
+// A model written before there was such a parameter, which its table does not name then, has its
+// nominal value: nothing it did used it.
+double ValueFrom(const Json& values, const Json& table, const ParameterSpec& spec) {
+  const bool known = std::any_of(table.begin(), table.end(),
+                                 [&spec](const Json& row) { return row.at("name") == spec.name; });
+  return known ? values.at(spec.name).get<double>() : spec.nominal;
+}
+
+EnsembleMember MemberFrom(const Json& json, const Json& rows, const ParameterTable& table) {
+  EnsembleMember member;
+  for (const ParameterSpec& spec : table.specs) {
+    member.parameters[spec.id] = ValueFrom(json.at("values"), rows, spec);
+  }
+  member.network = SelfNetworkFromJson(json.at("self_network"));
+  return member;
+}
+
+Behaviour BehaviourFrom(const Json& json) {
+  Behaviour b;
+  b.settles = json.at("settles");
+  b.self_propelling = json.at("self_propelling");
+  b.fastest_growth = NumberFrom(json.at("fastest_growth_per_s"));
+  b.harder_moves_farther = json.at("harder_moves_farther");
+  for (const Json& from : json.at("demonstrations")) {
+    Demonstration d;
+    d.setting = from.at("setting");
+    d.people = from.at("people");
+    d.mass = from.at("mass_kg");
+    d.impulse = from.at("impulse_Ns");
+    d.speed = NumberFrom(from.at("speed_m_s"));
+    d.lean = NumberFrom(from.at("lean_rad"));
+    d.distance = NumberFrom(from.at("distance_m"));
+    // Models written before these were kept.
+    d.advance = NumberFrom(from.value("advance_m", Json(0.0)));
+    d.pushed_advance = NumberFrom(from.value("pushed_advance_m", Json(0.0)));
+    d.fell = from.at("fell");
+    d.settled = from.at("settled");
+    b.demonstrations.push_back(d);
+  }
+  return b;
+}
+
+Uncertainty UncertaintyFrom(const Json& json) {
+  Uncertainty u;
+  u.clustered = json.at("clustered_by") == "recording";
+  u.num_clusters = json.at("clusters");
+  u.num_residuals = json.at("residuals");
+  u.full_hessian = json.value("full_hessian", false);
+  u.sigma = NumberFrom(json.at("sigma"));
+  u.t_quantile = NumberFrom(json.at("t_quantile"));
+  u.freedom = json.at("freedom");
+  u.too_few_clusters = json.at("too_few_clusters");
+  u.condition_number = NumberFrom(json.at("condition_number"));
+  u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
+  u.correlation = MatrixFrom(json.at("correlation"));
+  u.null_directions = NullDirectionsFrom(json.at("null_directions"));
+  return u;
+}
+
+std::vector<SolveStart> StartsFrom(const Json& json) {
+  std::vector<SolveStart> starts;
+  for (const Json& s : json) {
+    SolveStart start;
+    start.kind = s.at("kind");
+    start.usable = s.at("usable");
+    start.converged = s.at("converged");
+    start.cost = NumberFrom(s.at("cost"));
+    start.iterations = s.at("iterations");
+    start.failed.resize(s.at("failed_rollouts"));
+    // One flat row: the result knows no longer which block each number came from.
+    start.from.shared = NumbersFrom(s.at("from_fitted_scale"));
+    start.to.shared = NumbersFrom(s.at("to_fitted_scale"));
+    for (const Json& stage : s.at("stages")) {
+      start.stages.push_back({stage.at("horizon"),
+                              stage.at("iterations"),
+                              NumberFrom(stage.at("initial_cost")),
+                              NumberFrom(stage.at("final_cost")),
+                              stage.at("converged"),
+                              {}});
+    }
+    start.message = s.at("message");
+    starts.push_back(start);
+  }
+  return starts;
+}
+
+// What the types alone do not ensure and readers of a result rely on.
+void CheckConsistent(const FitResult& result) {
+  if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
+    throw std::runtime_error("best_start is none of the starts");
+  }
+  const Uncertainty& u = result.uncertainty;
+  const auto fits = [&u](const Eigen::MatrixXd& matrix) {
+    const int size = static_cast<int>(u.estimates.size());
+    return matrix.rows() == size && matrix.cols() == size;
+  };
+  if (!fits(u.covariance) || !fits(u.correlation)) {
+    throw std::runtime_error("covariance, correlation and parameters do not belong together");
+  }
+  if (!(result.parameters[kTailTime] > 0.0)) {
+    throw std::runtime_error("tail_time must be positive");
+  }
+  const auto check = [&result](const std::string& unit, const auto& pooled) {
+    for (const auto& [name, estimate] : pooled) {
+      if (result.options.table.Find(name) == nullptr) {
+        throw std::runtime_error(unit + " has an unknown parameter '" + name + "'");
+      }
+    }
+  };
+  for (const auto& [id, subject] : result.subjects) check("subject " + id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) check("setting " + setting, pooled);
+}
+
+// "[json.exception.type_error.302] type must be number, but is string": the end is for people.
+std::string Reason(const std::exception& exception) {
+  const std::string text = exception.what();
+  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
+
+}  // namespace
+
+Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file) {
+  if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
+      !json.contains("format_version") || !json["format_version"].is_number()) {
+    return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
+  }
+  if (json["format_version"] > kModelFormat) {
+    return Error{"written by a newer pushid; update pushid to read it", file};
+  }
+  std::string part;  // the one being read
+  const auto at = [&json, &part](const char* key) -> const Json& {
+    part = key;
+    return json.at(key);
+  };
+  try {
+    FitResult result;
+    const Preset known = MakePreset("tail").value();
+    result.options = OptionsFrom(at("model"));
+    result.options.table = TableFrom(at("table"), known.table);
+    if (json.contains("self_network")) {
+      result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
+      result.options.hold_network = true;  // what is read is not fitted on
+    }
+    const SelfNetwork* network = result.options.model.self_network.get();
+    const std::string learned = at("model").at("self_force");
+    if (SelfForceText(result.options.self_force, network) != learned) {
+      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+    }
+    if (json.contains("network_takeover")) {
+      const Json& t = at("network_takeover");
+      result.takeover =
+          Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
+                   NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
+    }
+    if (json.contains("interaction_network")) {
+      result.options.model.interaction_network =
+          InteractionNetworkFromJson(at("interaction_network"));
+    }
+    result.version = at("version");
+    for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
+    for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
+    for (const Json& c : at("derived")) result.derived.push_back(CombinationFrom(c));
+    for (const auto& [setting, pooled] : at("settings").items()) {
+      for (const auto& [name, estimate] : pooled.items()) {
+        result.settings[setting][name] = EstimateFrom(estimate);
+      }
+    }
+    for (const auto& [id, subject] : at("subjects").items()) {
+      result.subjects[id].mass_kg = subject.at("mass_kg");
+      for (const auto& [name, estimate] : subject.at("pooled").items()) {
+        result.subjects[id].pooled[name] = EstimateFrom(estimate);
+      }
+    }
+    for (const ParameterSpec& spec : result.options.table.specs) {
+      const Json& values = at("values");
+      part = "values/" + spec.name;
+      result.parameters[spec.id] = ValueFrom(values, json.at("table"), spec);
+    }
+    if (json.contains("ensemble")) {
+      for (const Json& one : at("ensemble")) {
+        result.others.push_back(MemberFrom(one, json.at("table"), result.options.table));
+        if (network == nullptr ||
+            LearnedName(*result.others.back().network) != LearnedName(*network)) {
+          throw std::runtime_error("a member's network is not that of self_network");
+        }
+      }
+    }
+    result.behaviour = BehaviourFrom(at("behaviour"));
+    result.uncertainty = UncertaintyFrom(at("uncertainty"));
+    for (const Estimate& e : result.estimates) {
+      if (e.status == EstimateStatus::kFixed) continue;
+      result.uncertainty.estimates.push_back(e);
+    }
+    result.uncertainty.estimates.insert(result.uncertainty.estimates.end(), result.nuisance.begin(),
+                                        result.nuisance.end());
+    // Not in every model: asked for, or written before there were any.
+    if (json.contains("profiles")) result.profiles = ProfilesFromJson(at("profiles"));
+    if (json.contains("bootstrap")) result.bootstrap = BootstrapFromJson(at("bootstrap"));
+    if (json.contains("diagnostics")) result.diagnostics = DiagnosticsFromJson(at("diagnostics"));
+    result.warnings = at("warnings").get<std::vector<std::string>>();
+    const Json& fit = at("fit");
+    result.converged = fit.at("converged");
+    result.cost = NumberFrom(fit.at("cost"));
+    result.message = fit.at("message");
+    result.best_start = fit.at("best_start");
+    result.starts = StartsFrom(fit.at("starts"));
+    result.manifest_hash = at("data").at("manifest_hash");
+    result.setting = at("data").at("setting");
+    for (const Json& r : at("data").at("recordings")) {
+      result.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
+                                   r.value("people", 1), NumberFrom(r.at("cost")),
+                                   r.at("failure")});
+    }
+    result.configuration = at("configuration").get<std::map<std::string, std::string>>();
+    if (json.contains("changed_flags")) {
+      result.changed_flags = at("changed_flags").get<std::vector<std::string>>();
+    }
+    result.manifest = at("run").at("manifest");
+    result.solve_seconds = at("run").at("solve_seconds");
+    CheckConsistent(result);
+    return result;
+  } catch (const std::exception& exception) {
+    return Error{"incomplete or damaged model, at '" + part + "': " + Reason(exception) +
+                     "; take another copy or fit again",
+                 file};
+  }
+}
+
+Result<FitResult> ReadFitResult(const std::string& path) {
+  Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  return FitResultFromJson(document.value().content, path);
+}
+
+}  // namespace pushid

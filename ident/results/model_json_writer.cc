@@ -1,0 +1,205 @@
+// ident: FitResult to JSON. model_json_reader.cc is the inverse.
+#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/network_json.h"
+#include "ident/parameters/option_names.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/results/confidence_json.h"
+#include "ident/results/json_pieces.h"
+#include "ident/results/result_json.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json EstimateJson(const Estimate& e) {
+  return {{"name", e.name},
+          {"value", NumberJson(e.value)},
+          {"standard_error", NumberJson(e.standard_error)},
+          {"standard_error_naive", NumberJson(e.standard_error_naive)},
+          {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
+          {"unit", e.unit},
+          {"status", NameOf(e.status)}};
+}
+
+Json MatrixJson(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < matrix.cols(); ++j) row.push_back(NumberJson(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json UncertaintyJson(const Uncertainty& u) {
+  Json names = Json::array();
+  for (const Estimate& e : u.estimates) names.push_back(e.name);
+  return {{"clustered_by", u.clustered ? "recording" : "none"},
+          {"clusters", u.num_clusters},
+          {"residuals", u.num_residuals},
+          {"full_hessian", u.full_hessian},
+          {"sigma", NumberJson(u.sigma)},
+          {"freedom", u.freedom},
+          {"t_quantile", NumberJson(u.t_quantile)},
+          {"too_few_clusters", u.too_few_clusters},
+          {"condition_number", NumberJson(u.condition_number)},
+          {"fitted", names},
+          {"covariance_fitted_scale", MatrixJson(u.covariance)},
+          {"correlation", MatrixJson(u.correlation)},
+          {"null_directions", NullDirectionsJson(u.null_directions)}};
+}
+
+// A network's weights stand once, in the network.
+std::vector<double> WithoutWeights(FitPoint point) {
+  point.weights.clear();
+  return point.Flat();
+}
+
+Json StartsJson(const FitResult& result) {
+  Json starts = Json::array();
+  for (const SolveStart& s : result.starts) {
+    Json stages = Json::array();
+    for (const SolveStage& stage : s.stages) {
+      stages.push_back({{"horizon", stage.horizon},
+                        {"iterations", stage.iterations},
+                        {"initial_cost", NumberJson(stage.initial_cost)},
+                        {"final_cost", NumberJson(stage.final_cost)},
+                        {"converged", stage.converged}});
+    }
+    starts.push_back({{"kind", s.kind},
+                      {"usable", s.usable},
+                      {"converged", s.converged},
+                      {"cost", NumberJson(s.cost)},
+                      {"iterations", s.iterations},
+                      {"failed_rollouts", s.failed.size()},
+                      {"from_fitted_scale", NumbersJson(WithoutWeights(s.from))},
+                      {"to_fitted_scale", NumbersJson(WithoutWeights(s.to))},
+                      {"stages", stages},
+                      {"message", s.message}});
+  }
+  return starts;
+}
+
+Json EstimatesJson(const std::vector<Estimate>& estimates) {
+  Json rows = Json::array();
+  for (const Estimate& e : estimates) rows.push_back(EstimateJson(e));
+  return rows;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const Behaviour& b) {
+  Json demonstrations = Json::array();
+  for (const Demonstration& d : b.demonstrations) {
+    demonstrations.push_back({{"setting", d.setting},
+                              {"people", d.people},
+                              {"mass_kg", d.mass},
+                              {"impulse_Ns", d.impulse},
+                              {"speed_m_s", NumberJson(d.speed)},
+                              {"lean_rad", NumberJson(d.lean)},
+                              {"distance_m", NumberJson(d.distance)},
+                              {"advance_m", NumberJson(d.advance)},
+                              {"pushed_advance_m", NumberJson(d.pushed_advance)},
+                              {"fell", d.fell},
+                              {"settled", d.settled}});
+  }
+  return {{"settles", b.settles},
+          {"self_propelling", b.self_propelling},
+          {"fastest_growth_per_s", NumberJson(b.fastest_growth)},
+          {"harder_moves_farther", b.harder_moves_farther},
+          {"demonstrations", demonstrations}};
+}
+
+nlohmann::ordered_json SettingsJson(const FitOptions& options) {
+  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+}
+
+namespace {
+
+Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
+  Json values = Json::object();
+  for (const ParameterSpec& spec : table.specs) values[spec.name] = set[spec.id];
+  return values;
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
+  Json derived = Json::array(), recordings = Json::array();
+  Json subjects = Json::object(), settings = Json::object();
+  const Json values = ValuesJson(result.options.table, result.parameters);
+  for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
+  for (const auto& [setting, pooled] : result.settings) {
+    for (const auto& [name, estimate] : pooled) settings[setting][name] = EstimateJson(estimate);
+  }
+  for (const auto& [id, subject] : result.subjects) {
+    Json pooled = Json::object();
+    for (const auto& [name, estimate] : subject.pooled) pooled[name] = EstimateJson(estimate);
+    subjects[id] = {{"mass_kg", subject.mass_kg}, {"pooled", pooled}};
+  }
+  for (const FittedRecording& r : result.recordings) {
+    recordings.push_back({{"id", r.id},
+                          {"frames", r.frames},
+                          {"people", r.people},
+                          {"cost", NumberJson(r.cost)},
+                          {"failure", r.failure},
+                          {"content_hash", r.content_hash}});
+  }
+  Json json = {{"format", "pushid model"},
+               {"format_version", kModelFormat},
+               {"version", result.version},
+               {"model", OptionsJson(result.options)},
+               {"parameters", EstimatesJson(result.estimates)},
+               {"derived", derived},
+               {"nuisance", EstimatesJson(result.nuisance)},
+               {"subjects", subjects},
+               {"settings", settings},
+               {"values", values},
+               {"behaviour", ToJson(result.behaviour)},
+               {"uncertainty", UncertaintyJson(result.uncertainty)},
+               {"diagnostics", ToJson(result.diagnostics)},
+               {"warnings", result.warnings},
+               {"fit",
+                {{"converged", result.converged},
+                 {"cost", NumberJson(result.cost)},
+                 {"message", result.message},
+                 {"best_start", result.best_start},
+                 {"starts", StartsJson(result)}}},
+               {"table", TableJson(result.options.table)},
+               {"data",
+                {{"manifest_hash", result.manifest_hash},
+                 {"setting", result.setting},
+                 {"recordings", recordings}}},
+               {"configuration", result.configuration},
+               {"changed_flags", result.changed_flags},
+               {"run",
+                {{"date", run.date},
+                 {"host", run.host},
+                 {"manifest", result.manifest},
+                 {"model_out", run.model_path},
+                 {"solve_seconds", result.solve_seconds},
+                 {"total_seconds", run.total_seconds},
+                 {"num_threads", run.num_threads}}}};
+  if (const auto& network = result.options.model.self_network) {
+    json["self_network"] = ToJson(*network);
+    if (const auto& t = result.takeover) {
+      json["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},
+                                  {"Kp_theta_N_m_rad", NumberJson(t->kp_theta)},
+                                  {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
+                                  {"rms_force_m_s2", NumberJson(t->rms_force)}};
+    }
+    for (const EnsembleMember& member : result.others) {
+      json["ensemble"].push_back({{"values", ValuesJson(result.options.table, member.parameters)},
+                                  {"self_network", ToJson(*member.network)}});
+    }
+  }
+  if (const auto& network = result.options.model.interaction_network) {
+    json["interaction_network"] = ToJson(*network);
+  }
+  if (!result.profiles.empty()) json["profiles"] = ToJson(result.profiles);
+  if (result.bootstrap) json["bootstrap"] = ToJson(*result.bootstrap);
+  return json;
+}
+
+}  // namespace pushid

@@ -1,0 +1,56 @@
+// ident: the cost of what was held out, iteration by iteration.
+#include "ident/solver/early_stopping.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "datasets/files/number_text.h"
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kPatience = 10;  // iterations without a better one
+
+}  // namespace
+
+Result<EarlyStoppingSplit> SplitForEarlyStopping(const FitProblem& problem, double share,
+                                                 uint64_t seed) {
+  const std::vector<PendulumRecording>& recordings = problem.recordings();
+  const int total = static_cast<int>(recordings.size());
+  const int folds = static_cast<int>(std::lround(1.0 / share));
+  if (folds < 2 || folds > total) {
+    return Error{"--early_stopping=" + DoubleText(share) + " of " + std::to_string(total) +
+                 " recordings holds out none or all of them; a share from " +
+                 DoubleText(1.0 / total) + " to 0.5 leaves some on both sides"};
+  }
+  const Result<std::vector<Fold>> made =
+      MakeFolds(recordings, FoldScheme::kStratified, folds, 1, seed);
+  if (!made.ok()) return made.error();
+  EarlyStoppingSplit split{std::vector<int>(total), std::vector<int>(total)};
+  for (int i = 0; i < total; ++i) split.training[i] = problem.Count(i);
+  for (int i : made.value().front().held_out) std::swap(split.training[i], split.held_out[i]);
+  return split;
+}
+
+EarlyStopping::EarlyStopping(const FitProblem& held_out, const FitPoint* point)
+    : held_out_(held_out),
+      point_(point),
+      best_(*point),
+      best_cost_(std::numeric_limits<double>::infinity()) {}
+
+ceres::CallbackReturnType EarlyStopping::operator()(const ceres::IterationSummary& summary) {
+  if (!summary.step_is_successful) return ceres::SOLVER_CONTINUE;
+  const double cost = held_out_.DataCost(*point_);
+  if (cost < best_cost_) {
+    best_cost_ = cost;
+    best_ = *point_;
+    since_best_ = 0;
+    return ceres::SOLVER_CONTINUE;
+  }
+  stopped_ = ++since_best_ >= kPatience;
+  return stopped_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+}
+
+}  // namespace pushid

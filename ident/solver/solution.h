@@ -1,0 +1,53 @@
+// ident: what a solve went through, start by start, and where it ended.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ident/problem/fit_point.h"
+
+namespace pushid {
+
+// One iteration of the solver.
+struct TracePoint {
+  int horizon = 0;  // frames; 0: all
+  int iteration = 0;
+  double cost = 0.0;
+  double gradient = 0.0;  // largest component
+};
+
+struct SolveStage {
+  int horizon = 0;  // frames; 0: all
+  int iterations = 0;
+  double initial_cost = 0.0, final_cost = 0.0;
+  bool converged = false;
+  std::vector<TracePoint> trace;
+};
+
+// One start of a multi-start.
+struct SolveStart {
+  std::string kind;  // nominal, equation_error or random
+  bool usable = false;
+  bool converged = false;
+  double cost = 0.0;
+  int iterations = 0;
+  FitPoint from, to;
+  std::vector<SolveStage> stages;
+  std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
+  std::vector<std::string> notes;     // parameters whose start was moved off a bound
+  std::string message;
+};
+
+struct Solution {
+  std::vector<SolveStart> starts;  // in order of trial
+  int best = -1;                   // index into starts; -1: no start was usable
+  double seconds = 0.0;
+
+  const SolveStart& Best() const { return starts[best]; }
+};
+
+// phase: "start 2/8, horizon 32"; called after every accepted iteration.
+using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
+
+}  // namespace pushid

@@ -1,0 +1,99 @@
+// ident: samples to tensors, epochs, checkpoints.
+#include "ident/training/restoration_training.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/training/restoration_training_checkpoint.h"
+#include "ident/training/restoration_training_kinds.h"
+#include "models/restoration/window_features.h"
+#include "models/restoration/window_restoration.h"
+
+namespace pushid {
+namespace {
+
+// All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
+RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, Scaling* scaling) {
+  int columns = 0;
+  for (const RestorationSample& sample : samples) columns += static_cast<int>(sample.motion.size());
+  RegressionSamples all;
+  all.inputs.resize(kWindowInputs, columns);
+  all.targets.resize(kWindowOutputs, columns);
+  all.weights.resize(columns);
+  int at = 0;
+  for (const RestorationSample& sample : samples) {
+    const int frames = static_cast<int>(sample.motion.size());
+    all.inputs.middleCols(at, frames) = WindowInputs(sample.person).leftCols(frames);
+    all.targets.middleCols(at, frames) = WindowTargets(sample.person, sample.motion);
+    all.weights.segment(at, frames).setConstant(static_cast<float>(sample.weight));
+    at += frames;
+  }
+  if (scaling->mean.size() == 0) *scaling = ScalingOf(all.inputs);
+  all.inputs = scaling->Scaled(all.inputs);
+  return all;
+}
+
+constexpr int kWindowEpochs = 40;
+
+Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& training,
+                                       const std::vector<RestorationSample>& held,
+                                       const RestorationTrainingOptions& options,
+                                       const TrainingProgress& progress) {
+  WindowWeights weights;
+  const RegressionSamples learnt = WindowSamples(training, &weights.inputs);
+  const RegressionSamples judged = WindowSamples(held, &weights.inputs);
+  TrainedRestoration trained;
+  const Result<DenseNetwork> network =
+      TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
+                 progress, &trained);
+  if (!network.ok()) return network.error();
+  AddTensors("inputs", weights.inputs, &trained.file.tensors);
+  AddTensors("network", network.value(), &trained.file.tensors);
+  return trained;
+}
+
+}  // namespace
+
+Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
+                                int epochs, const std::string& key,
+                                const RestorationTrainingOptions& options,
+                                const TrainingProgress& progress, TrainedRestoration* trained) {
+  RegressionOptions regression;
+  regression.epochs = std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
+  regression.seed = options.seed;
+  regression.num_threads = options.num_threads;
+  RegressionTrainer trainer(learnt, judged, regression);
+  Checkpoint checkpoint(options.checkpoint, key, options.checkpoint_seconds);
+  std::string state;
+  trained->resumed = checkpoint.Load(&state, &trained->curve) && trainer.Resume(state);
+  if (!trained->resumed) trained->curve.clear();
+  while (!trainer.Done()) {
+    trained->curve.push_back(trainer.RunEpoch());
+    if (progress) {
+      progress(trained->curve.back(),
+               static_cast<double>(trained->curve.back().epoch) / regression.epochs);
+    }
+    if (!checkpoint.Due()) continue;
+    if (MaybeError error = checkpoint.Save(trainer.State(), trained->curve)) return *error;
+  }
+  checkpoint.Remove();
+  return trainer.Best();
+}
+
+Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
+                                            const std::vector<RestorationSample>& held,
+                                            const RestorationTrainingOptions& options,
+                                            const TrainingProgress& progress) {
+  const auto train = options.kind == "window"   ? TrainWindow
+                     : options.kind == "cvae"   ? TrainCvae
+                     : options.kind == "simlpe" ? TrainPeer
+                                                : nullptr;
+  if (train == nullptr) {
+    return Error{"--kind is '" + options.kind + "'; it must be window, cvae or simlpe"};
+  }
+  Result<TrainedRestoration> trained = train(training, held, options, progress);
+  if (trained.ok()) trained.value().file.kind = options.kind;
+  return trained;
+}
+
+}  // namespace pushid

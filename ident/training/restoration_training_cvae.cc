@@ -1,0 +1,86 @@
+// ident: samples to sequences of scaled frames, rounds, checkpoints.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/training/restoration_training_checkpoint.h"
+#include "ident/training/restoration_training_kinds.h"
+#include "models/restoration/cvae_trainer.h"
+
+namespace pushid {
+namespace {
+
+std::vector<CvaeSequence> Sequences(const std::vector<RestorationSample>& samples,
+                                    CvaeCoordinates coordinates) {
+  std::vector<CvaeSequence> sequences;
+  for (const RestorationSample& sample : samples) {
+    const RestorationInput person = Resampled(sample.person, 1.0 / kCvaeRate);
+    const BodyMotion motion =
+        Resampled(sample.motion, sample.person.dt, person.dt, static_cast<int>(person.q.size()));
+    BodyFrames frames = FramesOf(person, motion, coordinates);
+    sequences.push_back({std::move(frames.lower), std::move(frames.upper), PendulumFrames(person)});
+  }
+  return sequences;
+}
+
+Scaling ScalingOfAll(const std::vector<CvaeSequence>& sequences,
+                     Eigen::MatrixXf CvaeSequence::*part) {
+  Eigen::Index columns = 0, at = 0;
+  for (const CvaeSequence& s : sequences) columns += (s.*part).cols();
+  Eigen::MatrixXf all((sequences.front().*part).rows(), columns);
+  for (const CvaeSequence& s : sequences) {
+    all.middleCols(at, (s.*part).cols()) = s.*part;
+    at += (s.*part).cols();
+  }
+  return ScalingOf(all);
+}
+
+void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
+  for (CvaeSequence& s : *sequences) {
+    s.lower = scalings.lower.Scaled(s.lower);
+    s.upper = scalings.upper.Scaled(s.upper);
+    s.pendulum = scalings.pendulum.Scaled(s.pendulum);
+  }
+}
+
+}  // namespace
+
+Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& training,
+                                     const std::vector<RestorationSample>& held,
+                                     const RestorationTrainingOptions& options,
+                                     const TrainingProgress& progress) {
+  const CvaeCoordinates coordinates =
+      options.coordinates == "ldp" ? CvaeCoordinates::kLdp : CvaeCoordinates::kTip;
+  std::vector<CvaeSequence> learnt = Sequences(training, coordinates);
+  std::vector<CvaeSequence> judged = Sequences(held, coordinates);
+  CvaeWeights scalings;
+  scalings.lower = ScalingOfAll(learnt, &CvaeSequence::lower);
+  scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
+  scalings.pendulum = ScalingOfAll(learnt, &CvaeSequence::pendulum);
+  Scale(scalings, &learnt);
+  Scale(scalings, &judged);
+  CvaeOptions cvae;
+  for (int& steps : cvae.steps) {
+    steps = std::max(1, static_cast<int>(std::lround(steps * options.effort)));
+  }
+  cvae.seed = options.seed;
+  cvae.num_threads = options.num_threads;
+  CvaeTrainer trainer(std::move(learnt), std::move(judged), scalings, cvae);
+  TrainedRestoration trained;
+  Checkpoint checkpoint(options.checkpoint, KeyOfTraining(training, held, options),
+                        options.checkpoint_seconds);
+  std::string state;
+  trained.resumed = checkpoint.Load(&state, &trained.curve) && trainer.Resume(state);
+  if (!trained.resumed) trained.curve.clear();
+  while (!trainer.Done()) {
+    trained.curve.push_back(trainer.RunRound());
+    if (progress) progress(trained.curve.back(), trainer.ShareDone());
+    if (!checkpoint.Due() || trainer.Done()) continue;
+    if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
+  }
+  trained.file.tensors = ToTensors(trainer.Best());
+  trained.file.settings["coordinates"] = options.coordinates;
+  checkpoint.Remove();
+  return trained;
+}
+
+}  // namespace pushid

@@ -1,0 +1,136 @@
+// ident: trainings from recordings.
+#include "ident/training/restoration_training_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "ident/bodies/peer.h"
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+namespace {
+
+double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::vector<int> Picked(const std::vector<int>& from, const std::vector<int>& positions) {
+  std::vector<int> picked;
+  for (int k : positions) picked.push_back(from[k]);
+  return picked;
+}
+
+std::vector<int> All(const std::vector<BodyRecording>& recordings) {
+  std::vector<int> all(recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+template <typename Value>
+std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vector<int>& positions) {
+  std::vector<Value> picked;
+  for (int k : positions) {
+    if (k < static_cast<int>(from.size())) picked.push_back(from[k]);
+  }
+  return picked;
+}
+
+// A restoration beside its yardsticks; the peer alone.
+Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
+                                const PostprocessOptions& postprocess,
+                                const BodyRecording& recording) {
+  BodyScores scores;
+  if (file.kind == kPeerKind) {
+    const Result<PeerWeights> peer = MakePeer(file, "");
+    if (!peer.ok()) return peer.error();
+    ScorePeer(peer.value(), recording, &scores);
+    return scores;
+  }
+  const auto restoration = MakeRestoration(file, "");
+  if (!restoration.ok()) return restoration.error();
+  ScoreRestoration(model, *restoration.value(), postprocess, recording, &scores);
+  return scores;
+}
+
+}  // namespace
+
+Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
+                                               const std::vector<int>& among,
+                                               const RestorationRunOptions& options,
+                                               const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  std::vector<RolloutPath<double>> paths;
+  if (options.predicted_pendulums && options.training.kind != kPeerKind) {
+    paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
+                             options.training.seed, [&](int fold, int folds) {
+                               if (progress) {
+                                 progress("predicting pendulums out of fold",
+                                          static_cast<double>(fold) / folds);
+                               }
+                             });
+  }
+  std::vector<int> learnt, judged;
+  SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
+  if (learnt.empty() || judged.empty()) {
+    return Error{
+        "there are too few recordings to learn from and to stop the training early by; "
+        "two are the least"};
+  }
+  auto training =
+      MakeSamples(recordings, Picked(among, learnt), PickedValues(paths, learnt), options.mirrored);
+  for (RestorationSample& sample :
+       MakeSamples(options.more, All(options.more), {}, options.mirrored)) {
+    training.push_back(std::move(sample));
+  }
+  const auto held =
+      MakeSamples(recordings, Picked(among, judged), PickedValues(paths, judged), false);
+  return TrainRestoration(training, held, options.training,
+                          [&](const TrainingPoint& point, double done) {
+                            if (!progress) return;
+                            progress(point.stage + (point.stage.empty() ? "" : ", ") + "epoch " +
+                                         std::to_string(point.epoch),
+                                     done);
+                          });
+}
+
+Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
+                                           const RestorationRunOptions& options, int folds,
+                                           uint64_t seed, const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  const int total = static_cast<int>(recordings.size());
+  const auto made = MakeFolds(pendulums, FoldScheme::kStratified, folds, 1, seed);
+  if (!made.ok()) return made.error();
+  ChainValidation validation;
+  std::vector<std::map<std::string, BodyScore>> by_recording(total);
+  for (const Fold& fold : made.value()) {
+    std::vector<int> train;
+    for (int i = 0; i < total; ++i) {
+      const bool held = std::binary_search(fold.held_out.begin(), fold.held_out.end(), i);
+      if (!held) train.push_back(i);
+    }
+    const auto told = [&](const std::string& step, double done) {
+      if (progress) progress(fold.name + ", " + step, done);
+    };
+    const std::optional<IdentifiedModel> model = FitTo(pendulums, train, options.fit);
+    if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
+    const double before = Now();
+    Result<TrainedRestoration> trained = TrainFromRecordings(recordings, train, options, told);
+    if (!trained.ok()) return trained.error();
+    validation.training_seconds.push_back(Now() - before);
+    for (int i : fold.held_out) {
+      const Result<BodyScores> scores =
+          ScoreTrained(trained.value().file, *model, options.postprocess, recordings[i]);
+      if (!scores.ok()) return scores.error();
+      for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
+    }
+  }
+  BodyScores all;
+  for (const auto& scores : by_recording) {
+    for (const auto& [name, score] : scores) all[name].push_back(score);
+  }
+  validation.evaluation = SummarizeAll(recordings, all);
+  return validation;
+}
+
+}  // namespace pushid

@@ -1,0 +1,44 @@
+// ident: a whole training from recordings: pendulums predicted out of fold, samples, held-out
+// recordings; and its cross-validation, in which pendulum and restoration are fitted anew for
+// every fold, so that nothing has seen the recordings it is judged on.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ident/bodies/body_evaluation.h"
+#include "ident/training/restoration_training.h"
+
+namespace pushid {
+
+struct RestorationRunOptions {
+  FitOptions fit;  // of the pendulum
+  RestorationTrainingOptions training;
+  PostprocessOptions postprocess;
+  int inner_folds = 4;     // of the out-of-fold predictions
+  double held_out = 0.15;  // share of the recordings that stop the training early
+  bool predicted_pendulums = true, mirrored = true;
+  // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
+  std::vector<BodyRecording> more;
+};
+
+// step: "pendulum 2/4", "window epoch 12"; done: share of this step.
+using RunProgress = std::function<void(const std::string& step, double done)>;
+
+// Learns from the recordings with these indices.
+Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
+                                               const std::vector<int>& among,
+                                               const RestorationRunOptions& options,
+                                               const RunProgress& progress = nullptr);
+
+struct ChainValidation {
+  BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
+  std::vector<double> training_seconds;  // of the restoration, by fold
+};
+// Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum.
+Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
+                                           const RestorationRunOptions& options, int folds,
+                                           uint64_t seed, const RunProgress& progress = nullptr);
+
+}  // namespace pushid

@@ -1,0 +1,114 @@
+// ident: walking along a profile with adaptive steps.
+#include <algorithm>
+#include <cmath>
+
+#include "ident/uncertainty/profile.h"
+
+namespace pushid {
+namespace {
+
+// Lengths are in half widths: where a quadratic cost would cross the threshold.
+constexpr int kMaxSteps = 60;
+constexpr int kStepsToThreshold = 4;    // aimed at, on a quadratic cost
+constexpr double kMaxGrowth = 3.0;      // of a step over the one before
+constexpr double kSmallestStep = 1e-3;  // what may be left of a step that keeps failing
+constexpr double kFlatReach = 1e4;      // this far without a rise is flat
+constexpr int kMaxRefinements = 8;
+constexpr double kCrossingTolerance = 1e-3;  // of the signed root
+
+// The signed root of the cost difference, nearly linear where the cost is nearly quadratic: steps
+// and crossings are found on it.
+double Root(const ProfileSearch& search, const HeldFit& fit) {
+  return std::sqrt(std::max(0.0, 2.0 * (fit.cost - search.cost)));
+}
+
+// All numbers at `wanted`, on the line through the last two points.
+std::vector<double> Extrapolate(const ProfileSearch& search, const HeldFit* before,
+                                const HeldFit& last, double wanted) {
+  std::vector<double> start = last.point;
+  for (size_t i = 0; i < start.size(); ++i) {
+    const double slope = before == nullptr || last.value == before->value
+                             ? search.direction[i]
+                             : (last.point[i] - before->point[i]) / (last.value - before->value);
+    start[i] += slope * (wanted - last.value);
+  }
+  return start;
+}
+
+// Between a point below the threshold and one beyond it: regula falsi, Illinois' variant.
+double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, const HoldFit& hold,
+                    std::vector<HeldFit>* points) {
+  const double aim = std::sqrt(2.0 * search.threshold);
+  double low = Root(search, below) - aim, high = Root(search, beyond) - aim;
+  for (int i = 0; i < kMaxRefinements; ++i) {
+    const double wanted = (below.value * high - beyond.value * low) / (high - low);
+    const HeldFit fit = hold(wanted, Extrapolate(search, &beyond, below, wanted));
+    if (!fit.ok) break;
+    points->push_back(fit);
+    const double off = Root(search, fit) - aim;
+    if (std::abs(off) < kCrossingTolerance * aim) return fit.value;
+    if (off < 0.0) {
+      below = fit;
+      low = off;
+      high *= 0.5;
+    } else {
+      beyond = fit;
+      high = off;
+      low *= 0.5;
+    }
+  }
+  low = Root(search, below) - aim;
+  high = Root(search, beyond) - aim;
+  return (below.value * high - beyond.value * low) / (high - low);
+}
+
+double NextStep(double step, double rise, double run, double aim) {
+  const double wanted = rise > 0.0 ? aim / kStepsToThreshold * run / rise : kMaxGrowth * step;
+  return std::clamp(wanted, step / kMaxGrowth, kMaxGrowth * step);
+}
+
+}  // namespace
+
+ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& hold) {
+  const double aim = std::sqrt(2.0 * search.threshold);
+  const double half_width = search.naive_error * aim;
+  const double limit = sign > 0 ? search.upper : search.lower;
+  ProfileSide side;
+  side.crossing = sign * std::numeric_limits<double>::infinity();
+  side.end = "steps";
+  HeldFit last{true, search.estimate, search.cost, search.point}, before;
+  double step = half_width / kStepsToThreshold;
+  for (int k = 0; k < kMaxSteps; ++k) {
+    double wanted = last.value + sign * step;
+    const bool at_limit = sign * (wanted - limit) >= 0.0;
+    if (at_limit) wanted = limit;
+    if (sign * (wanted - last.value) <= kSmallestStep * half_width) {
+      side.end = at_limit ? "bound" : "domain";
+      return side;
+    }
+    const HeldFit fit =
+        hold(wanted, Extrapolate(search, side.points.empty() ? nullptr : &before, last, wanted));
+    if (!fit.ok || sign * (fit.value - last.value) <= 0.0) {
+      step /= kMaxGrowth;
+      continue;
+    }
+    side.points.push_back(fit);
+    const double root = Root(search, fit);
+    if (root >= aim) {
+      side.end = "threshold";
+      side.crossing = FindCrossing(search, last, fit, hold, &side.points);
+      return side;
+    }
+    side.end = at_limit ? "bound" : "flat";
+    const double reach = std::abs(fit.value - search.estimate) / half_width;
+    if (at_limit || (reach > kFlatReach && root < kCrossingTolerance * aim)) return side;
+    side.end = "steps";
+    const double run = std::abs(fit.value - last.value);
+    step = NextStep(run, root - Root(search, last), run, aim);
+    before = last;
+    last = fit;
+  }
+  return side;
+}
+
+}  // namespace pushid

@@ -1,0 +1,264 @@
+// ident: standard errors, intervals and null directions of a fit.
+#include "ident/uncertainty/uncertainty.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
+#include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/null_directions.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Pooled fits of many subjects: two Jacobians for each column would take longer than the fit.
+constexpr Eigen::Index kMostColumnsWithCurvature = 60;
+constexpr double kTouched = 1e-4;  // share of a null direction that counts
+
+// What is known of each fitted number besides its estimate.
+struct Column {
+  std::string name, unit;
+  Transform transform = Transform::kIdentity;
+  double scale = 1.0;   // typical size, natural unit
+  double fitted = 0.0;  // value on the fitted scale
+  double natural = 0.0;
+  bool at_bound = false;
+};
+
+std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
+  std::vector<Column> columns;
+  const ParameterTable& table = problem.options().table;
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const ParameterSpec& spec = table[fitted[i].parameter];
+    Column c{spec.name, spec.unit, spec.transform, spec.scale, point.shared[i], 0.0, false};
+    c.natural = ToNatural(spec.transform, c.fitted);
+    const double lower = ToFitted(spec.transform, spec.lower);
+    const double upper = ToFitted(spec.transform, spec.upper);
+    const double margin = 1e-6 * (upper - lower);
+    c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
+    columns.push_back(c);
+  }
+  for (const auto& [unit, values] : point.unit) {
+    for (const FittedParameter& f : fitted) {
+      if (f.deviation < 0) continue;
+      const ParameterSpec& spec = table[f.parameter];
+      const bool plain = f.transform == Transform::kIdentity;
+      Column c{spec.name + "[" + unit + "] deviation", plain ? spec.unit : "1"};
+      c.scale = plain ? spec.scale : 1.0;
+      c.fitted = c.natural = values[f.deviation];
+      columns.push_back(c);
+    }
+  }
+  static const char* const kVelocityNames[] = {"xd", "yd", "thetad", "phid"};
+  for (const auto& [recording, values] : point.velocity) {
+    for (size_t k = 0; k < values.size(); ++k) {
+      Column c{"initial " + std::string(kVelocityNames[k % 4]) + "[" +
+                   problem.recordings()[recording].id +
+                   (values.size() > 4 ? ":" + std::to_string(k / 4) : "") + "]",
+               k % 4 < 2 ? "m/s" : "rad/s"};
+      c.scale = 0.1;
+      c.fitted = c.natural = values[k];
+      columns.push_back(c);
+    }
+  }
+  for (size_t i = 0; i < point.weights.size(); ++i) {
+    Column c{"network weight " + std::to_string(i), "1"};
+    c.fitted = c.natural = point.weights[i];
+    columns.push_back(c);
+  }
+  return columns;
+}
+
+// d fitted / d (natural / scale): the change of variables to physical units.
+double PhysicalUnit(const Column& c) { return c.scale / TransformSlope(c.transform, c.natural); }
+
+// Directions that the recordings say nothing about, whatever priors and demonstrations say: a
+// number that only its prior holds is not identified.
+Eigen::MatrixXd DataNullSpace(const ScoreBlocks& score, const Eigen::MatrixXd& scaled,
+                              const std::vector<Column>& columns) {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+    if (score.cluster_of_row[row] != FitProblem::kPriorCluster) rows.push_back(row);
+  }
+  const Directions data = Decompose(scaled(rows, Eigen::all));
+  const int size = static_cast<int>(columns.size());
+  Eigen::MatrixXd null_space(size, 0);
+  for (int k = data.rank; k < size; ++k) {
+    const Eigen::VectorXd direction = data.v.col(k);
+    // Parameters on a bound make columns of zeros: those are not news.
+    double off_bound = 0.0;
+    for (int i = 0; i < size; ++i) {
+      if (!columns[i].at_bound) off_bound = std::max(off_bound, std::abs(direction[i]));
+    }
+    if (off_bound < kTouched) continue;
+    null_space.conservativeResize(size, null_space.cols() + 1);
+    null_space.rightCols(1) = direction;
+  }
+  return null_space;
+}
+
+EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
+  if (c.at_bound) return EstimateStatus::kAtBound;
+  if (touched) return EstimateStatus::kUnidentifiable;
+  const double half_width = 0.5 * (e.upper95 - e.lower95);
+  const bool weak = !std::isfinite(half_width) || half_width > std::max(std::abs(e.value), c.scale);
+  return weak ? EstimateStatus::kWeak : EstimateStatus::kIdentified;
+}
+
+Estimate MakeEstimate(const Column& c, double variance, double naive_variance, double quantile,
+                      bool touched) {
+  Estimate e;
+  e.name = c.name;
+  e.unit = c.unit;
+  e.value = c.natural;
+  const double slope = TransformSlope(c.transform, c.natural);
+  double error = touched ? kInfinity : std::sqrt(std::max(0.0, variance));
+  e.standard_error = slope * error;
+  e.standard_error_naive = touched ? kInfinity : slope * std::sqrt(std::max(0.0, naive_variance));
+  if (c.at_bound) e.standard_error = e.standard_error_naive = error = 0.0;
+  e.lower95 = ToNatural(c.transform, c.fitted - quantile * error);
+  e.upper95 = ToNatural(c.transform, c.fitted + quantile * error);
+  e.status = Judge(c, e, touched);
+  return e;
+}
+
+Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  Eigen::MatrixXd correlation = covariance;
+  for (int i = 0; i < covariance.rows(); ++i) {
+    for (int j = 0; j < covariance.cols(); ++j) {
+      const double product = deviation[i] * deviation[j];
+      correlation(i, j) = product > 0.0 ? covariance(i, j) / product : (i == j ? 1.0 : 0.0);
+    }
+  }
+  return correlation;
+}
+
+// To physical units; a parameter on its bound does not move.
+Eigen::VectorXd Units(const std::vector<Column>& columns) {
+  Eigen::VectorXd unit(columns.size());
+  for (size_t i = 0; i < columns.size(); ++i) {
+    unit[static_cast<Eigen::Index>(i)] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
+  }
+  return unit;
+}
+
+// Residuals, Jacobian and, unless there are too many columns, second derivatives.
+struct Evaluated {
+  ScoreBlocks score;
+  std::vector<Column> columns;
+  Eigen::VectorXd unit;
+};
+Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  Evaluated e{EvaluateScoreBlocks(built), Columns(problem, point), {}};
+  e.unit = Units(e.columns);
+  if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
+    AddCurvature(built, e.unit, &e.score);
+  }
+  return e;
+}
+
+}  // namespace
+
+Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
+  const Evaluated e = Evaluate(problem, point, true);
+  return ComputeCovariance(e.score, e.unit);
+}
+
+Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point) {
+  const Evaluated e = Evaluate(problem, point, false);
+  const Covariance c = ComputeCovariance(e.score, e.unit);
+  Uncertainty u;
+  u.covariance = c.naive;
+  u.t_quantile = StudentQuantile95(c.freedom);
+  const Eigen::MatrixXd scaled = e.score.jacobian * e.unit.asDiagonal();
+  return {c.directions.Condition(),
+          DescribeNullSpace(problem, point, DataNullSpace(e.score, scaled, e.columns), u)};
+}
+
+Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
+  const auto [score, columns, unit] = Evaluate(problem, point, true);
+  const int size = static_cast<int>(columns.size());
+  const Covariance c = ComputeCovariance(score, unit);
+
+  Uncertainty u;
+  u.num_residuals = score.num_data_rows;
+  u.num_clusters = static_cast<int>(score.clusters.size());
+  u.clustered = u.num_clusters > 1;
+  u.condition_number = c.directions.Condition();
+  u.full_hessian = c.full_hessian;
+  u.sigma = c.sigma;
+  u.freedom = u.clustered ? u.num_clusters - 1 : c.freedom;
+  u.t_quantile = StudentQuantile95(u.freedom);
+  u.covariance = u.clustered ? c.clustered : c.naive;
+  u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
+  u.correlation = Correlation(u.too_few_clusters ? c.naive : u.covariance);
+
+  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
+  const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
+  for (int i = 0; i < size; ++i) {
+    const bool touched =
+        null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
+    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i), u.t_quantile,
+                                       touched && !columns[i].at_bound));
+    EstimateStatus& status = u.estimates.back().status;
+    if (u.too_few_clusters && status == EstimateStatus::kIdentified) status = EstimateStatus::kWeak;
+  }
+  u.null_directions = DescribeNullSpace(problem, point, null_space, u);
+  return u;
+}
+
+Combination Combine(const FitProblem& problem, const FitPoint& point,
+                    const Uncertainty& uncertainty, const CombinationSpec& spec) {
+  const std::vector<Term>& terms = spec.terms;
+  const ParameterSet<double> values = problem.Parameters(point, "");
+  const auto& fitted = problem.map().fitted;
+  Combination result{spec.name, spec.unit};
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
+  for (const Term& term : terms) {
+    result.value += term.coefficient * values[term.parameter];
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].parameter != term.parameter) continue;
+      gradient[static_cast<Eigen::Index>(i)] +=
+          term.coefficient * TransformSlope(fitted[i].transform, values[term.parameter]);
+    }
+  }
+  const double variance = gradient.dot(uncertainty.covariance * gradient);
+  result.standard_error = std::sqrt(std::max(0.0, variance));
+  result.lower95 = result.value - uncertainty.t_quantile * result.standard_error;
+  result.upper95 = result.value + uncertainty.t_quantile * result.standard_error;
+  if (terms.size() == 1) {
+    // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
+    // log.
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].parameter != terms[0].parameter) continue;
+      result.lower95 = terms[0].coefficient * uncertainty.estimates[i].lower95;
+      result.upper95 = terms[0].coefficient * uncertainty.estimates[i].upper95;
+    }
+  }
+  return result;
+}
+
+std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
+  const Parameter mu_y = model.friction == FrictionKind::kIsotropic ? kMu : kMuY;
+  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
+  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
+  const double by_mass = 1.0 / kReferenceMass;
+  return {{"c_x", "N s/m", {{kMu, 1.0}, {kKpX, 1.0}}},
+          {"c_y", "N s/m", {{mu_y, 1.0}, {kKpY, 1.0}}},
+          {"c_x/M", "1/s", {{kMu, by_mass}, {kKpX, by_mass}}},
+          {"c_y/M", "1/s", {{mu_y, by_mass}, {kKpY, by_mass}}},
+          {"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
+          {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
+          {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
+          {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}};
+}
+
+}  // namespace pushid

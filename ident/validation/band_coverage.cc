@@ -1,0 +1,135 @@
+// ident: do predictive bands hold what was not fitted?
+#include <algorithm>
+#include <cmath>
+
+#include "ident/figures/text_table.h"
+#include "ident/prediction/predictive_bands.h"
+#include "ident/problem/time_series.h"
+
+namespace pushid {
+namespace {
+
+// Of one held-out recording.
+struct Held {
+  bool ok = false;
+  double inside50[2] = {0.0, 0.0}, inside90[2] = {0.0, 0.0}, width90[2] = {0.0, 0.0};
+};
+
+// Of the pushed person: bystanders of a single recording stand still, and groups err by contact.
+Held CountInside(const PredictiveBands& bands, const PendulumRecording& recording) {
+  Held held;
+  if (bands.people.empty()) return held;
+  held.ok = true;
+  const PathBand& band = bands.people[recording.pushed_person];
+  const double share = 1.0 / (recording.num_frames() - 1);
+  for (int t = 1; t < recording.num_frames(); ++t) {
+    const Vector3<double>& hip = recording.hip[recording.pushed_person][t];
+    for (int axis : {0, 1}) {
+      const auto inside = [&](const auto& lower, const auto& upper) {
+        return lower[t][axis] <= hip[axis] && hip[axis] <= upper[t][axis];
+      };
+      held.inside50[axis] += share * inside(band.lower50, band.upper50);
+      held.inside90[axis] += share * inside(band.lower90, band.upper90);
+      held.width90[axis] += share * (band.upper90[t][axis] - band.lower90[t][axis]);
+    }
+  }
+  return held;
+}
+
+BandCoverage MeanCoverage(const std::vector<std::vector<Held>>& by_recording, bool model_error) {
+  BandCoverage coverage;
+  coverage.model_error = model_error;
+  std::vector<double> inside50[2], inside90[2], width[2];
+  for (const std::vector<Held>& repeats : by_recording) {
+    if (repeats.empty()) continue;
+    ++coverage.recordings;
+    const double share = 1.0 / static_cast<double>(repeats.size());
+    for (int axis : {0, 1}) {
+      double a = 0.0, b = 0.0, c = 0.0;
+      for (const Held& held : repeats) {
+        a += share * held.inside50[axis];
+        b += share * held.inside90[axis];
+        c += share * held.width90[axis];
+      }
+      inside50[axis].push_back(a);
+      inside90[axis].push_back(b);
+      width[axis].push_back(c);
+    }
+  }
+  for (int axis : {0, 1}) {
+    const MeanAndError a = MeanOf(inside50[axis]), b = MeanOf(inside90[axis]);
+    coverage.inside50[axis] = a.mean;
+    coverage.inside50_error[axis] = a.error;
+    coverage.inside90[axis] = b.mean;
+    coverage.inside90_error[axis] = b.error;
+    coverage.width90[axis] = MeanOf(width[axis]).mean;
+  }
+  return coverage;
+}
+
+}  // namespace
+
+std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording>& recordings,
+                                             const std::vector<Fold>& folds,
+                                             const FitOptions& options, const BandOptions& bands,
+                                             int num_threads, const JobProgress& progress) {
+  FitOptions alone = options;
+  alone.num_threads = 1;  // the folds run in parallel
+  // [fold][without, with model error][held out]
+  std::vector<std::vector<Held>> without(folds.size()), with(folds.size());
+  ParallelFor(
+      static_cast<int>(folds.size()), num_threads,
+      [&](int f) {
+        std::vector<PendulumRecording> training;
+        for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
+          const auto& out = folds[f].held_out;
+          if (std::find(out.begin(), out.end(), i) == out.end()) training.push_back(recordings[i]);
+        }
+        without[f].resize(folds[f].held_out.size());
+        with[f].resize(folds[f].held_out.size());
+        const FitResult result = Fit(training, alone);
+        if (!result.ok()) return;
+        const auto samples = SampleParameters(result, bands);
+        const std::vector<ErrorPath> errors = ErrorPaths(result, training);
+        for (size_t k = 0; k < folds[f].held_out.size(); ++k) {
+          const PendulumRecording& held = recordings[folds[f].held_out[k]];
+          without[f][k] =
+              CountInside(ComputeBands(result, samples.value(), {}, held, bands.seed), held);
+          with[f][k] =
+              CountInside(ComputeBands(result, samples.value(), errors, held, bands.seed), held);
+        }
+      },
+      progress);
+  std::vector<BandCoverage> coverage;
+  for (const auto* held : {&without, &with}) {
+    std::vector<std::vector<Held>> by_recording(recordings.size());
+    for (size_t f = 0; f < folds.size(); ++f) {
+      for (size_t k = 0; k < folds[f].held_out.size(); ++k) {
+        if ((*held)[f][k].ok) by_recording[folds[f].held_out[k]].push_back((*held)[f][k]);
+      }
+    }
+    coverage.push_back(MeanCoverage(by_recording, held == &with));
+  }
+  return coverage;
+}
+
+std::string BandCoverageText(const std::vector<BandCoverage>& coverage) {
+  TextTable table({"bands of", "axis", "inside 50 %", "inside 90 %", "mean width of 90 %, m"},
+                  {true, true, false, false, false});
+  const auto percent = [](double share, double error) {
+    return Significant(100.0 * share, 3) + " +- " + Significant(100.0 * error, 2) + " %";
+  };
+  for (const BandCoverage& c : coverage) {
+    for (int axis : {0, 1}) {
+      table.Add({c.model_error ? "parameters and model error" : "parameters alone",
+                 axis == 0 ? "x" : "y", percent(c.inside50[axis], c.inside50_error[axis]),
+                 percent(c.inside90[axis], c.inside90_error[axis]),
+                 Significant(c.width90[axis], 3)});
+    }
+  }
+  return table.ToString() + "share of held-out frames of " +
+         std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
+         " recordings whose measured hip lies in the predictive bands\n";
+}
+
+}  // namespace pushid

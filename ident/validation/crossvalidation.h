@@ -1,0 +1,84 @@
+// ident: how well a configuration predicts recordings it has not seen.
+//
+// Folds: stratified by setting, strength and subject, so that every fold holds out its share of
+// each, repeated with new shuffles; leave-one-subject-out and leave-one-setting-out; the strong
+// pushes held out together. The standard error of a mean is over recordings (each one's score
+// averaged over the repeats): recordings are the independent units here, not frames and not folds.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ident/prediction/evaluation.h"
+#include "ident/problem/behaviour.h"
+#include "ident/problem/parallel.h"
+
+namespace pushid {
+
+enum class FoldScheme { kStratified, kSubject, kStrong, kSetting };
+
+struct Fold {
+  std::string name;  // "repeat 2 fold 3", "without X-05", "strong"
+  std::vector<int> held_out;
+};
+
+// For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
+// Errors: fewer recordings or subjects than the scheme needs, nobody pushed strongly.
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
+
+// What became of one fold.
+struct FoldPrediction {
+  std::vector<RecordingScore> scores;  // one per test recording
+  std::optional<Behaviour> behaviour;  // of the model fitted on the others, if one was
+};
+
+// Predicted hips of the held-out recordings after fitting on the others.
+class Predictor {
+ public:
+  virtual ~Predictor() = default;
+  // train and test: indices into recordings.
+  virtual FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                     const std::vector<int>& train,
+                                     const std::vector<int>& test) const = 0;
+  std::string name;
+};
+
+struct FoldScore {
+  std::string name;
+  int held_out = 0;
+  double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
+  int failures = 0, falls = 0;
+  int falls_harder = 0;  // FallsWhenPushedHarder (evaluation.h)
+  std::optional<Behaviour> behaviour;
+  PropagationSummary propagation;
+};
+
+struct CrossValidation {
+  std::string predictor;
+  std::vector<FoldScore> folds;
+  // Each recording's score averaged over the repeats that held it out.
+  ScoreSummary summary;
+  int failures = 0, falls = 0, falls_harder = 0;  // over all folds
+  // Over all folds whose model was fitted: how many, how many of them settle in every
+  // demonstration, how many move a line on the farther the harder it is pushed, and the fastest
+  // anybody still is two seconds after a push.
+  int fits = 0, settling = 0, harder_farther = 0;
+  double slowest_to_settle = 0.0;  // m/s
+};
+
+CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
+                              const std::vector<Fold>& folds, const Predictor& predictor,
+                              int num_threads, const JobProgress& progress = nullptr);
+
+// b minus a, recording by recording, with the standard error of its mean.
+struct PairedDifference {
+  std::string a, b;
+  int recordings = 0;
+  double hip_ade = 0.0, hip_ade_error = 0.0;
+  double hip_fde = 0.0, hip_fde_error = 0.0;
+};
+PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
+
+}  // namespace pushid

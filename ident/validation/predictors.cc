@@ -1,0 +1,126 @@
+// ident: the model, the baselines and the ridge yardstick.
+#include "ident/validation/predictors.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "ident/solver/large_network_stage.h"
+
+namespace pushid {
+
+ModelPredictor::ModelPredictor(std::string label, FitOptions options)
+    : options_(std::move(options)) {
+  name = std::move(label);
+  options_.num_threads = 1;  // the folds run in parallel
+}
+
+FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<int>& train,
+                                           const std::vector<int>& test) const {
+  std::vector<PendulumRecording> training;
+  for (int i : train) training.push_back(recordings[i]);
+  FitOptions options = options_;
+  bool usable = true;
+  if (NeedsGradientTraining(options)) {
+    const Result<FitOptions> trained = TrainLargeNetwork(training, options_, nullptr);
+    usable = trained.ok();
+    if (usable) options = trained.value();
+  }
+  const FitProblem problem(training, options);
+  const Solution solution = usable ? Solve(problem) : Solution();
+  FoldPrediction prediction;
+  IdentifiedModel model;
+  model.options = options_.model;
+  model.pool_by = options_.pool_by;
+  if (solution.best >= 0) {
+    model.options = problem.ModelAt(solution.Best().to);
+    model.parameters = problem.Parameters(solution.Best().to, "");
+    prediction.behaviour = problem.BehaviourAt(solution.Best().to);
+    if (options_.ensemble > 1) model.others = FitOtherSeeds(training, options_);
+  }
+  for (int i : test) {
+    if (solution.best < 0) {
+      RecordingScore failed;
+      failed.id = recordings[i].id;
+      failed.frames = recordings[i].num_frames();
+      failed.failure = "the fit without it found no usable optimum";
+      prediction.scores.push_back(failed);
+      continue;
+    }
+    for (const auto& [unit, deviations] : solution.Best().to.unit) {
+      model.by_unit[unit] = problem.Parameters(solution.Best().to, unit);
+    }
+    prediction.scores.push_back(ScoreModel(model, recordings[i]));
+    prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
+  }
+  return prediction;
+}
+
+BaselinePredictor::BaselinePredictor(std::string label, Baseline baseline) : baseline_(baseline) {
+  name = std::move(label);
+}
+
+FoldPrediction BaselinePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                              const std::vector<int>&,
+                                              const std::vector<int>& test) const {
+  FoldPrediction prediction;
+  for (int i : test) prediction.scores.push_back(ScoreHip(recordings[i], baseline_(recordings[i])));
+  return prediction;
+}
+
+RidgePredictor::RidgePredictor(std::string label, double strength) : strength_(strength) {
+  name = std::move(label);
+}
+
+FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<int>& train,
+                                           const std::vector<int>& test) const {
+  int longest = 0;
+  for (const PendulumRecording& r : recordings) longest = std::max(longest, r.num_frames());
+  auto features = [](const PendulumRecording& r) {
+    const Body& body = r.scene.people[r.pushed_person].body;
+    double impulse = 0.0, frames = 0.0;
+    for (const ScenePush& push : r.scene.pushes) {
+      impulse += push.mean[0] * static_cast<double>(push.force.size()) * r.scene.dt;
+      frames += static_cast<double>(push.force.size());
+    }
+    return Eigen::Vector4d(body.mass, body.rod_length, impulse / body.mass, frames);
+  };
+  const int n = static_cast<int>(train.size());
+  Eigen::MatrixXd x(n, 4), targets(n, 3 * longest);
+  for (int i = 0; i < n; ++i) {
+    const PendulumRecording& r = recordings[train[i]];
+    x.row(i) = features(r).transpose();
+    const auto& hip = r.hip[r.pushed_person];
+    for (int t = 0; t < longest; ++t) {
+      const Vector3<double>& at = hip[std::min<size_t>(t, hip.size() - 1)];
+      targets.block<1, 3>(i, 3 * t) = (at - hip[0]).transpose();
+    }
+  }
+  const Eigen::RowVector4d center = x.colwise().mean();
+  x.rowwise() -= center;
+  const Eigen::RowVector4d spread =
+      (x.colwise().squaredNorm() / std::max(1, n - 1)).cwiseSqrt().cwiseMax(1e-9);
+  x.array().rowwise() /= spread.array();
+  const Eigen::RowVectorXd level = targets.colwise().mean();
+  targets.rowwise() -= level;
+  const Eigen::Matrix4d gram = x.transpose() * x + strength_ * Eigen::Matrix4d::Identity();
+  const Eigen::MatrixXd weights = gram.ldlt().solve(x.transpose() * targets);
+
+  FoldPrediction prediction;
+  for (int i : test) {
+    const PendulumRecording& r = recordings[i];
+    const Eigen::RowVector4d f = (features(r).transpose() - center).array() / spread.array();
+    const Eigen::RowVectorXd move = level + f * weights;
+    HipPaths paths = StaticBaseline(r);  // bystanders stay where they are
+    for (int t = 0; t < r.num_frames(); ++t) {
+      paths[r.pushed_person][t] += move.segment<3>(3 * t).transpose();
+    }
+    for (auto& path : paths) path.resize(r.num_frames());
+    prediction.scores.push_back(ScoreHip(r, paths));
+  }
+  return prediction;
+}
+
+}  // namespace pushid

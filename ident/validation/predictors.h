@@ -1,0 +1,48 @@
+// ident: the predictors that cross-validation compares: an identified model, and the yardsticks
+// that any model has to beat.
+#pragma once
+
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+
+// Fits the pendulum model to the training recordings.
+class ModelPredictor : public Predictor {
+ public:
+  ModelPredictor(std::string label, FitOptions options);
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
+
+ private:
+  FitOptions options_;
+};
+
+// StaticBaseline or ConstantVelocityBaseline; nothing is fitted.
+class BaselinePredictor : public Predictor {
+ public:
+  using Baseline = HipPaths (*)(const PendulumRecording&);
+  BaselinePredictor(std::string label, Baseline baseline);
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
+
+ private:
+  Baseline baseline_;
+};
+
+// Ridge regression from the pushed person's mass, rod length, x-impulse over mass and push frames
+// to the displacement of the hip at every frame (paths padded with their last value): no mechanics
+// at all.
+class RidgePredictor : public Predictor {
+ public:
+  explicit RidgePredictor(std::string label, double strength = 1.0);
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
+
+ private:
+  double strength_;  // on standardized features
+};
+
+}  // namespace pushid

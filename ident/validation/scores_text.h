@@ -1,0 +1,25 @@
+// ident: evaluations, cross-validations and propagation in words and tables for a terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+
+std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
+// One column per summary: all recordings, one setting, one rival.
+struct PropagationColumn {
+  std::string name;
+  const PropagationSummary* summary;
+};
+std::string PropagationText(const std::vector<PropagationColumn>& columns);
+// Onset error, missed and false movers of one fold.
+std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary);
+// A line per recording of several people.
+std::string OnsetsText(const std::vector<RecordingScore>& scores);
+
+std::string CrossValidationText(const std::vector<CrossValidation>& rivals);
+
+}  // namespace pushid

@@ -1,0 +1,68 @@
+// residuals: a self-force network (models/self_network.h) of many people at once, step by step, and
+// back: d(cost)/d(weights) of whole rollouts by the adjoint.
+//
+// Everybody is a column. With Z = [x; h; k] and the rows of all gates and candidates stacked to W,
+//   S = W Z,  activations a(S), memories and outputs by element,
+// and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
+//   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
+// Z, activations and cells of every step are kept.
+// A GRU multiplies U_n h by r: there W has the rows [W_n 0] and [0 U_n] in place of [W_n U_n], a
+// third more work, for one product instead of three.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/self_network.h"
+#include "residuals/adjoint/lockstep_columns.h"
+#include "residuals/kernels/packed_matrix.h"
+
+namespace pushid {
+
+class NetworkLockstep {
+ public:
+  using Columns = Eigen::MatrixXd;
+
+  // masses: by column.
+  NetworkLockstep(const NetworkShape& shape, const VectorKernels& kernels,
+                  const LockstepColumns& columns, const std::vector<double>& masses);
+
+  // Everybody's memory back to zero. weights: there until the last step back.
+  void Start(const double* weights);
+
+  // inputs: u, one column for each who is active. forces: 4 x active.
+  void Forward(int step, const Columns& inputs, Columns* forces);
+
+  // Somebody leaves after a step: nothing of it is kept, and there is no memory after it.
+  void Forget(int step, int column);
+
+  // From the last step to the first: the adjoints of a step's forces to those of its inputs.
+  void Backward(int step, const Columns& forces, Columns* inputs);
+
+  // After the last of these: adds d(cost)/d(weights).
+  void AddWeightGradient(double* gradient);
+
+ private:
+  auto At(Columns& of, int step) const { return columns_.At(of, step); }
+  NetworkWeights<double> Weights() const { return {shape_, weights_}; }
+  void PackWeights();
+  void Activate(int step);
+  // From d(cost)/dh of a step to D in activations_, and to the carried adjoint's direct part.
+  void Deactivate(int step, const Columns& hidden);
+
+  NetworkShape shape_;
+  LockstepColumns columns_;
+  const VectorKernels& kernels_;
+  const double* weights_ = nullptr;  // of the last Start
+  int rows_;                         // of W
+  Eigen::VectorXd scale_;            // newtons per output, by column
+  Columns context_;                  // k, by column
+  PackedMatrix stacked_, transposed_, right_;
+
+  Columns inputs_, z_, activations_, hidden_, cells_, cell_tanh_;  // of all steps
+  Columns rest_, context_sum_;                                     // mlp: tanh(C k), adjoint of C k
+  Columns outputs_, embedded_;                                     // adjoints of O h, of E u
+  Columns hidden_carry_, cell_carry_;                              // adjoints from the next step
+};
+
+}  // namespace pushid

@@ -1,0 +1,114 @@
+// residuals: a whole recording against its rollout: one Ceres residual block per recording.
+//
+//   residuals: FrameResidual (frame_residual.h) times `weight` for frames 1 .. horizon - 1, in
+//              sigmas; ordered by frame, then person, then component.
+//   blocks:    BlockLayout (parameter_map.h).
+// Jacobian by forward sensitivities (rollout_sensitivities.h). Rejected: one block per frame, which
+// would roll out the same recording once per frame.
+#pragma once
+
+#include <ceres/cost_function.h>
+
+#include <memory>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "residuals/frame_residual.h"
+#include "residuals/parameter_map.h"
+#include "residuals/sensitivities/rollout_sensitivities.h"
+
+namespace pushid {
+
+// The unit of each person, by which pooled parameters differ.
+std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by);
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// Everything a rollout residual needs; shared by the analytic cost function and its oracle.
+struct RolloutProblem {
+  const PendulumRecording* recording = nullptr;  // must outlive the residual
+  ModelOptions options;
+  ParameterMap map;
+  BlockLayout layout;
+  ResidualSigmas sigmas;
+  double weight = 1.0;  // on every residual of the recording
+  int horizon = 0;      // frames rolled out, including frame 0
+
+  int num_residuals() const { return (horizon - 1) * recording->num_people() * kFrameResiduals; }
+  MeasuredFrame Measured(int frame, int person) const {
+    return {recording->hip[person][frame], recording->states[person][frame],
+            recording->Weight(person, frame)};
+  }
+};
+
+// horizon: at most that many frames; 0 means all.
+std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording& recording,
+                                                         const ModelOptions& options,
+                                                         const ParameterMap& map,
+                                                         const ResidualSigmas& sigmas,
+                                                         double weight, int horizon);
+
+// The inputs of a rollout at the given blocks, with or without columns.
+SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
+                                const BlockLayout& layout, double const* const* blocks);
+
+class RolloutResidual : public ceres::CostFunction {
+ public:
+  explicit RolloutResidual(std::shared_ptr<const RolloutProblem> problem);
+
+  // false when the rollout leaves the model's domain; last_failure then says where.
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+
+  const RolloutStatus& last_failure() const { return last_failure_; }
+
+ private:
+  std::shared_ptr<const RolloutProblem> problem_;
+  // Ceres evaluates a block from one thread at a time.
+  mutable RolloutStatus last_failure_;
+};
+
+// The oracle: the same residual for ceres::DynamicAutoDiffCostFunction; RolloutResidual mirrors it.
+struct RolloutResidualFunctor {
+  std::shared_ptr<const RolloutProblem> problem;
+
+  template <typename T>
+  bool operator()(T const* const* blocks, T* residuals) const {
+    const RolloutProblem& p = *problem;
+    const Scene& scene = p.recording->scene;
+    std::vector<Vector4<T>> velocities;
+    for (const ScenePerson& person : scene.people) {
+      velocities.push_back(person.start.qd.template cast<T>());
+    }
+    if (const T* free = p.layout.VelocityBlock(blocks)) {
+      for (int n = 0; n < scene.num_people(); ++n) {
+        velocities[n] = Eigen::Map<const Vector4<T>>(free + 4 * n);
+      }
+    }
+    RolloutPath<T> path;
+    const std::vector<ParameterSet<T>> parameters = p.layout.Parameters<T>(p.map, blocks);
+    if (!Rollout<T>(scene, p.options, parameters, velocities, p.horizon, &path, nullptr,
+                    p.layout.WeightBlock(blocks))
+             .ok) {
+      return false;
+    }
+    for (int t = 1; t < p.horizon; ++t) {
+      for (int n = 0; n < scene.num_people(); ++n, residuals += kFrameResiduals) {
+        Eigen::Map<FrameVector<T>> r(residuals);
+        const PendulumState<T>& state = path.At(t, n);
+        const Body& body = scene.people[n].body;
+        r = T(p.weight) * (RodMoves(p.options)
+                               ? FrameResidual<T>(BodyNow(body, state.rod, parameters[n][kRodLift]),
+                                                  state, p.Measured(t, n), p.sigmas)
+                               : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
+      }
+    }
+    return true;
+  }
+};
+
+// Writes `jacobian` (rows x all columns) into the blocks that Ceres asks for.
+void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
+                     const std::vector<int>& block_sizes, int first_row, int total_rows,
+                     double** jacobians);
+
+}  // namespace pushid

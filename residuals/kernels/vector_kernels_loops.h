@@ -1,0 +1,157 @@
+// residuals: the loops of vector_kernels.h, for the file that includes this, which says
+//   PUSHID_VECTOR_DOUBLES      doubles in a vector
+//   PUSHID_TILE_VECTORS        vectors in a tile's column
+//   PUSHID_TILE_COLUMNS        columns of a tile; all of it must fit into the registers
+// Nothing here may be shared with files compiled for other instructions, hence no inline function
+// of any header and no external linkage.
+#pragma once
+
+#include "residuals/kernels/vector_kernels.h"
+
+namespace pushid {
+namespace {
+
+using Vector = double __attribute__((vector_size(8 * PUSHID_VECTOR_DOUBLES)));
+constexpr int kTileRows = PUSHID_VECTOR_DOUBLES * PUSHID_TILE_VECTORS;
+
+inline Vector Load(const double* from) {
+  Vector vector;
+  __builtin_memcpy(&vector, from, sizeof(vector));
+  return vector;
+}
+
+// Every loop over the sums is unrolled, or else they would live in memory.
+void AddTile(int depth, const double* left, const double* right, double* c, std::ptrdiff_t stride) {
+  Vector sums[PUSHID_TILE_COLUMNS][PUSHID_TILE_VECTORS] = {};
+  for (int k = 0; k < depth; ++k, left += kTileRows, right += PUSHID_TILE_COLUMNS) {
+    Vector column[PUSHID_TILE_VECTORS];
+#pragma GCC unroll 16
+    for (int v = 0; v < PUSHID_TILE_VECTORS; ++v) {
+      column[v] = Load(left + v * PUSHID_VECTOR_DOUBLES);
+    }
+#pragma GCC unroll 16
+    for (int j = 0; j < PUSHID_TILE_COLUMNS; ++j) {
+#pragma GCC unroll 16
+      for (int v = 0; v < PUSHID_TILE_VECTORS; ++v) sums[j][v] += column[v] * right[j];
+    }
+  }
+#pragma GCC unroll 16
+  for (int j = 0; j < PUSHID_TILE_COLUMNS; ++j) {
+#pragma GCC unroll 16
+    for (int v = 0; v < PUSHID_TILE_VECTORS; ++v) {
+      double* to = c + j * stride + v * PUSHID_VECTOR_DOUBLES;
+      const Vector sum = Load(to) + sums[j][v];
+      __builtin_memcpy(to, &sum, sizeof(sum));
+    }
+  }
+}
+
+inline Vector LoadFirst(const double* from, int count) {
+  if (count == PUSHID_VECTOR_DOUBLES) return Load(from);
+  Vector vector = {};
+  __builtin_memcpy(&vector, from, count * sizeof(double));
+  return vector;
+}
+
+// `width` columns of some rows: one vector, each number of b read once for all rows.
+template <int kRows>
+inline void NarrowBlock(int depth, int width, const double* a, const double* b,
+                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  Vector sums[kRows];
+#pragma GCC unroll 8
+  for (int r = 0; r < kRows; ++r) sums[r] = add ? LoadFirst(c + r * c_stride, width) : Vector{};
+  for (int k = 0; k < depth; ++k) {
+    const Vector row = LoadFirst(b + k * b_stride, width);
+#pragma GCC unroll 8
+    for (int r = 0; r < kRows; ++r) sums[r] += row * a[r * depth + k];
+  }
+#pragma GCC unroll 8
+  for (int r = 0; r < kRows; ++r) {
+    __builtin_memcpy(c + r * c_stride, &sums[r], width * sizeof(double));
+  }
+}
+
+template <bool kWhole>
+inline void NarrowStrip(int rows, int depth, int width, const double* a, const double* b,
+                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  if (kWhole) width = PUSHID_VECTOR_DOUBLES;  // known to the compiler
+  for (; rows >= 8; rows -= 8, a += 8 * depth, c += 8 * c_stride) {
+    NarrowBlock<8>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+  for (; rows >= 4; rows -= 4, a += 4 * depth, c += 4 * c_stride) {
+    NarrowBlock<4>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+  for (; rows > 0; --rows, a += depth, c += c_stride) {
+    NarrowBlock<1>(depth, width, a, b, b_stride, c, c_stride, add);
+  }
+}
+
+void NarrowProduct(int rows, int depth, std::ptrdiff_t columns, const double* a, const double* b,
+                   std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
+  constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
+  for (; columns >= kWidth; columns -= kWidth, b += kWidth, c += kWidth) {
+    NarrowStrip<true>(rows, depth, kWidth, a, b, b_stride, c, c_stride, add);
+  }
+  const int rest = static_cast<int>(columns);
+  if (rest > 0) NarrowStrip<false>(rows, depth, rest, a, b, b_stride, c, c_stride, add);
+}
+
+// exp(x) - 1 = 2^n (1 + p) - 1 with p = exp(r) - 1 by its series, x = n ln 2 + r, |r| <= ln 2 / 2:
+// p starts with r, so that the result is exact to rounding near zero too. Vectors throughout, since
+// compilers leave the plain loop alone where bounds are to respect NaN.
+struct Exponential {
+  Vector power, p;  // 2^n, p
+};
+
+inline Exponential Expand(Vector x) {
+  using Bits = long long __attribute__((vector_size(sizeof(Vector))));
+  constexpr double kLog2e = 1.4426950408889634074, kRound = 6755399441055744.0;  // 1.5 * 2^52
+  constexpr double kLn2High = 6.93145751953125e-1, kLn2Low = 1.42860682030941723212e-6;
+  constexpr double kFactorials[] = {479001600.0, 39916800.0, 3628800.0, 362880.0, 40320.0, 5040.0,
+                                    720.0,       120.0,      24.0,      6.0,      2.0};
+  const Vector shifted = x * kLog2e + kRound;
+  const Vector n = shifted - kRound;
+  const Vector r = (x - n * kLn2High) - n * kLn2Low;
+  Vector series = Vector{} + 1.0 / 6227020800.0;  // 1 / 13!
+#pragma GCC unroll 16
+  for (double factorial : kFactorials) series = series * r + 1.0 / factorial;
+  const Bits power = ((Bits)shifted + 1023) << 52;  // the shifted number ends in n
+  return {(Vector)power, r + r * r * series};
+}
+
+inline Vector Clamp(Vector x, double bound) {
+  const Vector below = x > bound ? Vector{} + bound : x;  // in this order NaN stays NaN
+  return below < -bound ? Vector{} - bound : below;
+}
+
+inline Vector TanhOf(Vector x) {
+  const Exponential e = Expand(2.0 * Clamp(x, 20.0));  // +-1 beyond
+  const Vector expm1 = e.power * e.p + (e.power - 1.0);
+  return expm1 / (expm1 + 2.0);
+}
+
+inline Vector LogisticOf(Vector x) {
+  const Exponential e = Expand(-Clamp(x, 700.0));
+  return 1.0 / (1.0 + (e.power + e.power * e.p));
+}
+
+template <Vector (*kOf)(Vector)>
+void Each(double* values, std::ptrdiff_t count) {
+  constexpr std::ptrdiff_t kWidth = PUSHID_VECTOR_DOUBLES;
+  std::ptrdiff_t i = 0;
+  for (; i + kWidth <= count; i += kWidth) {
+    const Vector result = kOf(Load(values + i));
+    __builtin_memcpy(values + i, &result, sizeof(result));
+  }
+  if (i == count) return;
+  double rest[kWidth] = {};
+  __builtin_memcpy(rest, values + i, (count - i) * sizeof(double));
+  const Vector result = kOf(Load(rest));
+  __builtin_memcpy(values + i, &result, (count - i) * sizeof(double));
+}
+
+constexpr VectorKernels kKernels = {PUSHID_VECTOR_NAME, kTileRows,    PUSHID_TILE_COLUMNS, AddTile,
+                                    NarrowProduct,      Each<TanhOf>, Each<LogisticOf>};
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,175 @@
+// residuals: the chain rule through one step of an MLP, a GRU or an LSTM.
+#include "residuals/sensitivities/network_sensitivities.h"
+
+#include "residuals/kernels/narrow_product.h"
+
+namespace pushid {
+namespace {
+
+using Eigen::VectorXd;
+
+// d tanh and d logistic, from the activations.
+VectorXd TanhSlope(const VectorXd& a) { return 1.0 - a.array().square(); }
+VectorXd LogisticSlope(const VectorXd& a) { return a.array() * (1.0 - a.array()); }
+
+}  // namespace
+
+NetworkSensitivities::NetworkSensitivities(const NetworkShape& shape, const double* weights,
+                                           double mass, int num_columns, int weight_column)
+    : shape_(shape),
+      weights_(shape, weights),
+      scale_(kNetworkAcceleration * mass),
+      weight_column_(weight_column),
+      embedding_(shape.embedding, num_columns),
+      now_(shape.hidden, num_columns),
+      next_(Columns::Zero(shape.hidden, num_columns)),
+      hidden_(VectorXd::Zero(shape.hidden)) {
+  if (shape.kind == NetworkKind::kLstm) cell_ = Columns::Zero(shape.hidden, num_columns);
+}
+
+template <typename Rows>
+void NetworkSensitivities::AddOwn(int first, int width, int offset, const VectorXd& gain,
+                                  const VectorXd& multiplied, Rows rows) const {
+  if (weight_column_ < 0) return;
+  for (int row = 0; row < rows.rows(); ++row) {
+    const int column = weight_column_ + first + row * width + offset;
+    rows.row(row).segment(column, multiplied.size()) += gain[row] * multiplied.transpose();
+  }
+}
+
+template <typename Rows>
+void NetworkSensitivities::AddOwnGates(const NetworkState<double>& state, int block,
+                                       const VectorXd& gain, Rows rows) const {
+  const int width = shape_.gate_width();
+  const int first = shape_.gates_at() + block * shape_.hidden * width;
+  AddOwn(first, width, 0, gain, state.features, rows);
+  if (shape_.recurrent())
+    AddOwn(first, width, shape_.num_features(), gain, state.hidden_before, rows);
+  AddOwn(first, width, shape_.candidate_width(), gain, state.context, rows);
+}
+
+void NetworkSensitivities::AdvanceEmbedding(const NetworkState<double>& state, const Heard& heard) {
+  const VectorXd slope = TanhSlope(state.features);
+  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(kMotionInputs) *
+                        MotionInputScales().asDiagonal();
+  SetNarrowProduct(embed, heard.by_state.middleRows<kMotionInputs>(2), embedding_);
+  if (shape_.rod_input && heard.rod.size() > 0) {
+    const VectorXd by_rod = slope.cwiseProduct(weights_.embed.col(kMotionInputs)) / kNetworkRod;
+    embedding_.noalias() += by_rod * heard.rod;
+  }
+  AddOwn(0, shape_.num_inputs(), 0, slope, state.inputs, embedding_.topRows(shape_.embedding));
+}
+
+void NetworkSensitivities::Carry(const Columns& step, const Heard& heard, bool add,
+                                 Columns* rows) const {
+  if (shape_.embedding > 0) {
+    NarrowProduct(step.leftCols(shape_.embedding), embedding_, add, *rows);
+  } else {
+    const Columns motion = step.leftCols(kMotionInputs) * MotionInputScales().asDiagonal();
+    NarrowProduct(motion, heard.by_state.middleRows<kMotionInputs>(2), add, *rows);
+    if (shape_.rod_input && heard.rod.size() > 0) {
+      rows->noalias() += (step.col(kMotionInputs) / kNetworkRod) * heard.rod;
+    }
+  }
+  if (shape_.recurrent()) AddNarrowProduct(step.rightCols(shape_.hidden), now_, *rows);
+}
+
+void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state, const Heard& heard) {
+  const VectorXd slope = TanhSlope(state.gates);
+  const int nf = shape_.num_features();
+  const Columns step = slope.asDiagonal() * weights_.gates;
+  Carry(step, heard, false, &next_);
+  auto rows = next_.topRows(shape_.hidden);
+  const int first = shape_.gates_at(), width = shape_.gate_width();
+  AddOwn(first, width, 0, slope, state.features, rows);
+  // The slopes' difference, tanh' (W x + C k) - tanh' (C k), without what cancels.
+  AddOwn(first, width, nf, -state.hidden.cwiseProduct(state.gates + state.rest), state.context,
+         rows);
+}
+
+void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const Heard& heard) {
+  const int nf = shape_.num_features(), h = shape_.hidden;
+  const VectorXd slope = LogisticSlope(state.gates);
+  const VectorXd keep = state.gates.head(h), recall = state.gates.tail(h);
+  // How far the sums of n, r and z move h'.
+  const VectorXd by_n = (1.0 - keep.array()).matrix().cwiseProduct(TanhSlope(state.candidates));
+  const VectorXd by_r = by_n.cwiseProduct(state.recurrent).cwiseProduct(slope.tail(h));
+  const VectorXd by_z = (state.hidden_before - state.candidates).cwiseProduct(slope.head(h));
+  Columns step = by_z.asDiagonal() * weights_.gates.topRows(h);
+  step += by_r.asDiagonal() * weights_.gates.bottomRows(h);
+  step.leftCols(nf) += by_n.asDiagonal() * weights_.candidates.leftCols(nf);
+  step.rightCols(h) += by_n.cwiseProduct(recall).asDiagonal() * weights_.candidates.rightCols(h);
+  step.rightCols(h).diagonal() += keep;
+  Carry(step, heard, false, &next_);
+  AddOwnGates(state, 0, by_z, next_.topRows(h));
+  AddOwnGates(state, 1, by_r, next_.topRows(h));
+  const int first = shape_.candidates_at(), width = shape_.candidate_width();
+  AddOwn(first, width, 0, by_n, state.features, next_.topRows(h));
+  AddOwn(first, width, nf, by_n.cwiseProduct(recall), state.hidden_before, next_.topRows(h));
+}
+
+void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const Heard& heard) {
+  const int nf = shape_.num_features(), h = shape_.hidden;
+  const VectorXd slope = LogisticSlope(state.gates);
+  const VectorXd input = state.gates.head(h), output = state.gates.tail(h);
+  // How far the sums of i, f and g move c', and that of o moves h'.
+  const VectorXd by_i = state.candidates.cwiseProduct(slope.head(h));
+  const VectorXd by_f = state.cell_before.cwiseProduct(slope.segment(h, h));
+  const VectorXd by_g = input.cwiseProduct(TanhSlope(state.candidates));
+  const VectorXd by_o = state.cell_tanh.cwiseProduct(slope.tail(h));
+  Columns step = by_i.asDiagonal() * weights_.gates.topRows(h);
+  step += by_f.asDiagonal() * weights_.gates.middleRows(h, h);
+  step += by_g.asDiagonal() * weights_.candidates;
+  cell_ = state.gates.segment(h, h).asDiagonal() * cell_;
+  Carry(step, heard, true, &cell_);
+  AddOwnGates(state, 0, by_i, cell_.topRows(h));
+  AddOwnGates(state, 1, by_f, cell_.topRows(h));
+  const int first = shape_.candidates_at(), width = shape_.candidate_width();
+  AddOwn(first, width, 0, by_g, state.features, cell_.topRows(h));
+  AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
+
+  step = by_o.asDiagonal() * weights_.gates.bottomRows(h);
+  Carry(step, heard, false, &next_);
+  next_ += output.cwiseProduct(TanhSlope(state.cell_tanh)).asDiagonal() * cell_;
+  AddOwnGates(state, 2, by_o, next_.topRows(h));
+}
+
+void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state,
+                                   const Row& rod) {
+  const Heard heard{by_state, rod};
+  if (shape_.embedding > 0) AdvanceEmbedding(state, heard);
+  now_.swap(next_);
+  switch (shape_.kind) {
+    case NetworkKind::kNone:
+      return;
+    case NetworkKind::kMlp:
+      AdvanceMlp(state, heard);
+      break;
+    case NetworkKind::kGru:
+      AdvanceGru(state, heard);
+      break;
+    case NetworkKind::kLstm:
+      AdvanceLstm(state, heard);
+      break;
+  }
+  hidden_ = state.hidden;
+}
+
+void NetworkSensitivities::AddTo(ForceColumns* by_column) const {
+  const Columns output = scale_ * weights_.output;
+  AddNarrowProduct(output, next_, *by_column);
+  AddOwn(shape_.output_at(), shape_.hidden, 0, VectorXd::Constant(4, scale_), hidden_,
+         by_column->topRows(4));
+}
+
+void NetworkSensitivities::AddTo(const Eigen::RowVector4d& by_force,
+                                 Eigen::RowVectorXd* by_column) const {
+  const Eigen::RowVectorXd by_hidden = (scale_ * by_force) * weights_.output;
+  by_column->noalias() += by_hidden * next_;
+  for (int row = 0; row < 4; ++row) {
+    AddOwn(shape_.output_at() + row * shape_.hidden, shape_.hidden, 0,
+           VectorXd::Constant(1, scale_ * by_force[row]), hidden_, by_column->topRows(1));
+  }
+}
+
+}  // namespace pushid

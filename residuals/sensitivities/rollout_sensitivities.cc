@@ -1,0 +1,248 @@
+// residuals: the chained forward sensitivities.
+#include "residuals/sensitivities/rollout_sensitivities.h"
+
+#include <ceres/jet.h>
+
+#include <optional>
+
+#include "residuals/kernels/narrow_product.h"
+#include "residuals/sensitivities/network_sensitivities.h"
+#include "residuals/sensitivities/rod_sensitivities.h"
+
+namespace pushid {
+
+Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
+                                        const Vector4<double>& a) {
+  using Jet = ceres::Jet<double, 4>;
+  PendulumState<Jet> jets;
+  for (int i = 0; i < 4; ++i) {
+    jets.q[i] = i < 2 ? Jet(state.q[i]) : Jet(state.q[i], i - 2);
+    jets.qd[i] = i < 2 ? Jet(state.qd[i]) : Jet(state.qd[i], i);
+  }
+  const Vector4<Jet> value = InverseDynamics<Jet>(body, jets, a.cast<Jet>());
+  Matrix4<double> jacobian;
+  for (int row = 0; row < 4; ++row) jacobian.row(row) = value[row].v.transpose();
+  return jacobian;
+}
+
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a) {
+  using Jet = ceres::Jet<double, 1>;
+  const BodyOf<Jet> jets{body.mass, Jet(body.rod_length, 0), Jet(0.0)};
+  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
+  const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
+  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
+}
+
+void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
+                      const ParameterSet<double>& p, int person, int frame,
+                      const PendulumState<double>& state, const Vector4<double>& previous,
+                      SelfForce::Jacobian* jacobian) {
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  switch (active) {
+    case ActiveForces::kAll:
+      self.TotalJacobian(p, state, previous, jacobian);
+      break;
+    case ActiveForces::kPushAndFriction:
+      self.FrictionJacobian(p, state.qd, jacobian);
+      break;
+    case ActiveForces::kPushOnly:
+      jacobian->by_state.setZero();
+      jacobian->by_previous.setZero();
+      jacobian->by_parameter.setZero();
+      break;
+  }
+  if (options.push_tail == PushTail::kNone || active != ActiveForces::kAll) return;
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person == person) {
+      AddTailJacobian(push, p, frame, scene.dt, &jacobian->by_parameter);
+    }
+  }
+}
+
+namespace {
+
+using Columns = NetworkSensitivities::ForceColumns;
+
+// Derivatives of what everybody gets from others, now and lately.
+class ReceivedSensitivities {
+ public:
+  ReceivedSensitivities(const Scene& scene, const ModelOptions& options,
+                        const SensitivityInputs& inputs)
+      : scene_(scene),
+        options_(options),
+        inputs_(inputs),
+        now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
+        lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {}
+
+  // Of the interaction at one frame; forces: updated to it.
+  void Update(const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
+              SceneForces<double>* forces) {
+    if (!options_.interaction.Any()) return;
+    for (Columns& columns : now_) columns.setZero();
+    forces->pairs().ForEachPair([&](int n, int j) {
+      if (!forces->Between(n, j).acts) return;
+      const PairJacobian jacobian = ComputePairJacobian(
+          options_.interaction, options_.interaction_network.get(), PairOf(scene_, n, j),
+          forces->Parameters(0), path.At(frame, n), path.At(frame, j));
+      for (int side = 0; side < 2; ++side) {
+        Columns& target = now_[side == 0 ? n : j];
+        target += jacobian.by_states.block<4, 8>(4 * side, 0) * sensitivities.At(frame, n);
+        target += jacobian.by_states.block<4, 8>(4 * side, 8) * sensitivities.At(frame, j);
+        for (const ColumnEntry& entry : inputs_.entries[0]) {
+          if (!IsPairParameter(entry.parameter)) continue;
+          target.col(entry.column) +=
+              entry.derivative *
+              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter);
+        }
+      }
+    });
+  }
+
+  // Adds what person n feels of it.
+  void AddTo(int n, const SceneForces<double>& forces, Columns* by_column) const {
+    if (options_.interaction.Any()) *by_column += now_[n];
+    if (!options_.interaction.drive) return;
+    const ParameterSet<double>& p = forces.Parameters(n);
+    const Vector4<double>& lately = forces.received(n).lately;
+    by_column->topRows<2>() += p[kDriveGain] * lately_[n].topRows<2>();
+    by_column->bottomRows<2>() += p[kDriveTorque] * lately_[n].bottomRows<2>();
+    for (const ColumnEntry& entry : inputs_.entries[n]) {
+      if (entry.parameter == kDriveGain) {
+        by_column->col(entry.column).head<2>() += entry.derivative * lately.head<2>();
+      } else if (entry.parameter == kDriveTorque) {
+        by_column->col(entry.column).tail<2>() += entry.derivative * lately.tail<2>();
+      }
+    }
+  }
+
+  // On to the next frame; forces: still at this one.
+  void Advance(const SceneForces<double>& forces) {
+    if (!options_.interaction.drive) return;
+    for (int n = 0; n < scene_.num_people(); ++n) {
+      const ParameterSet<double>& p = forces.Parameters(n);
+      const Received<double>& received = forces.received(n);
+      const double memory = DriveMemory(p, scene_.dt);
+      lately_[n] = memory * lately_[n] + (1.0 - memory) * now_[n];
+      const double by_time = memory * scene_.dt / (p[kDriveTime] * p[kDriveTime]);
+      for (const ColumnEntry& entry : inputs_.entries[n]) {
+        if (entry.parameter != kDriveTime) continue;
+        lately_[n].col(entry.column) +=
+            entry.derivative * by_time * (received.lately - received.now);
+      }
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  const ModelOptions& options_;
+  const SensitivityInputs& inputs_;
+  std::vector<Columns> now_, lately_;
+};
+
+const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
+  return inputs.network_weights != nullptr ? inputs.network_weights
+                                           : options.self_network->weights.data();
+}
+
+// One for each person, or none.
+std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelOptions& options,
+                                                const SensitivityInputs& inputs) {
+  std::vector<NetworkSensitivities> networks;
+  if (options.self_network == nullptr || !options.self_network->shape.any()) return networks;
+  const SelfNetwork& network = *options.self_network;
+  const double* weights = Weights(options, inputs);
+  for (const ScenePerson& person : scene.people) {
+    networks.emplace_back(network.shape, weights, person.body.mass, inputs.num_columns,
+                          inputs.weight_column);
+  }
+  return networks;
+}
+
+}  // namespace
+
+RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
+                                       const SensitivityInputs& inputs, int num_frames,
+                                       RolloutPath<double>* path,
+                                       RolloutSensitivities* sensitivities) {
+  const int people = scene.num_people();
+  SceneForces<double> forces(scene, options, inputs.parameters, inputs.network_weights);
+  std::vector<NetworkSensitivities> networks = StartNetworks(scene, options, inputs);
+  const bool rod_moves = RodMoves(options);
+  std::optional<RodSensitivities> rod;
+  if (rod_moves) {
+    rod.emplace(*options.self_network, Weights(options, inputs), inputs.num_columns,
+                inputs.weight_column);
+  }
+  ReceivedSensitivities received(scene, options, inputs);
+  *path = RolloutPath<double>(num_frames, people);
+  sensitivities->Resize(num_frames, people, inputs.num_columns, rod_moves);
+  for (int n = 0; n < people; ++n) {
+    path->At(0, n) = {scene.people[n].start.q, inputs.initial_velocity[n]};
+    auto start = sensitivities->At(0, n);
+    start.setZero();
+    sensitivities->Rod(0, n).setZero();
+    if (inputs.velocity_column >= 0) {
+      start.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
+    }
+  }
+
+  Columns by_column(4, inputs.num_columns);
+  SelfForce::Jacobian jacobian;
+  std::vector<int> scratch;
+  for (int t = 0; t + 1 < num_frames; ++t) {
+    const int before = t > 0 ? t - 1 : 0;
+    forces.Update(path->Frame(t));
+    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
+    received.Update(*path, *sensitivities, t, &forces);
+    for (int n = 0; n < people; ++n) {
+      const Body& body = scene.people[n].body;
+      const SelfForce& self = forces.self(n);
+      const ParameterSet<double>& p = inputs.parameters[n];
+      const PendulumState<double>& state = path->At(t, n);
+      const Vector4<double>& previous = path->At(before, n).qd;
+      const Vector4<double> a = forces.AccelerationOf(n, forces.On(n, t, previous).Total());
+      path->At(t + 1, n) = forces.Next(n, a, previous);
+      const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
+      if (!outside.empty()) return {false, t + 1, n, outside};
+
+      NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
+      const Body now_body = BodyNow(body, state.rod, 0.0);
+      const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, state, a);
+      jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
+      jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
+      const auto now = sensitivities->At(t, n);
+      SetNarrowProduct(jacobian.by_state, now, by_column);
+      if (self.cart_derivative) {
+        by_column.topRows<2>() +=
+            jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
+      }
+      for (const ColumnEntry& entry : inputs.entries[n]) {
+        by_column.col(entry.column) +=
+            entry.derivative * jacobian.by_parameter.col(entry.parameter);
+      }
+      const auto rod_now = sensitivities->Rod(t, n);
+      if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, a) * rod_now;
+      if (!networks.empty()) networks[n].Advance(forces.network(n), now, rod_now);
+      if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
+        received.AddTo(n, forces, &by_column);
+        if (!networks.empty()) networks[n].AddTo(&by_column);
+      }
+      auto next = sensitivities->At(t + 1, n);
+      next.bottomRows<4>() = now.bottomRows<4>();
+      const Matrix4<double> inverse = scene.dt * InverseMassMatrix(now_body, state.q);
+      AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
+      next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
+      if (!rod_moves) continue;
+      self.TotalJacobian(p, state, previous, &jacobian);
+      const RodStep step{forces.rod(n), body.mass, jacobian,
+                         networks.empty() ? nullptr : &networks[n], inputs.entries[n]};
+      sensitivities->Rod(t + 1, n) =
+          rod_now + scene.dt * rod->Velocity(step, now, sensitivities->At(before, n), rod_now);
+    }
+    received.Advance(forces);
+  }
+  return {};
+}
+
+}  // namespace pushid

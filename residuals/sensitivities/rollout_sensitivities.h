@@ -1,0 +1,90 @@
+// residuals: a rollout together with its derivatives, carried forward step by step.
+//
+// With s = [q, qd] of a person and S = ds/d(columns), M a = F - C - G gives
+//   da = M^-1 (dF/ds - d(M a + C + G)/ds at fixed a) S + M^-1 dF/dp dp/d(columns)
+//   S_qd <- S_qd + dt da,   S_q <- S_q + dt S_qd
+// Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
+// touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
+// columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too
+// (so is a network's memory: network_sensitivities.h, and a rod that moves: rod_sensitivities.h):
+//   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/rollout.h"
+#include "residuals/parameter_map.h"
+#include "residuals/sensitivities/pair_jacobian.h"
+
+namespace pushid {
+
+// What a rollout is run with: one entry per person.
+struct SensitivityInputs {
+  std::vector<ParameterSet<double>> parameters;
+  std::vector<Vector4<double>> initial_velocity;
+  std::vector<std::vector<ColumnEntry>> entries;
+  int num_columns = 0;
+  int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
+  const double* network_weights = nullptr;  // all of options.self_network, instead of its own
+  int weight_column = -1;                   // of the first of them; negative when not fitted
+};
+
+// d [q, qd] / d columns at every frame and person; of the rod beside it, where it moves.
+class RolloutSensitivities {
+ public:
+  using Block = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
+  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false) {
+    num_people_ = num_people;
+    num_columns_ = num_columns;
+    const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
+    storage_.resize(8 * all);
+    rod_.resize(rod_moves ? all : 0);
+  }
+  Eigen::Map<Block> At(int frame, int person) {
+    return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
+  }
+  Eigen::Map<const Block> At(int frame, int person) const {
+    return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
+  }
+  // d l / d columns; empty where the rod is constant.
+  auto Rod(int frame, int person) {
+    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  }
+  auto Rod(int frame, int person) const {
+    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  }
+
+ private:
+  Eigen::Index RodOffset(int frame, int person) const {
+    return rod_.size() > 0 ? Offset(frame, person) : 0;
+  }
+  Eigen::Index Offset(int frame, int person) const {
+    return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
+  }
+  int num_people_ = 0, num_columns_ = 0;
+  Eigen::VectorXd storage_;  // the blocks, one after the other
+  Eigen::RowVectorXd rod_;
+};
+
+// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
+Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
+                                        const Vector4<double>& a);
+
+// d(M a + C + G)/dl at fixed acceleration a.
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a);
+
+// Derivatives of NetForceAt: the analytic twin.
+void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
+                      const ParameterSet<double>& p, int person, int frame,
+                      const PendulumState<double>& state, const Vector4<double>& previous,
+                      SelfForce::Jacobian* jacobian);
+
+// Same path as Rollout<double>, to the last bit.
+RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
+                                       const SensitivityInputs& inputs, int num_frames,
+                                       RolloutPath<double>* path,
+                                       RolloutSensitivities* sensitivities);
+
+}  // namespace pushid

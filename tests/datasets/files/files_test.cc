@@ -1,0 +1,216 @@
+// Output files, hashes, JSON files and lines: the ground the readers and writers stand on.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <csignal>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/formats/axes.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using AtomicFileTest = TempDirTest;
+using JsonFileTest = TempDirTest;
+using InputFileTest = TempDirTest;
+
+TEST_F(AtomicFileTest, WritesAndReplaces) {
+  ASSERT_FALSE(WriteFileAtomically(Path("a"), "one"));
+  EXPECT_EQ(ReadText(Path("a")), "one");
+  ASSERT_EQ(::chmod(Path("a").c_str(), 0640), 0);
+  ASSERT_FALSE(WriteFileAtomically(Path("a"), "two"));
+  EXPECT_EQ(ReadText(Path("a")), "two");
+  EXPECT_EQ(CountFiles(), 1);
+  struct stat info {};
+  ASSERT_EQ(::stat(Path("a").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0640u);
+}
+
+TEST_F(AtomicFileTest, WithoutCommitNothingHappens) {
+  WriteText("a", "old");
+  {
+    AtomicFile file;
+    ASSERT_FALSE(file.Open(Path("a")));
+    file.Append(std::string(1 << 20, 'x'));
+    EXPECT_EQ(CountFiles(), 2);
+  }
+  EXPECT_EQ(CountFiles(), 1);
+  EXPECT_EQ(ReadText(Path("a")), "old");
+}
+
+TEST_F(AtomicFileTest, CheckWritableLeavesNoTrace) {
+  EXPECT_FALSE(CheckWritable(Path("a")));
+  EXPECT_EQ(CountFiles(), 0);
+  WriteText("a", "old");
+  EXPECT_FALSE(CheckWritable(Path("a")));
+  EXPECT_EQ(ReadText(Path("a")), "old");
+  EXPECT_EQ(CountFiles(), 1);
+}
+
+TEST_F(AtomicFileTest, SaysWhyNot) {
+  const MaybeError no_folder = CheckWritable(Path("no/such/a.json"));
+  ASSERT_TRUE(no_folder);
+  EXPECT_TRUE(Contains(no_folder->ToString(), Path("no/such") + " does not exist"));
+  EXPECT_TRUE(Contains(no_folder->ToString(), "create it"));
+  const MaybeError folder = CheckWritable(folder_.string());
+  ASSERT_TRUE(folder);
+  EXPECT_TRUE(Contains(folder->ToString(), "this is a folder"));
+  EXPECT_TRUE(CheckWritable(""));
+  WriteText("file", "");
+  EXPECT_TRUE(CheckWritable(Path("file/a.json")));
+  EXPECT_TRUE(CheckWritable("/proc/a.json"));
+}
+
+TEST_F(AtomicFileTest, LinksStayLinks) {
+  WriteText("target", "old");
+  std::filesystem::create_symlink(Path("target"), Path("link"));
+  ASSERT_FALSE(WriteFileAtomically(Path("link"), "new"));
+  EXPECT_TRUE(std::filesystem::is_symlink(Path("link")));
+  EXPECT_EQ(ReadText(Path("target")), "new");
+}
+
+TEST_F(AtomicFileTest, DevicesAreWrittenDirectly) {
+  EXPECT_FALSE(WriteFileAtomically("/dev/null", "text"));
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  if (std::filesystem::is_character_file("/dev/full")) {
+    const MaybeError full = WriteFileAtomically("/dev/full", "text");
+    ASSERT_TRUE(full);
+    EXPECT_TRUE(Contains(full->ToString(), "/dev/full: cannot write it: No space left"));
+  }
+}
+
+// A limit on the size of files stands in for a full disk.
+TEST_F(AtomicFileTest, FullDiskLeavesNothingBehind) {
+  WriteText("a", "old");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto previous = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{10000, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const MaybeError failed = WriteFileAtomically(Path("a"), std::string(1 << 20, 'x'));
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, previous);
+  ASSERT_TRUE(failed);
+  EXPECT_TRUE(Contains(failed->ToString(), Path("a") + ": cannot write it: "));
+  EXPECT_EQ(ReadText(Path("a")), "old");
+  EXPECT_EQ(CountFiles(), 1);
+}
+
+TEST_F(InputFileTest, HashesAreThoseOfXxhsum) {
+  // xxhsum -H2 of the empty file and of "pushid\n".
+  EXPECT_EQ(HashFile(WriteText("empty", "")).value(), "99aa06d3014798d86001c324468d497f");
+  EXPECT_EQ(HashFile(WriteText("a", "pushid\n")).value(),
+            HashFile(WriteText("b", "pushid\n")).value());
+  EXPECT_NE(HashFile(Path("a")).value(), HashFile(WriteText("b", "pushid")).value());
+  EXPECT_FALSE(HashFile(Path("missing")).ok());
+  // In pieces or as a whole, as long as it takes several reads.
+  std::string text;
+  for (int i = 0; i < 200000; ++i) text += std::to_string(i) + (i % 3 == 0 ? "\n" : " ");
+  const std::string path = WriteText("long", text);
+  ContentHash hash;
+  hash.Add(std::string_view(text).substr(0, 12345));
+  hash.Add(std::string_view(text).substr(12345));
+  EXPECT_EQ(HashFile(path).value(), hash.Hex());
+  LineReader reader;
+  ASSERT_FALSE(reader.Open(path));
+  std::string_view line;
+  std::string joined;
+  while (reader.Next(&line)) joined.append(line).append("\n");
+  joined.pop_back();  // the text has no newline at its end
+  EXPECT_EQ(joined, text);
+  EXPECT_EQ(reader.HashHex(), hash.Hex());
+}
+
+TEST_F(InputFileTest, EndlessLineIsRefused) {
+  LineReader reader;
+  ASSERT_FALSE(reader.Open("/dev/zero"));
+  std::string_view line;
+  EXPECT_FALSE(reader.Next(&line));
+  ASSERT_TRUE(reader.error());
+  EXPECT_TRUE(Contains(reader.error()->ToString(), "longer than 64 MB"));
+}
+
+TEST_F(JsonFileTest, DoublesReadBackTheSame) {
+  nlohmann::json content;
+  for (double value : {1.0 / 3.0, 1e-300, 123456789.123456789, -2.5e300, 0.1 + 0.2}) {
+    content["values"].push_back(value);
+  }
+  content["text"] = "\xC3\xA4\xFF";  // ä and a byte that is no UTF-8
+  ASSERT_FALSE(WriteJson(Path("a.json"), content));
+  const std::string text = ReadText(Path("a.json"));
+  EXPECT_EQ(text.back(), '\n');
+  const Result<nlohmann::json> read = ReadJson(Path("a.json"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value()["values"], content["values"]);
+}
+
+TEST_F(JsonFileTest, SyntaxErrorsHaveLineAndColumn) {
+  const struct {
+    const char* text;
+    const char* place;
+  } cases[] = {
+      {"{\n  \"a\": 1,\n  \"b\" 2\n}\n", ":3:7: this is not valid JSON: "},
+      {"{\"a\": 1,}", ":1:9: "},
+      {"{\"a\": NaN}", ":1:7: "},
+      {"{\"a\": 1}\n{", ":2:1: "},
+      {"[1,\n2", ":2:2: "},
+      {"[1,\n 1e999]", ":2:6: "},
+      {"{\"a\":\n\"\xFF\"}", ":2:2: "},
+      {" \n\t", ": the file is empty"},
+  };
+  for (const auto& c : cases) {
+    const std::string path = WriteText("a.json", c.text);
+    const Result<nlohmann::json> read = ReadJson(path);
+    ASSERT_FALSE(read.ok()) << c.text;
+    EXPECT_TRUE(Contains(read.error().ToString(), path + c.place)) << c.text;
+  }
+  const Result<nlohmann::json> deep = ReadJson(WriteText("a.json", std::string(1 << 20, '[')));
+  ASSERT_FALSE(deep.ok());
+  EXPECT_TRUE(Contains(deep.error().ToString(), "a.json:1:201: the JSON nests deeper than 200"));
+}
+
+TEST_F(JsonFileTest, ValuesAreFoundInTheText) {
+  const std::string path = WriteText(
+      "a.json", "{ \"x\": [1, {\"a\\\"]\": \"}\\\"\"},\n  {\"b\" : [[], {}],\n \"c\": -1e3 } ] }");
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  ASSERT_TRUE(document.ok()) << document.error().ToString();
+  const auto place = [&](const char* pointer) {
+    return document.value().ErrorAt(pointer, "m").ToString().substr(path.size());
+  };
+  EXPECT_EQ(place(""), ":1:1: m");
+  EXPECT_EQ(place("/x/0"), ":1:9: m");
+  EXPECT_EQ(place("/x/1/a\"]"), ":1:21: m");
+  EXPECT_EQ(place("/x/2/c"), ":3:7: m");
+  EXPECT_EQ(place("/x/2/missing"), ":2:3: m");
+  EXPECT_EQ(place("/x/7"), ":1:8: m");
+  EXPECT_EQ(document.value().ElementLines("/x"), (std::vector<int>{1, 1, 2}));
+}
+
+TEST(Axes, TurnToForwardLeftUp) {
+  const auto rotation = [](const char* up, const char* forward) {
+    return AxesRotation(up, forward).value();
+  };
+  EXPECT_TRUE(rotation("z", "x").isIdentity(0.0));
+  // y up, facing z (as many BVH files have it): x points left.
+  EXPECT_EQ(rotation("+y", "Z") * Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(3, 1, 2));
+  for (const char* up : {"x", "-y", "+z"}) {
+    for (const char* forward : {"x", "-y", "Z", "-x"}) {
+      const auto result = AxesRotation(up, forward);
+      if (!result.ok()) continue;
+      EXPECT_EQ(result.value().determinant(), 1.0);
+    }
+  }
+  EXPECT_TRUE(Contains(AxesRotation("up", "x").error().message, "up is 'up', not an axis"));
+  EXPECT_TRUE(Contains(AxesRotation("z", "").error().message, "forward is ''"));
+  EXPECT_TRUE(Contains(AxesRotation("x", "-x").error().message, "same axis"));
+}
+
+}  // namespace
+}  // namespace pushid

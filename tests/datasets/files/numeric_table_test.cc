@@ -1,0 +1,115 @@
+// Tables as text: round trips, separators, files as other programs write them, bad input.
+#include "datasets/files/numeric_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using NumericTableTest = TempDirTest;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+TEST_F(NumericTableTest, TableRoundTrip) {
+  NumericTable table;
+  table.names = {"time", "a", "b"};
+  table.chosen = {0, 1, 2};
+  table.data = {{0.0, 0.01, 0.02}, {0.1, kNaN, -1e-30}, {1e300, 2.0 / 3.0, 0.0}};
+  for (TableFormat format : {TableFormat::kCsv, TableFormat::kStorage}) {
+    ASSERT_FALSE(WriteNumericTable(Path("t"), format, table));
+    const Result<NumericTable> read = ReadNumericTable(Path("t"), format);
+    ASSERT_TRUE(read.ok()) << read.error().ToString();
+    EXPECT_EQ(read.value().names, table.names);
+    for (int i = 0; i < 3; ++i) {
+      for (int row = 0; row < 3; ++row) {
+        if (std::isnan(table.data[i][row])) {
+          EXPECT_TRUE(std::isnan(read.value().data[i][row]));
+        } else {
+          EXPECT_EQ(read.value().data[i][row], table.data[i][row]);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(NumericTableTest, TablesOfOtherPrograms) {
+  const char* semicolons = "\xEF\xBB\xBF# made by hand\n\"t\";\"x\";\n0;1;\n0.5;;\n";
+  Result<NumericTable> read = ReadNumericTable(WriteText("a.csv", semicolons), TableFormat::kCsv);
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().names, (std::vector<std::string>{"t", "x"}));
+  EXPECT_TRUE(std::isnan(read.value().data[1][1]));
+  // An old motion file.
+  const char* mot =
+      "forces\ndatacolumns 3\ndatarows 2\nrange 0 1\nendheader\n"
+      "time ground_force_vx\tground_force_vy\n 0.0  1 2 \n 1.0\tnan\t4\n";
+  read = ReadNumericTable(WriteText("a.mot", mot), TableFormat::kStorage);
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_TRUE(std::isnan(read.value().data[1][1]));
+  EXPECT_EQ(read.value().data[2][1], 4.0);
+}
+
+TEST_F(NumericTableTest, SeparatorsAsTheLineOfNamesHasThem) {
+  const struct {
+    std::string text;
+    std::vector<std::string> names;
+  } cases[] = {
+      {"time\tforce (N, up)\n1\t2\n", {"time", "force (N, up)"}},
+      {"time\tforce, up\n1\t2\n", {"time", "force, up"}},  // as many of each: the rarer in names
+      {"time\tx [m; up]\ty [m; left]\n1\t2\t3\n", {"time", "x [m; up]", "y [m; left]"}},
+      {"time;force (N, up, left)\n1;2\n", {"time", "force (N, up, left)"}},
+      {"time;\"x, up, left, far\"\n1;2\n", {"time", "x, up, left, far"}},
+      {"time,\"force; N; up\",\"a, b\"\n1,\"2\",3\n", {"time", "force; N; up", "a, b"}},
+      {"time,\tx,\ty\n1,\t2,\t3\n", {"time", "x", "y"}},
+      {"time,pipe 5\",b (\n1,2,3\n", {"time", "pipe 5\"", "b ("}},  // nothing closes
+      {"time\n1\n", {"time"}},
+  };
+  for (const auto& one : cases) {
+    const Result<NumericTable> read =
+        ReadNumericTable(WriteText("a.csv", one.text), TableFormat::kCsv);
+    ASSERT_TRUE(read.ok()) << one.text << read.error().ToString();
+    EXPECT_EQ(read.value().names, one.names);
+    EXPECT_EQ(read.value().data.back()[0], static_cast<double>(one.names.size()));
+  }
+}
+
+TEST_F(NumericTableTest, BadTables) {
+  struct Case {
+    TableFormat format;
+    std::string text, says;
+  };
+  const TableFormat csv = TableFormat::kCsv, storage = TableFormat::kStorage;
+  const std::vector<Case> cases = {
+      {csv, "", "truncated"},
+      {csv, "a,b\n", "no rows"},
+      {csv, "1,2\n3,4\n", ":1: a column is called '1'"},
+      {csv, "a,a\n3,4\n", ":1: two columns are called 'a'"},
+      {csv, "a,b\n1,2\n3\n", ":3: the row has 1 values, not 2, separated by commas as"},
+      {csv, "a,b\n1,2,3\n",
+       ":2: the row has more than the 2 values of the columns, separated by commas"},
+      {csv, "a,b,c\n1;2;3\n", ":2: the row has 1 values, not 3, separated by commas"},
+      {csv, "a,b,c\nx,2,3\n", ":2: a: 'x' is not a number"},
+      {csv, "a\tb (N, up)\n1,2\n", ":2: the row has 1 values, not 2, separated by tabs"},
+      {csv, "a;b\n1,5\n", ":2: the row has 1 values, not 2, separated by semicolons"},
+      {csv, "a,f, up\n1,2\n", "or a name with a separator in it is not in quotes"},
+      {storage, "f\nendheader\na b\n1\n", ":4: the row has 1 values, not 2, separated by blanks"},
+      {csv, "a,b\n1,x\n", ":2: b: 'x' is not a number"},
+      {csv, "a,b\n1,NA\n", "'NA' is not a number; a value that is missing is an empty cell or nan"},
+      {csv, "a,b\n1,inf\n", ":2: b: 'inf' is not a finite number"},
+      {storage, "f\nnRows=1\n", "endheader"},
+      {storage, "f\nnRows=x\nendheader\na\n1\n", ":2: nRows must be a whole number"},
+      {storage, "f\nnRows=3\nendheader\na\n1\n", "announces 3 rows, the file has 1"},
+      {storage, "f\nnColumns=3\nendheader\na\n1\n", ":4: the head announces 3 columns"},
+  };
+  for (const Case& one : cases) {
+    const Result<NumericTable> read = ReadNumericTable(WriteText("bad", one.text), one.format);
+    ASSERT_FALSE(read.ok()) << one.text;
+    EXPECT_TRUE(Contains(read.error().ToString(), one.says));
+  }
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,211 @@
+// Trajectories as text: round trips, files as other programs write them, bad input.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_points.h"
+#include "datasets/formats/trc.h"
+#include "datasets/manifest/column_mapping.h"
+#include "tests/datasets/c3d_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using PointFilesTest = TempDirTest;
+
+PointMotion SamplePoints() {
+  PointMotion motion;
+  motion.rate_hz = 100.0;
+  motion.names = SampleC3d().point_names;
+  motion.positions = SampleC3d().points;
+  return motion;
+}
+
+void ExpectSame(const std::vector<std::vector<Eigen::Vector3d>>& a,
+                const std::vector<std::vector<Eigen::Vector3d>>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_EQ(a[i].size(), b[i].size());
+    for (std::size_t t = 0; t < a[i].size(); ++t) {
+      EXPECT_EQ(a[i][t].allFinite(), b[i][t].allFinite()) << i << " " << t;
+      if (b[i][t].allFinite()) {
+        EXPECT_EQ(a[i][t], b[i][t]) << i << " " << t;
+      }
+    }
+  }
+}
+
+TEST_F(PointFilesTest, TrcRoundTrip) {
+  ASSERT_FALSE(WriteTrc(Path("a.trc"), SamplePoints()));
+  const Result<PointMotion> read = ReadTrc(Path("a.trc"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().names, SamplePoints().names);
+  EXPECT_EQ(read.value().rate_hz, 100.0);
+  EXPECT_EQ(read.value().unit, LengthUnit::kMillimetre);
+  ExpectSame(read.value().positions, SamplePoints().positions);
+}
+
+// As OpenSim and Cortex write it: tabs at the end of lines, no blank line, a marker that leaves its
+// last cells out.
+constexpr char kTrc[] =
+    "PathFileType\t4\t(X/Y/Z)\twalk.trc\t\n"
+    "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+    "OrigNumFrames\n"
+    "60.00\t60.00\t3\t2\tm\t60.00\t1\t3\n"
+    "Frame#\tTime\tL.ASIS\t\t\tR.Heel\t\t\t\n"
+    "\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n"
+    "1\t0.000\t0.1\t0.2\t0.3\t1\t2\t3\t\n"
+    "2\t0.017\t0.1\t0.2\t0.3\n"
+    "3\t0.033\t0.1\t0.2\t0.3\t0\t0\t0\r\n";
+
+TEST_F(PointFilesTest, TrcOfOtherPrograms) {
+  const Result<PointMotion> read = ReadTrc(WriteText("a.trc", kTrc));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().names, (std::vector<std::string>{"L.ASIS", "R.Heel"}));
+  EXPECT_EQ(read.value().unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.value().positions[1][0], Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(read.value().positions[1][1].allFinite());
+  EXPECT_FALSE(read.value().positions[1][2].allFinite());  // zeros are no place of a marker
+}
+
+TEST_F(PointFilesTest, TrcKeepsOnlyWhatIsChosen) {
+  PointReadOptions options;
+  options.choose = [](const std::vector<std::string>& names) {
+    return std::vector<int>{static_cast<int>(names.size()) - 1};
+  };
+  const Result<PointMotion> read = ReadTrc(WriteText("a.trc", kTrc), options);
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(read.value().chosen, std::vector<int>{1});
+  ASSERT_EQ(read.value().positions.size(), 1u);
+  EXPECT_EQ(read.value().positions[0][0].x(), 1.0);
+}
+
+TEST_F(PointFilesTest, BadTrc) {
+  struct Case {
+    std::string from, to, says;
+  };
+  const std::vector<Case> cases = {
+      {"PathFileType", "BVH", ":1: a TRC file starts with PathFileType"},
+      {"60.00\t60.00\t3", "x\t60.00\t3", ":3: DataRate must be"},
+      {"60.00\t60.00\t3\t2", "60.00\t60.00\t4\t2", ":8: wrong frame count: NumFrames is 4"},
+      {"60.00\t60.00\t3\t2", "60.00\t60.00\t2\t2", ":8: wrong frame count: NumFrames is 2"},
+      {"60.00\t60.00\t3\t2", "60.00\t60.00\t3\t5", ":4: NumMarkers is 5, but 2 markers"},
+      {"Frame#", "What", ":4: Frame#, Time and the names"},
+      {"1\t0.000\t0.1", "1\t0.000\tabc", ":6: L.ASIS: 'abc' is not a number"},
+      {"1\t0.000\t0.1", "1\tnow\t0.1", ":6: Time: 'now' is not a number"},
+      {"3\t\n", "3\t4\n", ":6: the row has 9 cells, not 8"},
+      {"3\t0.033", "3\t0.066", ":8: Time grows by 0.033 s a row, 30.303 rows a second, but"},
+      {"0.2\t0.3\n", "0.2\n", ":7: L.ASIS: 1 of its 3 cells is missing"},
+      {"0.2\t0.3\n", "0.2\t0.3\t1\n", ":7: R.Heel: 2 of its 3 cells are missing"},
+      {"0.1\t0.2\t0.3\t1", "\t0.2\tnan\t1", ":6: L.ASIS: 2 of its 3 cells are missing"},
+  };
+  for (const Case& one : cases) {
+    std::string text = kTrc;
+    text.replace(text.find(one.from), one.from.size(), one.to);
+    const Result<PointMotion> read = ReadTrc(WriteText("bad.trc", text));
+    ASSERT_FALSE(read.ok()) << one.to;
+    EXPECT_TRUE(Contains(read.error().ToString(), one.says));
+  }
+  EXPECT_TRUE(Contains(ReadTrc(WriteText("e.trc", "")).error().ToString(), "truncated"));
+}
+
+// Wherever a file is cut, the last row shows it, up to its last number.
+TEST_F(PointFilesTest, CutTrc) {
+  const std::string text = kTrc;
+  const std::size_t last_number = text.size() - 3;
+  for (std::size_t size = 0; size <= last_number; ++size) {
+    const Result<PointMotion> read = ReadTrc(WriteText("cut.trc", text.substr(0, size)));
+    ASSERT_FALSE(read.ok()) << size;
+    EXPECT_TRUE(Contains(read.error().ToString(), "cut.trc:")) << size;
+  }
+  const std::string between = text.substr(0, text.rfind("\t0\t0\t0"));
+  EXPECT_TRUE(
+      Contains(ReadTrc(WriteText("cut.trc", between)).error().ToString(),
+               ":8: the file ends after 5 of the 8 cells of its last row, without a newline"));
+  // A last row without its newline is whole when all its cells are there, or all their tabs.
+  for (const std::string end : {"\t0\t0\t0", "\t1\t2\t3", "\t\t\t", "\n", "\t1\t2\t3\t"}) {
+    const Result<PointMotion> read = ReadTrc(WriteText("whole.trc", between + end));
+    ASSERT_TRUE(read.ok()) << read.error().ToString();
+    EXPECT_EQ(read.value().positions[1][2].allFinite(), end[1] == '1');
+  }
+}
+
+TEST(PointsOfTest, ColumnsThatBelongTogether) {
+  const std::vector<TablePoint> points =
+      PointsOf({"time", "hip_x", "hip_y", "hip_z", "L.X", "L.Y", "L.Z", "max", "x", "y", "z",
+                "ground_force_vx", "ground_force_vy", "ground_force_vz", "half_x", "half_y"});
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_EQ(points[0].name, "hip");
+  EXPECT_EQ(points[1].name, "L");
+  EXPECT_EQ(points[1].columns[2], 6);
+  EXPECT_EQ(points[2].name, "ground_force_v");
+}
+
+TEST_F(PointFilesTest, CsvPointsAndTheirRate) {
+  const std::string path = WriteText("a.csv",
+                                     "time,hip_x,hip_y,hip_z\n0.000,1,2,3\n0.008,,,\n0.017,0,0,0\n"
+                                     "0.025,4,5,6\n");
+  const Result<PointMotion> motion = ReadPointMotion(path, MotionFormat::kCsv);
+  ASSERT_TRUE(motion.ok()) << motion.error().ToString();
+  EXPECT_NEAR(motion.value().rate_hz, 120.0, 1e-9);
+  EXPECT_FALSE(motion.value().positions[0][1].allFinite());
+  EXPECT_FALSE(motion.value().positions[0][2].allFinite());
+  EXPECT_EQ(motion.value().positions[0][3], Eigen::Vector3d(4, 5, 6));
+  const std::string uneven =
+      WriteText("b.csv", "time,h_x,h_y,h_z\n0,1,2,3\n0.01,1,2,3\n0.05,1,2,3\n");
+  EXPECT_TRUE(Contains(ReadPointMotion(uneven, MotionFormat::kCsv).error().ToString(),
+                       "b.csv:3: the times do not ascend in even steps"));
+  const std::string none = WriteText("c.csv", "time,hip\n0,1\n0.01,1\n");
+  EXPECT_TRUE(Contains(ReadPointMotion(none, MotionFormat::kCsv).error().ToString(), "no points"));
+}
+
+TEST_F(PointFilesTest, MappedColumns) {
+  const std::string path = WriteText("a.csv", "clock,a,b,c\n1,1,2,3\n2,4,5,6\n");
+  PointReadOptions options;
+  options.columns = {{"waist", "c", "a", "b"}};
+  options.time_column = "clock";
+  const Result<PointMotion> motion = ReadPointMotion(path, MotionFormat::kCsv, options);
+  ASSERT_TRUE(motion.ok()) << motion.error().ToString();
+  EXPECT_EQ(motion.value().names, std::vector<std::string>{"waist"});
+  EXPECT_EQ(motion.value().positions[0][1], Eigen::Vector3d(6, 4, 5));
+  EXPECT_EQ(motion.value().rate_hz, 1.0);
+  options.columns = {{"waist", "c", "a", "d"}};
+  EXPECT_TRUE(Contains(ReadPointMotion(path, MotionFormat::kCsv, options).error().ToString(),
+                       "there is no column 'd'; it has clock, a, b, c"));
+}
+
+TEST_F(PointFilesTest, MappingFiles) {
+  const char* good =
+      "{\"columns\": {\"waist\": [\"wx\", \"wy\", \"wz\"]}, \"joints\": {\"hip\": [\"waist\", "
+      "3]},\n"
+      " \"time\": \"t\", \"frame_rate\": 100, \"length_unit\": \"cm\", \"up\": \"y\", \"forward\": "
+      "\"z\"}";
+  const Result<ColumnMapping> mapping = ReadColumnMapping(WriteText("m.json", good));
+  ASSERT_TRUE(mapping.ok()) << mapping.error().ToString();
+  EXPECT_EQ(mapping.value().columns[0].y, "wy");
+  EXPECT_EQ(mapping.value().joints.hip->mean_of[1].index, 3);
+  EXPECT_EQ(mapping.value().frame_rate, 100.0);
+  EXPECT_EQ(mapping.value().length_unit, LengthUnit::kCentimetre);
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"{\"colums\": {}}", "colums is not known"},
+      {"{\"columns\": {\"a\": [\"x\", \"y\"]}}", "columns of 'a' must be three column names"},
+      {"{\"columns\": []}", "columns must be an object"},
+      {"{\"frame_rate\": 0}", "frame_rate must be from 1 to 10000"},
+      {"{\"length_unit\": \"inch\"}", "length_unit is 'inch'"},
+      {"{\"up\": \"y\"}", "give up and forward"},
+      {"{\"up\": \"y\", \"forward\": \"-y\"}", "lie along the same axis"},
+      {"{\"joints\": {\"hip\": []}}", "hip must be a joint's name or its index"},
+      {"{\"joints\": {\"hip\": [\"a\", true]}}", "hip must be a joint's name or its index"},
+      {"[]", "must be an object"},
+  };
+  for (const auto& [text, says] : bad) {
+    const Result<ColumnMapping> read = ReadColumnMapping(WriteText("m.json", text));
+    ASSERT_FALSE(read.ok()) << text;
+    EXPECT_TRUE(Contains(read.error().ToString(), says));
+  }
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,184 @@
+// What pushid-inspect says: each warning once provoked, none on a good file.
+#include "datasets/inspection/inspection.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "datasets/formats/trc.h"
+#include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/recording_folder.h"
+
+namespace pushid {
+namespace {
+
+const Eigen::Vector3d kHidden = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+class InspectionTest : public RecordingFolderTest {
+ protected:
+  // A person who stands for 40 frames and is then pushed along x; mm.
+  void SetUp() override {
+    RecordingFolderTest::SetUp();
+    motion_.rate_hz = 100.0;
+    motion_.unit = LengthUnit::kMillimetre;
+    motion_.names = {"Hips", "LANK", "RANK"};
+    motion_.positions.resize(3);
+    for (int t = 0; t < 100; ++t) {
+      motion_.positions[0].push_back({t < 40 ? 0.0 : 8.0 * (t - 40), 0.0, 950.0});
+      motion_.positions[1].push_back({0.0, 100.0, 80.0});
+      motion_.positions[2].push_back({0.0, -100.0, 80.0});
+    }
+  }
+
+  // Facts and warnings of the motion as TRC.
+  std::string Said() {
+    EXPECT_FALSE(WriteTrc(Path("a.trc"), motion_));
+    return Of("a.trc");
+  }
+  std::string Of(const std::string& file) {
+    const Result<Inspection> found = Inspect(Path(file));
+    return found.ok() ? InspectionText(found.value()) : found.error().ToString();
+  }
+
+  PointMotion motion_;
+};
+
+TEST_F(InspectionTest, AGoodFileHasNoWarnings) {
+  const std::string said = Said();
+  for (const char* part :
+       {"a.trc: TRC", "points          Hips, LANK, RANK", "100 at 100 per second, 1 s",
+        "unit            mm, as the file says", "hip 0.87 m above the ankles",
+        "z is up, the person faces x", "static (hip 0 m/s)",
+        "the hip has moved 2 cm at frame 43 (0.43 s); it goes 0.472 m, mostly along x"}) {
+    EXPECT_TRUE(Contains(said, part));
+  }
+  EXPECT_EQ(said.find("warning"), std::string::npos) << said;
+}
+
+TEST_F(InspectionTest, Axes) {
+  for (auto& track : motion_.positions) {
+    for (Eigen::Vector3d& p : track) p = Eigen::Vector3d(p.y(), p.z(), p.x());
+  }
+  const std::string said = Said();
+  EXPECT_TRUE(Contains(said, "y is up, the person faces z"));
+  EXPECT_TRUE(Contains(said, "warning: y is up in the file: set \"up\" and \"forward\""));
+}
+
+TEST_F(InspectionTest, Units) {
+  for (auto& track : motion_.positions) {
+    for (Eigen::Vector3d& p : track) p *= 0.1;
+  }
+  EXPECT_TRUE(Contains(Said(), "the file says mm, but the person looks like cm: set length_unit"));
+  for (auto& track : motion_.positions) {
+    for (Eigen::Vector3d& p : track) p *= 1e-4;
+  }
+  EXPECT_TRUE(Contains(Said(), "no unit makes a standing person of it"));
+}
+
+TEST_F(InspectionTest, GapsAndJumps) {
+  for (int t = 50; t < 65; ++t) motion_.positions[1][t] = kHidden;
+  motion_.positions[2][0] = kHidden;
+  motion_.positions[0][70].y() += 300.0;
+  const std::string said = Said();
+  EXPECT_TRUE(Contains(said, "gaps in 2 of 3 points; frames not seen: LANK 15, RANK 1"));
+  EXPECT_TRUE(Contains(said, "LANK is hidden for up to 15 frames (0.15 s)"));
+  EXPECT_TRUE(Contains(said, "first seen together at frame 1: set first_frame to 1"));
+  EXPECT_TRUE(Contains(said, "jumps in 1 points: Hips 0.3 m at frame 7"));
+}
+
+TEST_F(InspectionTest, StartAndOnset) {
+  for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 2.0 * t;
+  EXPECT_TRUE(Contains(Said(), "the person moves at the start: cut it by first_frame"));
+  for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.1 * t;
+  EXPECT_TRUE(Contains(Said(), "the hip never moves by 2 cm: there is no push"));
+  // From rest, pushed from the first frame on: cutting the start would cut the push.
+  for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.2 * t * t;
+  const std::string pushed = Said();
+  EXPECT_TRUE(Contains(pushed, "start           the push begins at once"));
+  EXPECT_EQ(pushed.find("moves at the start"), std::string::npos) << pushed;
+}
+
+TEST_F(InspectionTest, ForcesDoNotHideTheMotion) {
+  std::string table =
+      "time,hip_x,hip_y,hip_z,left_ankle_x,left_ankle_y,left_ankle_z,right_ankle_x,"
+      "right_ankle_y,right_ankle_z,ground_force_vx,ground_force_vy,"
+      "ground_force_vz,ground_force_px,ground_force_py,ground_force_pz\n";
+  for (int t = 0; t < 100; ++t) {
+    table += std::to_string(t / 100.0) + "," + std::to_string(t < 40 ? 0 : 8 * (t - 40)) +
+             ",0,950,0,100,80,0,-100,80,90,0,700,33,0,0\n";
+  }
+  WriteText("both.csv", table);
+  const std::string said = Of("both.csv");
+  EXPECT_TRUE(Contains(said, "points          hip, left_ankle, right_ankle\n"));
+  EXPECT_TRUE(Contains(said, "the hip has moved 2 cm"));
+  EXPECT_TRUE(Contains(said, "ground_force_vz peak 700 N"));
+  EXPECT_EQ(said.find("ground_force_px peak"), std::string::npos) << said;
+}
+
+// A table of columns that nobody could guess, with the file that explains them to a fit.
+TEST_F(InspectionTest, ThroughAMapping) {
+  std::string text = "clock,wx,wy,wz,lx,ly,lz,rx,ry,rz\n";
+  for (int t = 0; t < 60; ++t) {
+    text += std::to_string(0.01 * t);
+    for (const auto& track : motion_.positions) {
+      for (int axis = 0; axis < 3; ++axis) text += "," + std::to_string(track[t][axis]);
+    }
+    text += "\n";
+  }
+  WriteText("a.csv", text);
+  EXPECT_TRUE(Contains(Of("a.csv"), "no point could be recognised as hip"));
+  const Result<ColumnMapping> mapping = ReadColumnMapping(WriteText(
+      "map.json",
+      "{\"columns\": {\"waist\": [\"wx\", \"wy\", \"wz\"], \"l\": [\"lx\", \"ly\", \"lz\"], "
+      "\"r\": [\"rx\", \"ry\", \"rz\"]}, \"time\": \"clock\", "
+      "\"joints\": {\"hip\": \"waist\", \"left_ankle\": \"l\", \"right_ankle\": \"r\"}}"));
+  ASSERT_TRUE(mapping.ok()) << mapping.error().ToString();
+  const Result<Inspection> found = Inspect(Path("a.csv"), mapping.value());
+  ASSERT_TRUE(found.ok()) << found.error().ToString();
+  const std::string said = InspectionText(found.value());
+  EXPECT_TRUE(Contains(said, "hip             waist"));
+  EXPECT_TRUE(Contains(said, "60 at 100 per second"));
+  EXPECT_TRUE(Contains(said, "hip 0.87 m above the ankles"));
+}
+
+TEST_F(InspectionTest, RateAndNames) {
+  motion_.rate_hz = 25.0;
+  motion_.names[1] = "foo";
+  const std::string said = Said();
+  EXPECT_TRUE(Contains(said, "a push lasts a few frames only at 25 frames per second"));
+  EXPECT_TRUE(Contains(said, "no point could be recognised as left_ankle"));
+}
+
+TEST_F(InspectionTest, C3d) {
+  ASSERT_FALSE(WriteC3d(Path("a.c3d"), SampleC3d()));
+  const std::string said = Of("a.c3d");
+  for (const char* part : {"a.c3d: C3D, Intel, floats", "Anna:HIP", "rod", "at 1000 per second",
+                           "platform:1 type", "peak 700 N", "61.25 s Foot Off (Right)"}) {
+    EXPECT_TRUE(Contains(said, part));
+  }
+  const std::string text = ReadText(Path("a.c3d"));
+  WriteText("cut.c3d", text.substr(0, text.size() - 1024));
+  EXPECT_TRUE(Contains(Of("cut.c3d"), "of 10 frames: it is truncated"));
+}
+
+TEST_F(InspectionTest, OtherFiles) {
+  const std::string bvh = Of("a.bvh");  // of the folder: in mm, moving from the first frame
+  EXPECT_TRUE(Contains(bvh, "20 at 59.9988 per second, 0.333 s; most likely 60"));
+  EXPECT_TRUE(Contains(bvh, "unit            mm, by the length of the rod"));
+  EXPECT_TRUE(Contains(bvh, "the person moves at the start"));
+  EXPECT_TRUE(Contains(Of("a.csv"), "a.csv: push CSV\n  rows            5"));
+  WriteText("f.csv", "time,force\n0,0\n0.01,50\n0.02,0\n");
+  EXPECT_TRUE(Contains(Of("f.csv"), "peak 50 N, impulse 0.5 N s, above 20 N from 0.01 s"));
+  WriteText("g.mot",
+            "g\nnRows=2\nendheader\ntime ground_force_vx ground_force_vy\n0 1 2\n0.01 3 700\n");
+  EXPECT_TRUE(Contains(Of("g.mot"), "ground_force_vy peak 700 N"));
+  ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
+  EXPECT_TRUE(Contains(Of("manifest.json"), "1, 1 can be read, 1 have a push"));
+  EXPECT_TRUE(Contains(Of("none.bvh"), "there is no such file"));
+  EXPECT_TRUE(Contains(Of(""), "this is a folder"));
+  WriteText("x.dat", "hello");
+  EXPECT_TRUE(Contains(Of("x.dat"), "what this is cannot be told"));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,243 @@
+// Manifests from folders: patterns, groups, masses, rates; and what cannot be made.
+#include "datasets/inspection/manifest_maker.h"
+
+#include <gtest/gtest.h>
+
+#include "datasets/files/name_pattern.h"
+#include "datasets/loading/load_recordings.h"
+#include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/recording_folder.h"
+
+namespace pushid {
+namespace {
+
+std::string Matched(const std::string& pattern, const std::string& path) {
+  const Result<NamePattern> parsed = NamePattern::Parse(pattern);
+  if (!parsed.ok()) return parsed.error().ToString();
+  const auto values = parsed.value().Match(path);
+  if (!values) return "no";
+  std::string text;
+  for (const auto& [name, value] : *values) text += name + "=" + value + " ";
+  return text;
+}
+
+TEST(NamePatternTest, Matches) {
+  EXPECT_EQ(Matched("{subject}_{take}.bvh", "anna_01.bvh"), "subject=anna take=01 ");
+  EXPECT_EQ(Matched("{subject}_{take}.bvh", "anna_b_01.bvh"), "subject=anna take=b_01 ");
+  EXPECT_EQ(Matched("{a}/{b}/x{c}.c3d", "p/q/xr.c3d"), "a=p b=q c=r ");
+  EXPECT_EQ(Matched("{a}.c3d", "p/q.c3d"), "no") << "a name stays within a folder";
+  EXPECT_EQ(Matched("*/{a}_*.c3d", "p/q_77.c3d"), "a=q ");
+  EXPECT_EQ(Matched("{a}/{a}_{b}.c3d", "p/p_1.c3d"), "a=p b=1 ");
+  EXPECT_EQ(Matched("{a}/{a}_{b}.c3d", "p/q_1.c3d"), "no");
+  EXPECT_EQ(Matched("{a}.c3d", ".c3d"), "no") << "a name is not empty";
+  EXPECT_EQ(Matched("{a}.c3d", "x.c3d.bak"), "no");
+  // Very many ways to fit, none of which does: an answer all the same.
+  EXPECT_EQ(Matched("{a}{b}{c}{d}{e}{f}{g}{h}!", std::string(200, 'x')), "no");
+}
+
+TEST(NamePatternTest, BadPatternsAndFilling) {
+  EXPECT_TRUE(Contains(Matched("{a", ""), "opens no name"));
+  EXPECT_TRUE(Contains(Matched("{}", ""), "opens no name"));
+  EXPECT_TRUE(Contains(Matched("{a{b}}", ""), "opens no name"));
+  EXPECT_TRUE(Contains(Matched("a}", ""), "closes nothing"));
+  EXPECT_TRUE(Contains(Matched("*.bvh", ""), "names nothing"));
+  const NamePattern pattern = NamePattern::Parse("push/{a}_{b}.csv").value();
+  EXPECT_EQ(pattern.Fill({{"a", "x"}, {"b", "y"}, {"c", "z"}}), "push/x_y.csv");
+  EXPECT_FALSE(pattern.Fill({{"a", "x"}}));
+  EXPECT_FALSE(NamePattern::Parse("{a}*").value().Fill({{"a", "x"}}));
+}
+
+class ManifestMakerTest : public RecordingFolderTest {
+ protected:
+  void SetUp() override {
+    RecordingFolderTest::SetUp();
+    std::filesystem::create_directories(folder_ / "data" / "push");
+    for (const char* name : {"ben_strong_1", "anna_weak_10", "anna_weak_2"}) {
+      WriteBvhFile(std::string("data/") + name + ".bvh", Walker(20));
+    }
+    WriteText("data/notes.txt", "hello");
+    WritePush("data/push/anna_2.csv", 5);
+    WritePush("data/push/ben_1.csv", 5);
+    options_.folder = Path("data");
+    options_.pattern = "{subject}_{magnitude}_{take}.bvh";
+    options_.push_pattern = "push/{subject}_{take}.csv";
+    options_.manifest_path = Path("m/manifest.json");
+    options_.masses = {{"anna", 62.0}};
+    options_.mass_kg = 80.0;
+    std::filesystem::create_directories(folder_ / "m");
+  }
+  std::string MakingMessage() {
+    const Result<MadeManifest> made = MakeManifest(options_);
+    return made.ok() ? "no error" : made.error().ToString();
+  }
+
+  ManifestOptions options_;
+};
+
+TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  EXPECT_EQ(made.value().files, 3);
+  EXPECT_EQ(made.value().others, 3);
+  EXPECT_EQ(made.value().without_push, std::vector<std::string>{"anna_weak_10"});
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  const auto loaded = LoadRecordings(options_.manifest_path);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  ASSERT_EQ(loaded.value().size(), 3u);
+  const Recording& second = loaded.value()[1];
+  EXPECT_EQ(second.id, "anna_weak_2");
+  EXPECT_EQ(second.people[0].subject_id, "anna");
+  EXPECT_EQ(second.people[0].mass_kg, 62.0);
+  EXPECT_EQ(second.magnitude, "weak");
+  EXPECT_EQ(second.setting, "single");
+  EXPECT_EQ(second.fps, 60.0);  // 0.016667 s
+  EXPECT_EQ(second.pushes.size(), 1u);
+  EXPECT_EQ(loaded.value()[2].people[0].mass_kg, 80.0);
+}
+
+TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
+  WriteText("data/anna_weak_2.bvh", "no motion");
+  options_.masses.clear();  // nobody's mass is asked for who is left out
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  EXPECT_EQ(made.value().manifest.recordings.size(), 2u);
+  ASSERT_EQ(made.value().unreadable.size(), 1u);
+  EXPECT_TRUE(Contains(made.value().unreadable[0].ToString(), "data/anna_weak_2.bvh:1"));
+  for (const char* name : {"ben_strong_1", "anna_weak_10"}) {
+    WriteText(std::string("data/") + name + ".bvh", "no motion");
+  }
+  EXPECT_TRUE(Contains(MakingMessage(), "no other file can be read either"));
+}
+
+TEST_F(ManifestMakerTest, PushPatternsNameOneFileEach) {
+  options_.push_pattern = "push/{subject}_{tkae}.csv";
+  EXPECT_TRUE(
+      Contains(MakingMessage(), "{tkae}, but the pattern has only subject, magnitude, take"));
+  options_.push_pattern = "push/{subject}_*.csv";
+  EXPECT_TRUE(Contains(MakingMessage(), "has a *"));
+}
+
+TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
+  options_.push_pattern = "";
+  options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_EQ(made.value().odd.size(), 1u);
+  EXPECT_TRUE(
+      Contains(made.value().odd[0], "{subjct}, which only tells recordings apart; is {subject}"));
+}
+
+TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {
+  options_.mapping = Path("none.json");
+  EXPECT_TRUE(Contains(MakingMessage(), "none.json: there is no such file"));
+  options_.mapping = "";
+  WriteBvhFile("data/ann,e_weak_1.bvh", Walker(20));
+  EXPECT_TRUE(Contains(MakingMessage(), "'ann,e_weak_1', but commas separate ids"));
+}
+
+TEST_F(ManifestMakerTest, PeopleOfOneRecording) {
+  std::filesystem::create_directories(folder_ / "rows");
+  for (const char* name : {"r1_p10_x", "r1_p2_y", "r2_p1_x"}) {
+    WriteBvhFile(std::string("rows/") + name + ".bvh", Walker(20));
+  }
+  options_.folder = Path("rows");
+  options_.pattern = "{take}_p{person}_{subject}.bvh";
+  options_.push_pattern = "";
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_EQ(made.value().manifest.recordings.size(), 2u);
+  const ManifestRecording& r1 = made.value().manifest.recordings[0];
+  EXPECT_EQ(r1.id, "r1");
+  ASSERT_EQ(r1.subjects.size(), 2u);
+  EXPECT_EQ(r1.subjects[0].id, "y") << "person 2 before person 10";
+  EXPECT_EQ(r1.bvh[0], "../rows/r1_p2_y.bvh");
+  options_.pushed_person = 1;
+  EXPECT_TRUE(Contains(MakingMessage(), "recording 'r2' has 1 people"));
+}
+
+// Two takes that the pattern does not tell apart are no neighbours in one.
+TEST_F(ManifestMakerTest, PeopleOfTwoRecordingsStayApart) {
+  options_.folder = Path("rows");
+  options_.push_pattern = "";
+  const auto make = [this](const std::vector<std::string>& names, const std::string& pattern) {
+    std::filesystem::remove_all(folder_ / "rows");
+    std::filesystem::create_directories(folder_ / "rows");
+    for (const std::string& name : names) WriteBvhFile("rows/" + name, Walker(20));
+    options_.pattern = pattern;
+    return MakingMessage();
+  };
+  EXPECT_EQ(make({"r1_a_p1.bvh", "r1_b_p2.bvh"}, "{take}_*_p{person}.bvh"), "no error");
+  EXPECT_TRUE(
+      Contains(make({"r1_a_p1.bvh", "r1_a_p2.bvh", "r1_b_p1.bvh"}, "{take}_*_p{person}.bvh"),
+               "r1_a_p1.bvh and r1_b_p1.bvh are both person '1' of recording 'r1'; give what"));
+  EXPECT_TRUE(Contains(make({"g_1-2,1.bvh", "g-1_2,2.bvh"}, "{take}-{more},{person}.bvh"),
+                       "both recording 'g_1_2'; give one of them another name"));
+}
+
+// A mapping says y is up; the maker is told z, which happens to be the default.
+TEST_F(ManifestMakerTest, AxesGivenWinOverAMapping) {
+  WriteText("map.json", "{\"up\": \"y\", \"forward\": \"z\"}");
+  options_.mapping = Path("map.json");
+  options_.up = "z";
+  options_.forward = "x";
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  const auto loaded = LoadRecordings(options_.manifest_path);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].people[0].file_up, "z");
+}
+
+TEST_F(ManifestMakerTest, RateOfC3d) {
+  std::filesystem::create_directories(folder_ / "c3d");
+  ASSERT_FALSE(WriteC3d(Path("c3d/anna_1.C3D"), SampleC3d()));
+  options_.folder = Path("c3d");
+  options_.pattern = "{subject}_{take}.C3D";
+  options_.up = "z";
+  options_.mapping = Path("map.json");
+  WriteText("map.json", "{\"joints\": {\"hip\": \"HIP\"}}");
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  const ManifestRecording& recording = made.value().manifest.recordings[0];
+  EXPECT_EQ(recording.fps, 100.0);
+  EXPECT_EQ(recording.motion_format, MotionFormat::kC3d);
+  EXPECT_EQ(recording.mapping, "../map.json");
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  EXPECT_TRUE(LoadRecordings(options_.manifest_path).ok());
+}
+
+TEST_F(ManifestMakerTest, WhatCannotBeMade) {
+  options_.masses = {};
+  options_.mass_kg = 0.0;
+  EXPECT_TRUE(Contains(MakingMessage(), "no mass is known of anna, ben"));
+  options_.mass_kg = 70.0;
+  options_.push_pattern = "";
+  options_.pattern = "{subject}_*.bvh";
+  EXPECT_TRUE(Contains(MakingMessage(), "are both recording 'anna'"));
+  options_.pattern = "{subject}.c3d";
+  EXPECT_TRUE(Contains(MakingMessage(), "none of its 6 files fits"));
+  options_.pattern = "{subject}.txt";
+  EXPECT_TRUE(Contains(MakingMessage(), "must end like its files"));
+  options_.pattern = "{subject}.bvh";
+  options_.folder = Path("nowhere");
+  EXPECT_TRUE(Contains(MakingMessage(), "no such folder"));
+  options_.up = "x";
+  EXPECT_TRUE(Contains(MakingMessage(), "lie along the same axis"));
+}
+
+TEST_F(ManifestMakerTest, Masses) {
+  const auto masses = ReadMasses(WriteText("m.csv", "id,mass_kg\nanna,62\n ben , 80.5\n"));
+  ASSERT_TRUE(masses.ok()) << masses.error().ToString();
+  EXPECT_EQ(masses.value().at("ben"), 80.5);
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
+           {"anna,62\n", ":1: the first line must be id,mass_kg"},
+           {"id,mass_kg\nanna\n", ":2: mass_kg: a number is missing"},
+           {"id,mass_kg\nanna,-1\n", ":2: a mass in kg is above 0"},
+           {"id,mass_kg\nanna,60\nanna,61\n", ":3: the mass of 'anna' was given before"},
+           {"id,mass_kg\n", "lists no masses"}}) {
+    EXPECT_TRUE(Contains(ReadMasses(WriteText("m.csv", text)).error().ToString(), says));
+  }
+}
+
+}  // namespace
+}  // namespace pushid

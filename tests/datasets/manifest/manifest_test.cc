@@ -1,0 +1,264 @@
+#include "datasets/manifest/manifest.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using ManifestTest = TempDirTest;
+
+constexpr char kGood[] = R"({
+ "name": "a name the program does not know",
+ "units": {"bvh_length": "cm", "force": "N"},
+ "recordings": [
+  {
+   "id": "a",
+   "setting": "single",
+   "subjects": [{"id": "s1", "mass_kg": 67.5, "order": 0}],
+   "fps": 60,
+   "pushed_person": 0,
+   "bvh": ["bvh/a.bvh"],
+   "push_csv": "push/a.csv",
+   "push_kind": "net",
+   "magnitude": "weak",
+   "anomalies": ["none"]
+  },
+  {
+   "id": "b",
+   "setting": "row_1",
+   "subjects": [
+    {"id": "s1", "mass_kg": 67.5},
+    {"id": "s2", "mass_kg": 1e2}
+   ],
+   "fps": 59.94,
+   "pushed_person": 1,
+   "bvh": ["bvh/b0.bvh", "/elsewhere/b1.bvh"],
+   "magnitude": "strong",
+   "condition_code": "p",
+   "joints": {"hip": "Hips", "left_ankle": 3}, "why": "because",
+   "up": "+y",
+   "forward": "Z",
+   "length_unit": "m",
+   "pushes": [{"person": 0, "csv": "push/b.csv", "start_frame": 12, "sensor": "F1"}],
+   "initial_velocity": "free",
+   "frames": 91
+  }
+ ]
+}
+)";
+
+TEST_F(ManifestTest, ReadsEverything) {
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().length_unit, LengthUnit::kCentimetre);
+  ASSERT_EQ(read.value().recordings.size(), 2u);
+  const ManifestRecording& a = read.value().recordings[0];
+  EXPECT_EQ(a.id, "a");
+  EXPECT_EQ(a.setting, "single");
+  EXPECT_EQ(a.fps, 60.0);
+  ASSERT_EQ(a.subjects.size(), 1u);
+  EXPECT_EQ(a.subjects[0].id, "s1");
+  EXPECT_EQ(a.subjects[0].mass_kg, 67.5);
+  EXPECT_EQ(a.bvh, std::vector<std::string>{"bvh/a.bvh"});
+  EXPECT_EQ(a.push_csv, "push/a.csv");
+  EXPECT_EQ(a.push_kind, PushKind::kNet);
+  EXPECT_EQ(a.magnitude, "weak");
+  EXPECT_EQ(a.up, "z");
+  EXPECT_EQ(a.initial_velocity, InitialVelocity::kZero);
+  EXPECT_FALSE(a.length_unit || a.frames || a.joints.hip);
+  EXPECT_EQ(a.line, 5);
+
+  const ManifestRecording& b = read.value().recordings[1];
+  EXPECT_EQ(b.line, 17);
+  EXPECT_EQ(b.pushed_person, 1);
+  EXPECT_EQ(b.push_csv, "");
+  EXPECT_EQ(b.push_kind, PushKind::kExternal);
+  EXPECT_EQ(b.condition_code, "p");
+  EXPECT_EQ(b.joints.hip->name, "Hips");
+  EXPECT_EQ(b.joints.left_ankle->index, 3);
+  EXPECT_FALSE(b.joints.right_ankle);
+  EXPECT_EQ(b.up, "+y");
+  EXPECT_EQ(b.length_unit, LengthUnit::kMetre);
+  ASSERT_EQ(b.pushes.size(), 1u);
+  EXPECT_EQ(b.pushes[0].csv, "push/b.csv");
+  EXPECT_EQ(b.pushes[0].start_frame, 12);
+  EXPECT_EQ(b.initial_velocity, InitialVelocity::kFree);
+  EXPECT_EQ(b.frames, 91);
+
+  EXPECT_EQ(ResolvePath("M/manifest.json", b.bvh[0]), "M/bvh/b0.bvh");
+  EXPECT_EQ(ResolvePath("M/manifest.json", b.bvh[1]), "/elsewhere/b1.bvh");
+  EXPECT_EQ(ResolvePath("manifest.json", b.bvh[0]), "bvh/b0.bvh");
+}
+
+TEST_F(ManifestTest, RewritingLosesNothing) {
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  ASSERT_TRUE(read.ok());
+  ASSERT_FALSE(WriteManifest(Path("again.json"), read.value()));
+  auto expected = nlohmann::json::parse(kGood);
+  expected["recordings"][1]["push_kind"] = "external";  // said, not left to the default
+  EXPECT_EQ(nlohmann::json::parse(ReadText(Path("again.json"))), expected);
+}
+
+TEST_F(ManifestTest, ChangesAreWritten) {
+  Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  ASSERT_TRUE(read.ok());
+  Manifest& manifest = read.value();
+  manifest.length_unit = LengthUnit::kMillimetre;
+  manifest.recordings[0].push_csv = "";
+  manifest.recordings[0].initial_velocity = InitialVelocity::kEstimated;
+  manifest.recordings[0].joints.hip = JointReference{"Root", -1};
+  manifest.recordings[1].joints = {};
+  manifest.recordings[1].up = "z";
+  manifest.recordings[1].forward = "x";
+  manifest.recordings[1].length_unit.reset();
+  manifest.recordings[1].pushes[0].start_frame = 13;
+  manifest.recordings[1].frames.reset();
+  ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
+  const auto json = nlohmann::json::parse(ReadText(Path("manifest.json")));
+  EXPECT_EQ(json["units"]["bvh_length"], "mm");
+  EXPECT_FALSE(json["recordings"][0].contains("push_csv"));
+  EXPECT_FALSE(json["recordings"][1].contains("length_unit"));
+  EXPECT_EQ(json["recordings"][1]["pushes"][0]["sensor"], "F1");
+  const Result<Manifest> again = ReadManifest(Path("manifest.json"));
+  ASSERT_TRUE(again.ok()) << again.error().ToString();
+  EXPECT_EQ(again.value().recordings[0].initial_velocity, InitialVelocity::kEstimated);
+  EXPECT_EQ(again.value().recordings[0].joints.hip->name, "Root");
+  EXPECT_FALSE(again.value().recordings[1].joints.hip);
+  EXPECT_EQ(again.value().recordings[1].up, "z");
+  EXPECT_EQ(again.value().recordings[1].pushes[0].start_frame, 13);
+  EXPECT_FALSE(again.value().recordings[1].frames);
+}
+
+TEST_F(ManifestTest, WrittenFromScratch) {
+  Manifest manifest;
+  manifest.length_unit = LengthUnit::kMetre;
+  ManifestRecording recording;
+  recording.id = "x";
+  recording.setting = "single";
+  recording.fps = 120.5;
+  recording.subjects = {{"s", 80.0}};
+  recording.bvh = {"x.bvh"};
+  recording.magnitude = "weak";
+  recording.pushes = {{0, "x.csv", 4}};
+  manifest.recordings.push_back(recording);
+  ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
+  const Result<Manifest> read = ReadManifest(Path("manifest.json"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().length_unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.value().recordings[0].fps, 120.5);
+  EXPECT_EQ(read.value().recordings[0].pushes[0].csv, "x.csv");
+}
+
+TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
+  const struct {
+    const char* from;
+    const char* to;
+    const char* place;
+    const char* says;
+  } damages[] = {
+      {"{\n \"name\"", "[\n \"name\"", ":2:", "not valid JSON"},
+      {"\"fps\": 60,", "\"fps\": 60", ":10:18: ", "not valid JSON"},
+      {"\"recordings\"", "\"recording\"", ":1:1: ", "manifest: recordings is missing"},
+      {"\"bvh_length\": \"cm\"", "\"bvh_length\": \"inch\"",
+       ":3:26: ", "'inch'; it must be mm, cm"},
+      {"\"fps\": 60,", "",
+       ":5:3: ", "recording 'a': fps is missing; it must be the frames per second"},
+      {"\"fps\": 60,", "\"fps\": \"60\",", ":9:11: ", "fps must be the frames per second, not"},
+      {"\"fps\": 60,", "\"fps\": 0,", ":9:11: ", "fps is 0; accepted are 1 to 10000"},
+      {"\"fps\": 60,", "\"fps\": -60,", ":9:11: ", "fps is -60"},
+      {"\"fps\": 60,", "\"fps\": 1e9,", ":9:11: ", "fps is 1e+09"},
+      {"\"fps\": 60,", "\"fps\": null,", ":9:11: ", "not 'null'"},
+      {"\"id\": \"a\",", "", ":5:3: ", "recording 0: id is missing"},
+      {"\"id\": \"a\"", "\"id\": 7", ":6:10: ", "recording 0: id must be text in quotes, not '7'"},
+      {"\"id\": \"a\"", "\"id\": \"\"", ":6:10: ", "id is empty"},
+      {"\"id\": \"a\"", "\"id\": \"a,b\"", ":6:10: ", "id must have no comma"},
+      {"\"left_ankle\": 3", "\"leftankle\": 3", ":29:", "joints: leftankle is not known"},
+      {"\"id\": \"b\"", "\"id\": \"a\"",
+       ":18:10: ", "recording 'a': this id was given before, in line 5"},
+      {"\"setting\": \"single\",", "", ":5:3: ", "recording 'a': setting is missing"},
+      {"\"magnitude\": \"weak\",", "", ":5:3: ", "recording 'a': magnitude is missing"},
+      {"67.5, \"order\"", "0, \"order\"",
+       ":8:41: ", "recording 'a', subject 0: mass_kg is 0; a mass"},
+      {"67.5, \"order\"", "-5, \"order\"", ":8:41: ", "mass_kg is -5"},
+      {"67.5, \"order\"", "67500, \"order\"",
+       ":8:41: ", "mass_kg is 67500; a mass in kg is above 0"},
+      {"\"mass_kg\": 67.5, \"order\"", "\"order\"", ":8:17: ", "subject 0: mass_kg is missing"},
+      {"\"mass_kg\": 1e2", "\"mass_kg\": \"1e2\"",
+       ":22:29: ", "recording 'b', subject 1: mass_kg must be"},
+      {"[{\"id\": \"s1\", \"mass_kg\": 67.5, \"order\": 0}]", "[]", ":8:16: ", "subjects is empty"},
+      {"[{\"id\": \"s1\", \"mass_kg\": 67.5, \"order\": 0}]", "[67]",
+       ":8:17: ", "must be an object"},
+      {"[{\"id\": \"s1\", \"mass_kg\": 67.5, \"order\": 0}]", "{}",
+       ":8:16: ", "subjects must be a list"},
+      {"\"pushed_person\": 0", "\"pushed_person\": 1",
+       ":10:21: ", "pushed_person is '1'; it must be the index of the pushed subject, 0"},
+      {"\"pushed_person\": 1", "\"pushed_person\": 2", ":25:21: ", "0 to 1"},
+      {"\"pushed_person\": 0", "\"pushed_person\": 0.5", ":10:21: ", "pushed_person is '0.5'"},
+      {"\"pushed_person\": 0", "\"pushed_person\": -1", ":10:21: ", "pushed_person is '-1'"},
+      {"\"pushed_person\": 0,", "", ":5:3: ", "pushed_person is missing"},
+      {"[\"bvh/a.bvh\"]", "[]", ":11:11: ", "bvh lists 0 files for 1 subjects"},
+      {"[\"bvh/a.bvh\"]", "\"bvh/a.bvh\"", ":11:11: ", "bvh must be a list"},
+      {"[\"bvh/a.bvh\"]", "[3]", ":11:12: ", "must be a file name"},
+      {"\"push_kind\": \"net\"", "\"push_kind\": \"gross\"",
+       ":13:17: ", "'gross'; it must be net, net_without_friction or external"},
+      {"\"left_ankle\": 3", "\"left_ankle\": -3",
+       ":29:", "joints: left_ankle must be a joint's name or its index"},
+      {"{\"hip\": \"Hips\"", "[\"Hips\"], \"j\": {\"hip\": \"Hips\"",
+       ":29:14: ", "must be an object"},
+      {"\"up\": \"+y\"", "\"up\": \"up\"", ":30:10: ", "recording 'b': up is 'up', not an axis"},
+      {"\"up\": \"+y\"", "\"up\": \"z\"", ":30:10: ", "same axis"},
+      {"\"length_unit\": \"m\"", "\"length_unit\": \"km\"", ":32:19: ", "length_unit is 'km'"},
+      {"{\"person\": 0", "{\"person\": 2", ":33:26: ", "push 0: person is '2'"},
+      {"\"csv\": \"push/b.csv\", ", "", ":33:15: ", "push 0: csv is missing"},
+      {"\"start_frame\": 12", "\"start_frame\": -1", ":33:", "start_frame is '-1'"},
+      {"\"initial_velocity\": \"free\"", "\"initial_velocity\": 0", ":34:24: ", "must be text"},
+      {"\"initial_velocity\": \"free\"", "\"initial_velocity\": \"some\"",
+       ":34:24: ", "zero, estimated or free"},
+      {"\"frames\": 91", "\"frames\": \"91\"", ":35:14: ", "frames must be the number of frames"},
+  };
+  for (const auto& damage : damages) {
+    SCOPED_TRACE(std::string(damage.from) + " -> " + damage.to);
+    std::string text = kGood;
+    const std::size_t at = text.find(damage.from);
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, std::string(damage.from).size(), damage.to);
+    const std::string path = WriteText("manifest.json", text);
+    const Result<Manifest> read = ReadManifest(path);
+    ASSERT_FALSE(read.ok());
+    EXPECT_TRUE(Contains(read.error().ToString(), path + damage.place));
+    EXPECT_TRUE(Contains(read.error().ToString(), damage.says));
+  }
+}
+
+TEST_F(ManifestTest, NothingInIt) {
+  const auto message = [&](const char* text) {
+    const Result<Manifest> read = ReadManifest(WriteText("manifest.json", text));
+    return read.ok() ? std::string("no error") : read.error().ToString();
+  };
+  EXPECT_TRUE(Contains(message(""), "manifest.json: the file is empty"));
+  EXPECT_TRUE(Contains(message("{}"), "recordings is missing"));
+  EXPECT_TRUE(Contains(message("{\"recordings\": []}"), "the manifest lists no recordings"));
+  EXPECT_TRUE(Contains(message("[]"), "must be an object"));
+  EXPECT_TRUE(Contains(message("{\"recordings\": {}}"), "recordings must be a list"));
+  EXPECT_TRUE(Contains(message("{\"recordings\": [5]}"), "recording 0: must be an object"));
+  EXPECT_TRUE(Contains(ReadManifest(Path("none.json")).error().ToString(), "no such file"));
+}
+
+// Reading must not take time that grows with the square of the list.
+TEST_F(ManifestTest, ManyRecordings) {
+  nlohmann::json recording = nlohmann::json::parse(kGood)["recordings"][0];
+  nlohmann::json manifest;
+  for (int i = 0; i < 5000; ++i) {
+    recording["id"] = std::to_string(i);
+    manifest["recordings"].push_back(recording);
+  }
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", manifest.dump(1)));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().recordings.size(), 5000u);
+  EXPECT_GT(read.value().recordings[4999].line, read.value().recordings[4998].line);
+}
+
+}  // namespace
+}  // namespace pushid

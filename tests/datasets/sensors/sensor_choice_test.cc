@@ -1,0 +1,151 @@
+// Force sensors in C3D, storage and CSV files, and lists of them.
+#include "datasets/sensors/sensor_choice.h"
+
+#include <gtest/gtest.h>
+
+#include "datasets/files/numeric_table.h"
+#include "tests/datasets/c3d_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class SensorChoiceTest : public TempDirTest {
+ protected:
+  void SetUp() override {
+    TempDirTest::SetUp();
+    ASSERT_FALSE(WriteC3d(Path("a.c3d"), SampleC3d()));
+    WriteText("a.mot",
+              "f\nnRows=3\nnColumns=5\nendheader\n"
+              "time ground_force_vx ground_force_vy ground_force_vz load\n"
+              "0 1 2 3 10\n0.5 4 5 6 20\n1.0 7 8 9 nan\n");
+    WriteText("a.csv", "time,force\n0,0\n0.1,5\n0.2,0\n");
+  }
+
+  SensorChoice Choice(const std::string& file, const std::string& column) {
+    SensorChoice choice;
+    choice.file = Path(file);
+    choice.column = column;
+    return choice;
+  }
+  std::string Message(const SensorChoice& choice) {
+    const Result<SensorRecord> record = ReadSensor(choice);
+    return record.ok() ? "no error" : record.error().ToString();
+  }
+};
+
+TEST_F(SensorChoiceTest, AnalogChannel) {
+  SensorChoice choice = Choice("a.c3d", "rod");
+  choice.gain = -2.0;
+  const Result<SensorRecord> record = ReadSensor(choice);
+  ASSERT_TRUE(record.ok()) << record.error().ToString();
+  EXPECT_FALSE(record.value().is_vector);
+  EXPECT_EQ(record.value().num_samples(), 100);
+  EXPECT_NEAR(record.value().time_s[10], 0.01, 1e-12);
+  EXPECT_NEAR(record.value().force[10].x(), -2.0 * 40.0 * std::sin(0.5), 1e-4);
+  EXPECT_TRUE(
+      Contains(Message(Choice("a.c3d", "Rod")), "there is no analog channel 'Rod'; it has Fx1"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "by --sensor_column"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "rod"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "platform:1"));
+}
+
+TEST_F(SensorChoiceTest, Platform) {
+  SensorChoice choice = Choice("a.c3d", "platform:1");
+  const Result<SensorRecord> record = ReadSensor(choice);
+  ASSERT_TRUE(record.ok()) << record.error().ToString();
+  EXPECT_TRUE(record.value().is_vector);
+  EXPECT_NEAR(record.value().force[0].z(), 700.0, 1e-3);
+  ASSERT_TRUE(record.value().height_m);
+  EXPECT_NEAR(*record.value().height_m, 0.0, 1e-6);  // it lies on the floor
+  // In a file whose y is up, the same numbers point elsewhere.
+  choice.up = "y";
+  choice.forward = "z";
+  EXPECT_NEAR(ReadSensor(choice).value().force[0].x(), 700.0, 1e-3);
+  EXPECT_TRUE(
+      Contains(Message(Choice("a.c3d", "platform:2")), "no force platform 2; the file has 1"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "platform:x")), "'platform:x' is no platform"));
+}
+
+TEST_F(SensorChoiceTest, ColumnsOfTables) {
+  const Result<SensorRecord> vectors = ReadSensor(Choice("a.mot", "ground_force_v"));
+  ASSERT_TRUE(vectors.ok()) << vectors.error().ToString();
+  EXPECT_TRUE(vectors.value().is_vector);
+  EXPECT_EQ(vectors.value().force[1], Eigen::Vector3d(4, 5, 6));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "load")), "a.mot:8: load is missing"));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "--sensor_column"));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "it has time, ground_force_vx"));
+  EXPECT_TRUE(Contains(Message(Choice("a.mot", "lode")), "there is no column 'lode'; it has time"));
+  const Result<SensorRecord> csv = ReadSensor(Choice("a.csv", "force"));
+  ASSERT_TRUE(csv.ok());
+  EXPECT_EQ(csv.value().force[1].x(), 5.0);
+  EXPECT_EQ(ReadSensor(Choice("a.csv", "")).value().force[1].x(), 5.0);
+  // 30 N at rest come off after the gain; of a vector nothing can.
+  SensorChoice resting = Choice("a.csv", "");
+  resting.gain = 2.0;
+  resting.zero_n = 30.0;
+  EXPECT_EQ(ReadSensor(resting).value().force[1].x(), 2.0 * 5.0 - 30.0);
+  resting = Choice("a.mot", "ground_force_v");
+  resting.zero_n = 30.0;
+  EXPECT_TRUE(Contains(Message(resting), "a sensor of one number"));
+  SensorChoice zero = Choice("a.csv", "");
+  zero.gain = 0.0;
+  EXPECT_TRUE(Contains(Message(zero), "gain"));
+  SensorChoice axes = Choice("a.csv", "");
+  axes.up = "x";
+  EXPECT_TRUE(Contains(Message(axes), "lie along the same axis"));
+}
+
+// What is recorded in the file of the motion has its clock and axes; what is said, wins.
+TEST_F(SensorChoiceTest, FilledFromTheMotion) {
+  RecordedPerson person;
+  person.file = Path("a.c3d");
+  person.file_clock_s = 0.4;
+  person.file_up = "y";
+  person.file_forward = "z";
+  SensorChoice same = Choice("./a.c3d", "rod"), other = Choice("a.csv", ""), said = same;
+  said.start_s = 0.1;
+  said.up = "z";
+  for (SensorChoice* choice : {&same, &other, &said}) FillFromMotion(person, choice);
+  EXPECT_EQ(same.start_s, 0.4);
+  EXPECT_EQ(same.up + same.forward, "yz");
+  EXPECT_FALSE(other.start_s);
+  EXPECT_EQ(other.up, "");
+  EXPECT_EQ(said.start_s, 0.1);
+  EXPECT_EQ(said.up + said.forward, "z");
+}
+
+TEST_F(SensorChoiceTest, Lists) {
+  const Result<std::vector<SensorChoice>> list = ReadSensorList(WriteText(
+      "s.json",
+      "[{\"file\": \"a.csv\", \"height\": 0.8, \"start\": -0.5},\n"
+      " {\"file\": \"/b.c3d\", \"column\": \"rod\", \"gain\": -2, \"direction\": [0, 1, 0], "
+      "\"height_m\": 1.1, \"idle_force\": 3, \"up\": \"y\", \"forward\": \"z\"}]"));
+  ASSERT_TRUE(list.ok()) << list.error().ToString();
+  ASSERT_EQ(list.value().size(), 2u);
+  EXPECT_EQ(list.value()[0].file, Path("a.csv"));
+  EXPECT_EQ(list.value()[0].height_fraction, 0.8);
+  EXPECT_EQ(list.value()[0].start_s, -0.5);
+  EXPECT_EQ(list.value()[1].file, "/b.c3d");
+  EXPECT_EQ(list.value()[1].direction, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(list.value()[1].height_m, 1.1);
+  EXPECT_EQ(list.value()[1].idle_force, 3.0);
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"{}", "a list of sensors is expected"},
+      {"[]", "a list of sensors is expected"},
+      {"[{}]", "sensor 0: file is missing"},
+      {"[{\"file\": \"a\", \"direction\": [1, 2]}]", "direction must be [x, y, z]"},
+      {"[{\"file\": \"a\", \"height\": 1, \"height_m\": 1}]", "height is given beside height_m"},
+      {"[{\"file\": \"a\", \"gain\": \"2\"}]", "gain must be the N per unit"},
+      {"[{\"file\": \"a\", \"hieght\": 1}]", "hieght is not known; there may be file, column"},
+      {"[{\"file\": \"a\", \"idle_force\": -1}]", "at least 0 N"},
+  };
+  for (const auto& [text, says] : bad) {
+    const auto read = ReadSensorList(WriteText("s.json", text));
+    ASSERT_FALSE(read.ok()) << text;
+    EXPECT_TRUE(Contains(read.error().ToString(), says));
+  }
+}
+
+}  // namespace
+}  // namespace pushid

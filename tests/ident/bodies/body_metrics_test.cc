@@ -1,0 +1,143 @@
+// Metrics of bodies against cases made by hand; means; yardsticks.
+#include "ident/bodies/body_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/bodies/body_evaluation.h"
+#include "ident/bodies/body_report.h"
+#include "tests/models/body_samples.h"
+
+namespace pushid {
+namespace {
+
+BodyRecording Standing(int frames, const std::string& id = "a") {
+  BodyRecording recording;
+  recording.pendulum.id = id;
+  recording.pendulum.setting = "single";
+  recording.pendulum.magnitude = "weak";
+  recording.pendulum.subject_ids = {"s"};
+  const RestorationInput person = WithPendulum(StandingPose(), 80);
+  recording.pendulum.scene.people.push_back({person.body, {person.q[0], Vector4<double>::Zero()}});
+  recording.bodies = {BodyMotion(frames, StandingPose())};
+  recording.pendulum.hip = {std::vector<Vector3<double>>(frames, StandingPose().col(0))};
+  recording.pendulum.states = {
+      std::vector<PendulumState<double>>(frames, {person.q[0], Vector4<double>::Zero()})};
+  return recording;
+}
+
+TEST(BodyMetricsTest, TheRecordingItselfScoresZero) {
+  const BodyRecording recording = Standing(10);
+  const BodyScore score = ScoreBodies(recording, recording.bodies);
+  for (double value : score.value) EXPECT_EQ(value, 0.0);
+}
+
+TEST(BodyMetricsTest, ABodyMovedAsAWhole) {
+  const BodyRecording recording = Standing(11);
+  std::vector<BodyMotion> moved = recording.bodies;
+  for (int t = 0; t < 11; ++t) moved[0][t] = Placed(StandingPose(), 0.0, {0.01 * t, 0, 0});
+  const BodyScore score = ScoreBodies(recording, moved);
+  EXPECT_NEAR(score.value[kMpjpe], 0.055, 1e-12);  // mean of 0.01 .. 0.10
+  EXPECT_NEAR(score.value[kHipAde], 0.055, 1e-12);
+  EXPECT_NEAR(score.value[kHipFde], 0.10, 1e-12);
+  EXPECT_NEAR(score.value[kRelativeMpjpe], 0.0, 1e-12);
+  EXPECT_NEAR(score.value[kBoundMpjpe], 0.055, 1e-12);
+  EXPECT_NEAR(score.value[kMble], 0.0, 1e-12);
+  EXPECT_NEAR(score.value[kFse], 1.0, 1e-9);  // 1 cm a frame on the floor: 2 - 2^0 = 1
+}
+
+TEST(BodyMetricsTest, OneJointOffCountsOneInTwentyTwo) {
+  const BodyRecording recording = Standing(5);
+  std::vector<BodyMotion> bent = recording.bodies;
+  for (int t = 1; t < 5; ++t) bent[0][t].col(kBodyHead) += Eigen::Vector3d(0, 0, 0.22);
+  const BodyScore score = ScoreBodies(recording, bent);
+  EXPECT_NEAR(score.value[kMpjpe], 0.01, 1e-12);
+  EXPECT_NEAR(score.value[kRelativeMpjpe], 0.01, 1e-12);
+  EXPECT_EQ(score.value[kHipAde], 0.0);
+  EXPECT_EQ(score.value[kBoundMpjpe], 0.0);
+  // One bone, from neck to head (0.02, 0, 0.10), is longer.
+  const double before = std::hypot(0.02, 0.10), after = std::hypot(0.02, 0.32);
+  EXPECT_NEAR(score.value[kMble], (after - before) / 21.0, 1e-12);
+}
+
+TEST(BodyMetricsTest, FootSkateByHeight) {
+  BodyMotion motion(3, StandingPose());
+  EXPECT_EQ(FootSkate(motion), 0.0);
+  // The left ankle slides 3 cm at a height of half of H: weight 2 - sqrt(2); the right one stands.
+  motion[1].col(kLeftAnkle) += Eigen::Vector3d(0.03, 0, 0.0125);
+  motion[2].col(kLeftAnkle) += Eigen::Vector3d(0.03, 0, 0.0125);
+  EXPECT_NEAR(FootSkate(motion), 3.0 * (2.0 - std::sqrt(2.0)) / 4.0, 1e-9);
+  // In the air it does not count at all.
+  for (int t : {1, 2}) motion[t].col(kLeftAnkle).z() += 0.02;
+  EXPECT_EQ(FootSkate(motion), 0.0);
+  for (int t : {1, 2}) motion[t].col(kRightAnkle).z() += 0.05;
+  EXPECT_LT(FootSkate(motion), 0.0) << "nobody touches the floor";
+}
+
+TEST(BodyMetricsTest, TheOrderOfPeopleMakesNoDifference) {
+  BodyRecording recording = Standing(6);
+  recording.bodies.push_back(BodyMotion(6, Placed(StandingPose(), 0.3, {1, 1, 0})));
+  recording.pendulum.hip.push_back(recording.pendulum.hip[0]);
+  std::vector<BodyMotion> predicted = recording.bodies;
+  for (int t = 1; t < 6; ++t) predicted[1][t].col(kLeftAnkle) += Eigen::Vector3d(0.02 * t, 0, 0);
+  const BodyScore one = ScoreBodies(recording, predicted);
+  std::swap(recording.bodies[0], recording.bodies[1]);
+  std::swap(predicted[0], predicted[1]);
+  const BodyScore other = ScoreBodies(recording, predicted);
+  for (int m = 0; m < kNumBodyMetrics; ++m) EXPECT_NEAR(one.value[m], other.value[m], 1e-15);
+}
+
+TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
+  const std::vector<BodyRecording> recordings = {Standing(11, "a"), Standing(31, "b"),
+                                                 Standing(5, "c")};
+  std::vector<BodyScore> scores(3);
+  scores[0] = {"a", 11, {}, ""};
+  scores[1] = {"b", 31, {}, ""};
+  scores[2] = {"c", 5, {}, "it fell"};
+  scores[0].value[kMpjpe] = 0.1;
+  scores[1].value[kMpjpe] = 0.3;
+  const BodySummary summary = SummarizeBodies(recordings, scores);
+  EXPECT_EQ(summary.mean.recordings, 2);
+  EXPECT_NEAR(summary.mean.value[kMpjpe], 0.2, 1e-12);
+  EXPECT_NEAR(summary.mean.error[kMpjpe], 0.1, 1e-12);  // 0.1414 / sqrt(2)
+  EXPECT_NEAR(summary.frame_weighted.value[kMpjpe], 0.25, 1e-12);
+  EXPECT_EQ(summary.by_magnitude.at("weak").recordings, 2);
+  EXPECT_EQ(summary.by_subject.at("s").recordings, 2);
+}
+
+TEST(BodyEvaluationTest, Yardsticks) {
+  BodyRecording recording = Standing(8);
+  for (int t = 0; t < 8; ++t) {
+    recording.bodies[0][t] = Placed(StandingPose(), 0.0, {0.01 * t * t, 0, 0});
+  }
+  recording.pendulum.scene.pushes.push_back(MakeScenePush(
+      0, 0, PushKind::kExternal, std::vector<Vector4<double>>(3, Vector4<double>::Zero())));
+  const BodyMotion still = StaticBodies(recording)[0], going = ConstantVelocityBodies(recording)[0];
+  EXPECT_EQ(still[7], StandingPose());
+  for (int t = 0; t <= 3; ++t) EXPECT_EQ(going[t], recording.bodies[0][t]);
+  EXPECT_NEAR(going[7](0, 5) - going[3](0, 5), 4 * 0.05, 1e-12);  // 0.09 - 0.04 a frame
+}
+
+TEST(BodyReportTest, KeysAreTheAgreedOnesAndJoinThoseOfThePendulum) {
+  const std::vector<BodyRecording> recordings = {Standing(9)};
+  BodyScores scores;
+  for (const char* name : {"restoration", "rigid", "static", "true_pendulum", "recorded"}) {
+    scores[name].push_back(ScoreBodies(recordings[0], recordings[0].bodies));
+  }
+  nlohmann::ordered_json json = {{"mean", {{"hipADE_m", 0.5}, {"recordings", 1}}},
+                                 {"recordings", {{{"id", "a"}, {"fell", false}}}},
+                                 {"baselines", {{"static", {{"mean", {{"hipADE_m", 0.7}}}}}}}};
+  AddBodyJson(SummarizeAll(recordings, scores), &json);
+  for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m",
+                          "bound_MPJPE_m"}) {
+    EXPECT_TRUE(json["mean"].contains(key)) << key;
+    EXPECT_TRUE(json["frame_weighted"].contains(key)) << key;
+    EXPECT_TRUE(json["recordings"][0].contains(key)) << key;
+    EXPECT_TRUE(json["baselines"]["rigid"]["mean"].contains(key)) << key;
+    EXPECT_TRUE(json["by_setting"]["single"].contains(key)) << key;
+    EXPECT_TRUE(json["true_pendulum"]["mean"].contains(key)) << key;
+  }
+  EXPECT_EQ(json["recordings"][0]["fell"], false);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,178 @@
+// Restorations and bodies as files: round trips, and errors that say what is wrong.
+#include "ident/bodies/restoration_files.h"
+
+#include <gtest/gtest.h>
+
+#include "datasets/files/npy.h"
+#include "ident/bodies/body_files.h"
+#include "models/restoration/skeleton_fit.h"
+#include "tests/models/body_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class RestorationFilesTest : public TempDirTest {
+ protected:
+  std::string WriteWindow() {
+    RestorationFile file;
+    file.kind = "window";
+    const WindowWeights weights = RandomWindow();
+    AddTensors("inputs", weights.inputs, &file.tensors);
+    AddTensors("network", weights.network, &file.tensors);
+    const MaybeError failed = WriteRestorationFile(Path("r"), file);
+    EXPECT_FALSE(failed) << failed->ToString();
+    return Path("r");
+  }
+  std::string ErrorOf(const std::string& folder) {
+    const auto loaded = LoadRestoration(folder);
+    return loaded.ok() ? "no error" : loaded.error().ToString();
+  }
+  void Replace(const std::string& from, const std::string& to) {
+    std::string text = ReadText(Path("r/restoration.json"));
+    const size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    WriteText("r/restoration.json", text);
+  }
+};
+
+TEST_F(RestorationFilesTest, AWindowComesBackToTheLastBit) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
+  const BodyMotion before = WindowRestoration(RandomWindow()).Restore({person})[0];
+  const auto loaded = LoadRestoration(WriteWindow());
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const BodyMotion after = loaded.value()->Restore({person})[0];
+  for (int t = 0; t < 30; ++t) EXPECT_EQ(before[t], after[t]);
+}
+
+TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
+  RestorationFile file;
+  file.kind = "cvae";
+  file.settings["coordinates"] = "ldp";
+  file.tensors = ToTensors(RandomCvae());
+  ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
+  const auto loaded = LoadRestoration(Path("c"));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
+  const BodyMotion before =
+      CvaeRestoration(RandomCvae(), CvaeCoordinates::kLdp).Restore({person})[0];
+  const BodyMotion after = loaded.value()->Restore({person})[0];
+  for (int t = 0; t < 20; ++t) EXPECT_EQ(before[t], after[t]);
+}
+
+TEST_F(RestorationFilesTest, RigidNeedsNoFolder) {
+  const auto loaded = LoadRestoration("rigid");
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_EQ(loaded.value()->kind(), "rigid");
+}
+
+TEST_F(RestorationFilesTest, WhatIsWrongIsNamed) {
+  EXPECT_TRUE(Contains(ErrorOf(Path("nowhere")), "pushid-train-restoration"));
+  WriteWindow();
+  Replace("\"window\"", "\"wndow\"");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "wndow"));
+  WriteWindow();
+  Replace("\"format\": 1", "\"format\": 9");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "format 9"));
+  WriteWindow();
+  Replace("network.1.bias", "network.7.bias");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "network.1.bias is missing"));
+  WriteWindow();
+  Replace("\"rows\": 107", "\"rows\": 106");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "do not fit"));
+  WriteWindow();
+  WriteText("r/restoration.json", "{\"format\": 1");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "restoration.json:1"));
+  WriteWindow();
+  std::filesystem::remove(Path("r/weights.npy"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "weights.npy"));
+}
+
+TEST_F(RestorationFilesTest, DamagedOrExchangedWeightsAreRefused) {
+  WriteWindow();
+  std::string bytes = ReadText(Path("r/weights.npy"));
+  WriteText("r/weights.npy", bytes.substr(0, bytes.size() / 2));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "announces"));
+  bytes[bytes.size() - 3] ^= 0x10;
+  WriteText("r/weights.npy", bytes);
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "weights_hash"));
+  WriteText("r/weights.npy", "not a file of numbers");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "no .npy file"));
+}
+
+TEST_F(RestorationFilesTest, NumbersThatAreNoneAreRefused) {
+  RestorationFile file;
+  file.kind = "window";
+  WindowWeights weights = RandomWindow();
+  weights.network.layers[1].weights(3, 4) = std::numeric_limits<float>::quiet_NaN();
+  AddTensors("inputs", weights.inputs, &file.tensors);
+  AddTensors("network", weights.network, &file.tensors);
+  ASSERT_FALSE(WriteRestorationFile(Path("r"), file));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "network.1.weights has entries that are no numbers"));
+}
+
+using NpyTest = TempDirTest;
+
+TEST_F(NpyTest, ThereAndBack) {
+  const std::vector<float> values = {1.5f, -0.25f, 3e-30f, 7.0f};
+  ASSERT_FALSE(WriteNpy(Path("a.npy"), values));
+  const auto read = ReadNpy(Path("a.npy"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value(), values);
+  const std::string bytes = ReadText(Path("a.npy"));
+  EXPECT_EQ((bytes.size() - 4 * sizeof(float)) % 64, 0u) << "numpy aligns the numbers";
+  EXPECT_TRUE(Contains(bytes, "'shape': (4,)"));
+}
+
+using BodyFilesTest = TempDirTest;
+
+TEST_F(BodyFilesTest, BvhHoldsTheMotion) {
+  const RestorationInput person =
+      MovingPerson(Placed(StandingPose(), 0.9, {0.2, -0.4, 0.0}), 80, 12);
+  BodyMotion motion = WindowRestoration(RandomWindow()).Restore({person})[0];
+  motion[0] = person.first_pose;
+  for (size_t t = 1; t < motion.size(); ++t) {
+    // Only what the skeleton can do.
+    motion[t] = (TurnAboutZ(0.05 * static_cast<double>(t)) * motion[t]).eval();
+  }
+  BodyScene scene;
+  scene.id = "x";
+  scene.subject_ids = {"s"};
+  scene.joint_names = DefaultJointNames();
+  scene.bodies = {motion};
+  const auto files = WriteBodyBvh(Path("m.bvh"), scene);
+  ASSERT_TRUE(files.ok()) << files.error().ToString();
+  EXPECT_EQ(files.value(), std::vector<std::string>{Path("m.bvh")});
+  const auto read = ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}});
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  ASSERT_EQ(read.value().num_frames(), 12);
+  for (int t = 0; t < 12; ++t) {
+    const Pose carried = FitSkeleton(motion[0], motion[t]).positions;
+    for (int j = 0; j < kBodyJoints; ++j) {
+      EXPECT_LT((read.value().positions[j][t] - carried.col(j)).norm(), 1e-9) << t << " " << j;
+    }
+  }
+}
+
+TEST_F(BodyFilesTest, AFilePerPersonAndRowsAndJson) {
+  BodyScene scene;
+  scene.id = "x";
+  scene.subject_ids = {"s", "t/u"};
+  scene.joint_names = DefaultJointNames();
+  scene.bodies = {BodyMotion(3, StandingPose()),
+                  BodyMotion(3, Placed(StandingPose(), 1.0, {1, 0, 0}))};
+  const auto files = WriteBodyBvh(Path("m.bvh"), scene);
+  ASSERT_TRUE(files.ok());
+  EXPECT_EQ(files.value(), (std::vector<std::string>{Path("m_0_s.bvh"), Path("m_1_t_u.bvh")}));
+  ASSERT_FALSE(WriteJointsCsv(Path("j.csv"), scene));
+  const std::string csv = ReadText(Path("j.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2 * 22);
+  EXPECT_TRUE(Contains(csv, "\n0,0,0,s,Hips,0.020000,0.000000,1.000000\n"));
+  const auto json = ToJson(scene);
+  EXPECT_EQ(json["people"][1]["joints_m"][2][0][2], 1.0);
+  EXPECT_EQ(json["joint_parents"][16], 15);
+}
+
+}  // namespace
+}  // namespace pushid

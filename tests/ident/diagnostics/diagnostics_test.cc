@@ -1,0 +1,260 @@
+// What is said before and after a fit, each finding provoked on purpose.
+#include "ident/diagnostics/diagnostics.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/report/advice.h"
+#include "ident/report/confidence_text.h"
+#include "ident/report/fit_command.h"
+#include "ident/solver/solver.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+TEST(StartDiagnostics, ParametersWithoutEffectAreNamed) {
+  SyntheticOptions study = TinyStudy();
+  study.push_kind = PushKind::kExternal;  // measured whole: no tail
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  const MaybeError error = CheckEffects(FitProblem(recordings, options));
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->message, "tail_gain,tail_torque,tail_time,tail_exponent have no"));
+  EXPECT_TRUE(Contains(error->message, "--fix=tail_gain"));
+  ASSERT_FALSE(
+      EditTable({"tail_gain,tail_torque,tail_time,tail_exponent", "", "", "", ""}, &options.table));
+  EXPECT_FALSE(CheckEffects(FitProblem(recordings, options)));
+}
+
+TEST(StartDiagnostics, StartsOnABoundAreMovedOff) {
+  const SyntheticOptions study = TinyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  ParameterSpec& gain = options.table[kTailGain];
+  gain.nominal = gain.lower;
+  options.start = FitStart::kNominal;
+  const FitResult result = Fit(recordings, options);
+  ASSERT_EQ(result.diagnostics.start.notes.size(), 1u);
+  EXPECT_TRUE(Contains(result.diagnostics.start.notes[0], "tail_gain started on its bound"));
+  EXPECT_TRUE(result.converged);
+}
+
+TEST(StartDiagnostics, WrongUnitsAreSuspected) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  EXPECT_TRUE(UnitWarnings(recordings).empty());
+  recordings[0].scene.people[0].body.mass *= 1000.0;  // grams
+  recordings[1].scene.people[0].body.rod_length *= 10.0;
+  for (Vector3<double>& hip : recordings[2].hip[0]) hip *= 1000.0;  // mm
+  const std::vector<std::string> warnings = UnitWarnings(recordings);
+  const std::string all = std::accumulate(warnings.begin(), warnings.end(), std::string());
+  EXPECT_TRUE(Contains(all, "is mass_kg in kg?"));
+  EXPECT_TRUE(Contains(all, "is length_unit right?"));
+  EXPECT_TRUE(Contains(all, "are length_unit and fps right?"));
+  EXPECT_TRUE(Contains(all, recordings[2].id));
+}
+
+TEST(StartDiagnostics, MotionAgainstThePushIsSuspected) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  for (Vector3<double>& hip : recordings[0].hip[0]) hip.head<2>() *= -1.0;    // backwards
+  for (Vector3<double>& hip : recordings[1].hip[0]) hip.y() = 3.0 * hip.x();  // sideways
+  const std::vector<std::string> warnings = UnitWarnings(recordings);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_TRUE(Contains(warnings[0], recordings[0].id));
+  EXPECT_TRUE(Contains(warnings[0], "against the push"));
+  EXPECT_TRUE(Contains(warnings[1], "not along the push"));
+}
+
+TEST(Diagnostics, TheStartKnowsItsNullDirections) {
+  const SyntheticOptions study = TinyStudy();
+  FitOptions options = UnbiasedFit(study);
+  ASSERT_FALSE(EditTable({"", "Kp_x,Kp_y", "", "", ""}, &options.table));
+  const FitResult result = Fit(MakePendulums(study), options);
+  ASSERT_EQ(result.diagnostics.start.null_directions.size(), 1u);
+  EXPECT_GT(result.diagnostics.start.condition_number, 1.0);
+}
+
+class Judged : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    SyntheticOptions study = SmallStudy();
+    study.recording_spread = 0.1;
+    recordings_ = new std::vector<PendulumRecording>(MakePendulums(study));
+    // A recording whose motion is not that of its push.
+    for (Vector3<double>& hip : (*recordings_)[5].hip[0]) hip[0] += 3.0 * (hip[0] - 0.0);
+    options_ = new FitOptions(UnbiasedFit(study));
+    options_->sigmas.robust = 0.5;
+    result_ = new FitResult(Fit(*recordings_, *options_));
+  }
+  static void TearDownTestSuite() {
+    delete result_;
+    delete options_;
+    delete recordings_;
+  }
+  static std::vector<PendulumRecording>* recordings_;
+  static FitOptions* options_;
+  static FitResult* result_;
+};
+std::vector<PendulumRecording>* Judged::recordings_ = nullptr;
+FitOptions* Judged::options_ = nullptr;
+FitResult* Judged::result_ = nullptr;
+
+TEST_F(Judged, FindsTheOddRecordingAndItsFrames) {
+  const auto& all = result_->diagnostics.recordings;
+  ASSERT_EQ(all.size(), recordings_->size());
+  for (size_t g = 0; g < all.size(); ++g) {
+    EXPECT_EQ(all[g].id, (*recordings_)[g].id);
+    EXPECT_DOUBLE_EQ(all[g].cost, result_->recordings[g].cost);
+    if (g != 5) {
+      EXPECT_GT(all[g].explained, 80.0) << all[g].id;
+      EXPECT_LT(all[g].outliers.size(), all[5].outliers.size()) << all[g].id;
+    }
+  }
+  EXPECT_LT(all[5].explained, 80.0);
+  ASSERT_FALSE(all[5].outliers.empty());
+  for (const Outlier& outlier : all[5].outliers) {
+    EXPECT_LT(outlier.weight, 0.5);
+    EXPECT_GT(outlier.error, 0.5);
+  }
+}
+
+TEST_F(Judged, ResidualsOfVaryingGainsAreNotWhite) {
+  const auto& whiteness = result_->diagnostics.whiteness;
+  ASSERT_EQ(whiteness.size(), 8u);
+  EXPECT_EQ(whiteness[0].channel, "hip x");
+  EXPECT_GT(whiteness[0].autocorrelation[0], 0.8);
+  EXPECT_GT(whiteness[0].autocorrelation[0], whiteness[0].mean_band);
+  EXPECT_LT(whiteness[0].ljung_box_p, 1e-6);
+  EXPECT_EQ(whiteness[0].push.size(), whiteness[0].autocorrelation.size() + 1);
+}
+
+TEST_F(Judged, TraceFallsAndEndsAtTheCost) {
+  const auto& trace = result_->diagnostics.trace;
+  ASSERT_FALSE(trace.empty());
+  EXPECT_EQ(trace.front().horizon, 8);
+  EXPECT_EQ(trace.back().horizon, 0);
+  EXPECT_NEAR(trace.back().cost, result_->cost, 1e-9 * result_->cost);
+  EXPECT_LT(trace.back().gradient, 1e-3 * trace.front().gradient);
+}
+
+// One Gauss-Newton step against fits that never saw the recording.
+TEST(Leverage, IsWhatRefitsFind) {
+  SyntheticOptions study = SmallStudy();
+  study.recording_spread = 0.1;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  options.sigmas.robust = 0.5;
+  const FitResult result = Fit(recordings, options);
+  const Leverage& leverage = result.diagnostics.leverage;
+  const SolveStart& best = result.starts[result.best_start];
+  ASSERT_EQ(leverage.recordings.size(), recordings.size());
+  double off = 0.0, size = 0.0;
+  for (size_t g = 0; g < recordings.size(); ++g) {
+    std::vector<int> counts(recordings.size(), 1);
+    counts[g] = 0;
+    const FitProblem rest(recordings, options, counts);
+    const SolveStart refit = Refit(rest, best.to);
+    ASSERT_TRUE(refit.converged);
+    const ParameterSet<double> without = rest.Parameters(refit.to, "");
+    for (size_t p = 0; p < leverage.parameters.size(); ++p) {
+      const Parameter id = options.table.Find(leverage.parameters[p])->id;
+      const double error = FindEstimate(result.estimates, leverage.parameters[p])->standard_error;
+      const double real = (without[id] - result.parameters[id]) / error;
+      const double step = leverage.change[g][p] / error;
+      off += (real - step) * (real - step);
+      size += real * real;
+      EXPECT_NEAR(step, real, 0.05 + 0.4 * std::abs(real))
+          << leverage.recordings[g] << " " << leverage.parameters[p];
+    }
+  }
+  RecordProperty("relative_error", std::to_string(std::sqrt(off / size)));
+  EXPECT_LT(std::sqrt(off / size), 0.25);  // over all recordings and parameters
+}
+
+TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
+  FitResult result = *result_;
+  result.configuration = {{"setting", "single"}, {"preset", "tail"}, {"fix", "mu_y=10"}};
+  result.changed_flags = {"fix", "setting"};
+  result.diagnostics.leverage.in_errors[5][0] = 1.7;
+  const std::vector<Advice> advice = Advise(result);
+  const auto about = std::find_if(advice.begin(), advice.end(), [](const Advice& a) {
+    return a.command.find("--leave_out") != std::string::npos;
+  });
+  ASSERT_NE(about, advice.end());
+  EXPECT_TRUE(Contains(about->sentence, recordings_->at(5).id));
+  EXPECT_TRUE(Contains(about->command, "--setting=single --fix=mu_y=10 --leave_out="));
+  result.diagnostics.advice = advice;
+  EXPECT_TRUE(Contains(DiagnosticsText(result), about->command));
+}
+
+std::string AllAdvice(const FitResult& result) {
+  std::string all;
+  for (const Advice& advice : Advise(result)) all += advice.sentence + "\n" + advice.command + "\n";
+  return all;
+}
+
+TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
+  FitResult result;
+  result.manifest = "my data/manifest.json";
+  result.configuration = {
+      {"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
+      {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
+      {"preset_priors", "false"}, {"profile", "all"}, {"pooling_sigma", "0.14999999999999999"}};
+  result.changed_flags = {"fix",           "interaction", "leave_out",     "pool",
+                          "pooling_sigma", "preset",      "preset_priors", "profile"};
+  const FitCommand same("pushid-fit", result);
+  EXPECT_EQ(same.ToString(),
+            "pushid-fit --recordings='my data/manifest.json' --leave_out=a,b --preset=group "
+            "--fix=mu=3 --interaction=none --pool=none --pooling_sigma=0.15 --preset_priors=false");
+  EXPECT_TRUE(Contains(FitCommand(same).Append("fix", "a_x=1").ToString(), "--fix=mu=3,a_x=1 "));
+  const std::string set = FitCommand(same).Set("interaction", "contact").ToString();
+  EXPECT_TRUE(Contains(set, "--interaction=contact "));
+  EXPECT_FALSE(Contains(set, "--interaction=none"));
+}
+
+TEST(Advice, IsNotWhatIsOnAlready) {
+  FitResult result;
+  result.recordings.resize(3);
+  Whiteness follows;
+  follows.channel = "hip x";
+  follows.push = {0.9};
+  follows.push_error = {0.01};
+  result.diagnostics.whiteness = {follows};
+  result.behaviour.settles = false;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--self_force=linear"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--settling_weight=10"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--bootstrap=199"));
+  result.options.self_force = SelfForceKind::kLinear;
+  result.options.settling_weight = 20.0;
+  EXPECT_FALSE(Contains(AllAdvice(result), "--self_force=linear"));
+  EXPECT_TRUE(Contains(AllAdvice(result), "--settling_weight=40"));
+  result.options.model.push_tail = PushTail::kNone;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--push_tail=exponential"));
+}
+
+TEST(Advice, OfGroupsAndOfSingleRecordings) {
+  FitResult result;
+  result.recordings.resize(1);
+  EXPECT_FALSE(Contains(AllAdvice(result), "--bootstrap"));
+  EXPECT_FALSE(Contains(AllAdvice(result), "--interaction"));
+  result.recordings[0].people = 4;
+  EXPECT_TRUE(Contains(AllAdvice(result), "--interaction=contact"));
+  result.options.model.interaction.spring = true;
+  EXPECT_FALSE(Contains(AllAdvice(result), "--interaction"));
+}
+
+TEST(Advice, OfNullDirectionsHoldsOneOfThem) {
+  const SyntheticOptions study = TinyStudy();
+  FitOptions options = UnbiasedFit(study);
+  ASSERT_FALSE(EditTable({"", "Kp_x,Kp_y", "", "", ""}, &options.table));
+  const std::vector<Advice> advice = Advise(Fit(MakePendulums(study), options));
+  ASSERT_FALSE(advice.empty());
+  EXPECT_TRUE(Contains(advice.front().sentence, "cannot be told apart"));
+  EXPECT_TRUE(Contains(advice.front().command, "--fix=Kp_"));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,197 @@
+// Presets, the flags that edit the table, option names.
+#include "ident/parameters/parameter_table.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "ident/parameters/option_names.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+ParameterTable Tail() { return MakePreset("tail").value().table; }
+
+std::set<std::string> FreeNames(const ParameterTable& table) {
+  std::set<std::string> names;
+  for (Parameter id : table.Free()) names.insert(table[id].name);
+  return names;
+}
+
+TEST(Presets, FreeWhatTheyPromise) {
+  const Preset tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
+  EXPECT_EQ(FreeNames(tail.table),
+            (std::set<std::string>{"mu", "Kp_theta", "a_x", "tail_gain", "tail_torque", "tail_time",
+                                   "tail_exponent"}));
+  EXPECT_EQ(FreeNames(ldp.table),
+            (std::set<std::string>{"mu", "mu_y", "Kp_theta", "Kp_phi", "Kd_theta", "Kd_phi"}));
+  EXPECT_EQ(ldp.model.posture, Posture::kUpright);
+  EXPECT_EQ(ldp.model.push_tail, PushTail::kNone);
+  EXPECT_EQ(ldp.table[kKpX].nominal, 30.0);
+  EXPECT_GT(tail.settling_weight, 0.0);
+  const Result<Preset> wrong = MakePreset("tial");
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_TRUE(
+      Contains(wrong.error().ToString(), "--preset is 'tial'; it must be tail, ldp or group"));
+}
+
+TEST(Presets, EveryRowIsSound) {
+  for (const char* name : {"tail", "ldp"}) {
+    const ParameterTable table = MakePreset(name).value().table;
+    ASSERT_EQ(table.specs.size(), static_cast<size_t>(kNumParameters));
+    for (int i = 0; i < kNumParameters; ++i) {
+      const ParameterSpec& spec = table.specs[i];
+      EXPECT_EQ(spec.id, i);
+      EXPECT_EQ(spec.name, kParameterNames[i]);
+      EXPECT_EQ(table.Find(spec.name), &spec);
+      EXPECT_LT(spec.lower, spec.upper) << spec.name;
+      EXPECT_GE(spec.nominal, spec.lower) << spec.name;
+      EXPECT_LE(spec.nominal, spec.upper) << spec.name;
+      EXPECT_GT(spec.scale, 0.0) << spec.name;
+      EXPECT_TRUE(spec.transform != Transform::kLog || spec.lower > 0.0) << spec.name;
+      EXPECT_FALSE(spec.meaning.empty()) << spec.name;
+      EXPECT_FALSE(spec.unit.empty()) << spec.name;
+    }
+    EXPECT_EQ(table.Find("nothing"), nullptr);
+  }
+}
+
+TEST(Presets, LinearSelfForceComesWithPriors) {
+  ParameterTable table = Tail();
+  FreeSelfForce(SelfForceKind::kNone, &table);
+  EXPECT_EQ(FreeNames(table), FreeNames(Tail()));
+  FreeSelfForce(SelfForceKind::kLinear, &table);
+  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
+    EXPECT_TRUE(table[id].free) << table[id].name;
+    EXPECT_TRUE(table[id].prior.has_value()) << table[id].name;
+  }
+  EXPECT_EQ(table[kAx].prior->mean, -10.0);  // the preset's own stays
+}
+
+TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
+  ParameterTable table = Tail();
+  table[kKpTheta].pooled = table[kTailTime].pooled = true;
+  const ParameterMap map = table.Map();
+  ASSERT_EQ(map.fitted.size(), 7u);
+  EXPECT_EQ(map.num_deviations, 2);
+  for (size_t i = 1; i < map.fitted.size(); ++i) {
+    EXPECT_LT(map.fitted[i - 1].parameter, map.fitted[i].parameter);
+  }
+  for (const FittedParameter& f : map.fitted) {
+    const int expected = f.parameter == kKpTheta ? 0 : f.parameter == kTailTime ? 1 : -1;
+    EXPECT_EQ(f.deviation, expected) << kParameterNames[f.parameter];
+  }
+  EXPECT_EQ(map.values[kKpPhi], table[kKpPhi].nominal);
+}
+
+TEST(TableEdits, FixFreePriorSetPool) {
+  ParameterTable table = Tail();
+  TableEdits edits;
+  edits.fix = "tail_exponent=1.4,a_x";
+  edits.free = "Kp_x=12,Kd_theta";
+  edits.prior = "mu:80:15,Kp_x:0:50";
+  edits.set = "Kp_phi=900";
+  edits.pool = "mu,Kd_theta";
+  const MaybeError error = EditTable(edits, &table);
+  ASSERT_FALSE(error) << error->ToString();
+  EXPECT_FALSE(table[kTailExponent].free);
+  EXPECT_EQ(table[kTailExponent].nominal, 1.4);
+  EXPECT_FALSE(table[kAx].free);
+  EXPECT_EQ(table[kAx].nominal, -10.0);
+  EXPECT_TRUE(table[kKpX].free);
+  EXPECT_EQ(table[kKpX].nominal, 12.0);
+  EXPECT_TRUE(table[kKdTheta].free);
+  EXPECT_EQ(table[kMu].prior->mean, 80.0);
+  EXPECT_EQ(table[kMu].prior->sigma, 15.0);
+  EXPECT_EQ(table[kKpPhi].nominal, 900.0);
+  EXPECT_FALSE(table[kKpPhi].free);
+  EXPECT_TRUE(table[kMu].pooled);
+  EXPECT_TRUE(table[kKdTheta].pooled);
+  EXPECT_FALSE(table[kKpTheta].pooled);
+}
+
+TEST(TableEdits, AFixedGainMayBeZero) {
+  ParameterTable table = Tail();
+  EXPECT_FALSE(EditTable({"tail_gain=0", "", "", "", ""}, &table));
+  EXPECT_EQ(table[kTailGain].nominal, 0.0);
+  // On its log scale a free one may not.
+  EXPECT_TRUE(EditTable({"", "tail_gain=0", "", "", ""}, &table));
+}
+
+TEST(TableEdits, BadInputIsNamed) {
+  struct Case {
+    TableEdits edits;
+    const char* part;
+  };
+  for (const Case& c : {
+           Case{{"nu", "", "", "", ""}, "--fix names 'nu', which is no parameter; there are mu,"},
+           Case{{"", "Kp", "", "", ""}, "--free names 'Kp'"},
+           Case{{"mu=fast", "", "", "", ""}, "--fix: 'mu=fast' has no number"},
+           Case{{"mu=", "", "", "", ""}, "no number after '='"},
+           Case{{"mu=nan", "", "", "", ""}, "no number"},
+           Case{{"mu=1e9", "", "", "", ""}, "mu = 1e+09 lies outside its bounds [-2000, 2000]"},
+           Case{{"", "Kp_theta=-3", "", "", ""}, "Kp_theta = -3 lies outside"},
+           Case{{"", "", "mu:3", "", ""}, "--prior: 'mu:3' is not name:mean:sigma"},
+           Case{{"", "", "mu:3:0", "", ""}, "sigma > 0"},
+           Case{{"", "", "mu:3:x", "", ""}, "is not name:mean:sigma"},
+           Case{{"", "", "nu:3:1", "", ""}, "--prior names 'nu'"},
+           Case{{"", "", "Kp_theta:-5:1", "", ""}, "lies outside its bounds"},
+           Case{{"", "", "", "mu", ""}, "--set: 'mu' needs a value"},
+           Case{{"", "", "", "", "nu"}, "--pool names 'nu'"},
+           Case{{"", "", "", "", "Kp_phi"}, "--pool names Kp_phi, which is fixed"},
+       }) {
+    ParameterTable table = Tail();
+    const MaybeError error = EditTable(c.edits, &table);
+    ASSERT_TRUE(error) << c.part;
+    EXPECT_TRUE(Contains(error->ToString(), c.part));
+  }
+}
+
+TEST(Assignments, NamesAndValues) {
+  const auto values = ParseAssignments("mu=20,Kp_theta=1.5e3", "--set");
+  ASSERT_TRUE(values.ok());
+  ASSERT_EQ(values.value().size(), 2u);
+  EXPECT_EQ(values.value()[1].name, "Kp_theta");
+  EXPECT_EQ(values.value()[1].value, 1500.0);
+  EXPECT_TRUE(ParseAssignments("", "--set").value().empty());
+  EXPECT_FALSE(ParseAssignments("mu", "--set").ok());
+  EXPECT_FALSE(ParseAssignments("mu=2x", "--set").ok());
+}
+
+template <typename E>
+void ExpectRoundTrip() {
+  std::set<std::string> names;
+  for (const auto& [name, value] : Names(E{})) {
+    E parsed{};
+    EXPECT_FALSE(ParseName("--flag", name, &parsed));
+    EXPECT_EQ(parsed, value) << name;
+    EXPECT_EQ(NameOf(value), name);
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+  E untouched = Names(E{}).back().second;
+  const MaybeError error = ParseName("--flag", "no such name", &untouched);
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(),
+                       "--flag is 'no such name'; it must be one of " + Names(E{}).front().first));
+  EXPECT_EQ(untouched, Names(E{}).back().second);
+}
+
+TEST(OptionNames, RoundTrip) {
+  ExpectRoundTrip<Posture>();
+  ExpectRoundTrip<GainScaling>();
+  ExpectRoundTrip<FrictionKind>();
+  ExpectRoundTrip<PushUse>();
+  ExpectRoundTrip<PushTail>();
+  ExpectRoundTrip<CartDerivative>();
+  ExpectRoundTrip<SkeletonMapping>();
+  ExpectRoundTrip<SelfForceKind>();
+  ExpectRoundTrip<RecordingWeight>();
+  ExpectRoundTrip<FitStart>();
+  ExpectRoundTrip<FoldScheme>();
+  ExpectRoundTrip<Transform>();
+  ExpectRoundTrip<EstimateStatus>();
+}
+
+}  // namespace
+}  // namespace pushid

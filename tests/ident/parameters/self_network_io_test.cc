@@ -1,0 +1,108 @@
+// Learned self forces and rods by name, by seed and by file.
+#include "ident/parameters/self_network_io.h"
+
+#include <gtest/gtest.h>
+
+namespace pushid {
+namespace {
+
+TEST(SelfNetworkIo, NamesAreReadAndWritten) {
+  for (const char* text : {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "linear,gru:4"}) {
+    const auto choice = ParseSelfForce("--self_force", text);
+    ASSERT_TRUE(choice.ok()) << text;
+    const SelfNetwork network{choice.value().network, {}};
+    EXPECT_EQ(SelfForceText(choice.value().kind, choice.value().network.any() ? &network : nullptr),
+              text);
+  }
+  EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
+  for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
+                           "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
+    const auto choice = ParseSelfForce("--self_force", text);
+    ASSERT_FALSE(choice.ok()) << text;
+    EXPECT_NE(choice.error().ToString().find("--self_force"), std::string::npos);
+  }
+}
+
+TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
+  const NetworkShape shape{NetworkKind::kLstm, 3, 2};
+  const std::vector<double> weights = InitialWeights(shape, 5);
+  ASSERT_EQ(static_cast<int>(weights.size()), shape.num_weights());
+  for (int i = shape.output_at(); i < shape.num_weights(); ++i) EXPECT_EQ(weights[i], 0.0);
+  EXPECT_EQ(weights, InitialWeights(shape, 5));
+  EXPECT_NE(weights, InitialWeights(shape, 6));
+}
+
+TEST(SelfNetworkIo, RodsAreReadAndWritten) {
+  for (const char* text : {"constant", "linear", "mlp:4", "mlp:256-128-256"}) {
+    const auto shape = ParseRod("--rod", text);
+    ASSERT_TRUE(shape.ok()) << text;
+    EXPECT_EQ(RodName(shape.value()), text);
+  }
+  EXPECT_EQ(RodName(ParseRod("f", "mlp").value()), "mlp:4");
+  for (const char* text : {"", "none", "gru:4", "linear:4", "constant:1", "mlp:", "mlp:0", "mlp:4-",
+                           "mlp:-4", "mlp:4--4", "mlp:4:4", "mlp:99999", "mlp:1-1-1-1-1-1-1-1-1"}) {
+    const auto shape = ParseRod("--rod", text);
+    ASSERT_FALSE(shape.ok()) << text;
+    EXPECT_NE(shape.error().ToString().find("--rod is '" + std::string(text)), std::string::npos);
+  }
+}
+
+TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
+  const NetworkShape shape{NetworkKind::kGru, 2};
+  const RodShape rod{RodKind::kMlp, {3, 2}};
+  const auto both = InitialNetwork(shape, 5, rod);
+  const std::vector<double> self = InitialWeights(shape, 5);
+  ASSERT_EQ(static_cast<int>(both->weights.size()), shape.num_weights() + rod.num_weights());
+  EXPECT_TRUE(std::equal(self.begin(), self.end(), both->weights.begin()));
+  for (size_t i = both->weights.size() - 2; i < both->weights.size(); ++i) {
+    EXPECT_EQ(both->weights[i], 0.0);
+  }
+  EXPECT_NE(both->weights[both->rod_at()], 0.0);
+  EXPECT_NE(both->weights[both->rod_at()], self[0]);
+  EXPECT_EQ(LearnedName(*both), "gru:2 and rod mlp:3-2");
+  EXPECT_EQ(LearnedName(*InitialNetwork({}, 5, rod)), "rod mlp:3-2");
+}
+
+TEST(SelfNetworkIo, FilesKeepEverything) {
+  const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {3, 2}};
+  for (const SelfNetwork& network :
+       {*InitialNetwork({NetworkKind::kGru, 2, 3, true}, 1, mlp), *InitialNetwork({}, 2, linear),
+        *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4)}) {
+    const auto read = SelfNetworkFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));
+    EXPECT_EQ(LearnedName(*read), LearnedName(network));
+    EXPECT_EQ(read->shape.rod_input, network.shape.rod_input);
+    EXPECT_EQ(read->weights, network.weights);
+  }
+  // Written before rods moved.
+  nlohmann::ordered_json old = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
+  old.erase("rod");
+  EXPECT_FALSE(SelfNetworkFromJson(old)->rod.moves());
+}
+
+TEST(SelfNetworkIo, DamageIsNamed) {
+  const nlohmann::ordered_json good = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
+  EXPECT_NO_THROW(SelfNetworkFromJson(good));
+  const auto broken = [&](const char* key, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = good;
+    json[key] = value;
+    return json;
+  };
+  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "rnn")), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 0)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 3)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 2.7)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("rod_input", true)), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("weights", {1.0})), std::runtime_error);
+  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "none")), std::runtime_error);
+  using Rod = nlohmann::ordered_json;
+  for (const Rod& rod :
+       {Rod{{"kind", "linear"}, {"hidden", Rod::array()}},
+        Rod{{"kind", "mlp"}, {"hidden", Rod::array()}}, Rod{{"kind", "linear"}, {"hidden", {2}}},
+        Rod{{"kind", "mlp"}, {"hidden", {0}}}, Rod{{"kind", "gru"}, {"hidden", {2}}},
+        Rod{{"kind", "mlp"}}}) {
+    EXPECT_ANY_THROW(SelfNetworkFromJson(broken("rod", rod))) << rod;
+  }
+}
+
+}  // namespace
+}  // namespace pushid

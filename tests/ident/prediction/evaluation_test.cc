@@ -1,0 +1,128 @@
+// Scores by hand: hipADE, hipFDE, both means, baselines, failures.
+#include "ident/prediction/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// One person whose hip is at (t^2, 0, 1) cm-wise: 0, 0.01, 0.04, 0.09, ... m.
+PendulumRecording Parabola(const std::string& id, int frames) {
+  PendulumRecording recording;
+  recording.id = id;
+  recording.setting = "single";
+  recording.magnitude = frames > 4 ? "strong" : "weak";
+  recording.subject_ids = {"S" + id};
+  recording.scene.people.resize(1);
+  recording.scene.people[0].body = {80.0, 1.0, 0.0};
+  recording.hip.resize(1);
+  recording.states.resize(1, std::vector<PendulumState<double>>(frames));
+  for (int t = 0; t < frames; ++t) recording.hip[0].push_back({0.01 * t * t, 0.0, 1.0});
+  recording.scene.pushes.push_back(
+      MakeScenePush(0, 0, PushKind::kNet, {Vector4<double>::Zero(), Vector4<double>::Zero()}));
+  return recording;
+}
+
+TEST(Evaluation, StaticByHand) {
+  const PendulumRecording r = Parabola("a", 4);
+  const RecordingScore score = ScoreHip(r, StaticBaseline(r));
+  EXPECT_EQ(score.id, "a");
+  EXPECT_EQ(score.frames, 4);
+  EXPECT_NEAR(score.hip_ade, (0.01 + 0.04 + 0.09) / 3.0, 1e-15);  // frame 0 does not count
+  EXPECT_NEAR(score.hip_fde, 0.09, 1e-15);
+}
+
+// The push ends at frame 2: known up to there, then 0.03 m a frame.
+TEST(Evaluation, ConstantVelocityByHand) {
+  const PendulumRecording r = Parabola("a", 5);
+  const HipPaths path = ConstantVelocityBaseline(r);
+  const double expected[] = {0.0, 0.01, 0.04, 0.07, 0.10};
+  for (int t = 0; t < 5; ++t) EXPECT_NEAR(path[0][t][0], expected[t], 1e-15) << t;
+  const RecordingScore score = ScoreHip(r, path);
+  EXPECT_NEAR(score.hip_ade, (0.02 + 0.06) / 4.0, 1e-15);
+  EXPECT_NEAR(score.hip_fde, 0.06, 1e-15);
+}
+
+TEST(Evaluation, ConstantVelocityOfAPushBeyondTheEnd) {
+  PendulumRecording r = Parabola("a", 4);
+  r.scene.pushes[0].start_frame = 10;
+  const RecordingScore score = ScoreHip(r, ConstantVelocityBaseline(r));
+  EXPECT_EQ(score.hip_ade, 0.0);
+}
+
+TEST(Evaluation, PeopleCountTheSame) {
+  PendulumRecording r = Parabola("a", 4);
+  r.hip.push_back(std::vector<Vector3<double>>(4, Vector3<double>(0.0, 1.0, 1.0)));
+  const RecordingScore score = ScoreHip(r, StaticBaseline(r));
+  EXPECT_NEAR(score.hip_ade, 0.5 * (0.01 + 0.04 + 0.09) / 3.0, 1e-15);
+  EXPECT_NEAR(score.hip_fde, 0.5 * 0.09, 1e-15);
+}
+
+TEST(Evaluation, BothMeansByHand) {
+  const std::vector<PendulumRecording> recordings = {Parabola("a", 4), Parabola("b", 11),
+                                                     Parabola("c", 6)};
+  RecordingScore a{"a", 4, 0.1, 0.2, "", false}, b{"b", 11, 0.4, 0.6, "", true};
+  RecordingScore c{"c", 6, 9.0, 9.0, "theta of person 0 leaves the model's domain", true};
+  const ScoreSummary s = Summarize(recordings, {a, b, c});
+  EXPECT_EQ(s.recordings.size(), 3u);  // named, but in no mean
+  EXPECT_EQ(s.mean.recordings, 2);
+  EXPECT_NEAR(s.mean.hip_ade, 0.25, 1e-15);
+  EXPECT_NEAR(s.mean.hip_fde, 0.40, 1e-15);
+  // Standard deviation 0.3 / sqrt(2), over sqrt(2).
+  EXPECT_NEAR(s.mean.hip_ade_error, 0.15, 1e-15);
+  EXPECT_NEAR(s.mean.hip_fde_error, 0.20, 1e-15);
+  EXPECT_NEAR(s.frame_weighted.hip_ade, (3 * 0.1 + 10 * 0.4) / 13.0, 1e-15);
+  EXPECT_NEAR(s.frame_weighted.hip_fde, (3 * 0.2 + 10 * 0.6) / 13.0, 1e-15);
+  EXPECT_EQ(s.by_magnitude.at("weak").recordings, 1);
+  EXPECT_NEAR(s.by_magnitude.at("strong").hip_ade, 0.4, 1e-15);
+  EXPECT_EQ(s.by_magnitude.at("strong").hip_ade_error, 0.0);
+  EXPECT_EQ(s.by_subject.count("Sc"), 0u);
+  EXPECT_NEAR(s.by_subject.at("Sa").hip_fde, 0.2, 1e-15);
+  EXPECT_EQ(s.by_setting.at("single").recordings, 2);
+}
+
+TEST(Evaluation, NothingScored) {
+  RecordingScore failed{"a", 4, 0.0, 0.0, "fails", true};
+  const ScoreSummary s = Summarize({Parabola("a", 4)}, {failed});
+  EXPECT_EQ(s.mean.recordings, 0);
+  EXPECT_EQ(s.mean.hip_ade, 0.0);
+  EXPECT_TRUE(s.by_subject.empty());
+}
+
+IdentifiedModel TruthOf(const SyntheticOptions& study) {
+  IdentifiedModel model;
+  model.options = study.model;
+  model.parameters = study.parameters;
+  model.table = MakePreset("tail").value().table;
+  return model;
+}
+
+TEST(Evaluation, TheTruthScoresZero) {
+  const SyntheticOptions study = SmallStudy();
+  const Evaluation e = Evaluate(TruthOf(study), MakePendulums(study));
+  EXPECT_EQ(e.model.mean.recordings, 24);
+  EXPECT_LT(e.model.mean.hip_ade, 1e-9);
+  EXPECT_GT(e.static_baseline.mean.hip_ade, 0.05);
+  EXPECT_GT(e.constant_velocity.mean.hip_ade, 0.0);
+  EXPECT_EQ(e.model.by_subject.size(), 4u);
+}
+
+TEST(Evaluation, AFailedRolloutIsNamedAndInNoMean) {
+  const SyntheticOptions study = SmallStudy();
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  recordings[5].scene = ScalePushes(recordings[5].scene, 40.0);
+  const Evaluation e = Evaluate(TruthOf(study), recordings);
+  const RecordingScore& failed = e.model.recordings[5];
+  EXPECT_EQ(failed.id, recordings[5].id);
+  EXPECT_TRUE(Contains(failed.failure, "of person 0 leaves the model's domain at frame"));
+  EXPECT_TRUE(failed.fell);
+  EXPECT_EQ(e.model.mean.recordings, 23);
+  EXPECT_LT(e.model.mean.hip_ade, 1e-9);
+  EXPECT_EQ(e.static_baseline.mean.recordings, 24);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,109 @@
+// Bands of hip paths: their order, where they come from, and whether they hold new recordings.
+#include "ident/prediction/predictive_bands.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/results/confidence.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+SyntheticOptions VaryingStudy() {
+  SyntheticOptions study = SmallStudy();
+  study.recording_spread = 0.1;
+  study.joint_noise_m = 0.001;
+  return study;
+}
+
+TEST(PredictiveBands, SamplesHaveTheStatedSpread) {
+  const FitResult result = Fit(MakePendulums(VaryingStudy()), UnbiasedFit(VaryingStudy()));
+  BandOptions options;
+  options.samples = 4000;
+  const auto samples = SampleParameters(result, options).value();
+  const Estimate& mu = *FindEstimate(result.estimates, "mu");
+  int inside = 0;
+  for (const ParameterSet<double>& set : samples) {
+    inside += mu.lower95 <= set[kMu] && set[kMu] <= mu.upper95;
+    EXPECT_EQ(set[kKpX], result.parameters[kKpX]);
+  }
+  EXPECT_NEAR(inside / 4000.0, 0.95, 0.015);
+  options.from_bootstrap = true;
+  EXPECT_FALSE(SampleParameters(result, options).ok());
+}
+
+TEST(PredictiveBands, BootstrapRowsAreParameterSets) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitResult result = Fit(recordings, UnbiasedFit(TinyStudy()));
+  ASSERT_FALSE(AddBootstrap(recordings, {8, 1, "", 2}, nullptr, &result));
+  BandOptions options;
+  options.from_bootstrap = true;
+  for (const ParameterSet<double>& set : SampleParameters(result, options).value()) {
+    const auto& rows = result.bootstrap->values;
+    EXPECT_TRUE(std::any_of(rows.begin(), rows.end(),
+                            [&set](const std::vector<double>& row) { return row[0] == set[kMu]; }));
+  }
+}
+
+TEST(PredictiveBands, LieInsideOneAnotherAndWidenWithModelError) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
+  const FitResult result = Fit(recordings, UnbiasedFit(VaryingStudy()));
+  const auto samples = SampleParameters(result, BandOptions()).value();
+  const PredictiveBands narrow = ComputeBands(result, samples, {}, recordings[3], 1);
+  const PredictiveBands wide =
+      ComputeBands(result, samples, ErrorPaths(result, recordings), recordings[3], 1);
+  EXPECT_EQ(narrow.failed, 0);
+  ASSERT_EQ(narrow.people.size(), 1u);
+  const int last = recordings[3].num_frames() - 1;
+  for (const PredictiveBands* bands : {&narrow, &wide}) {
+    const PathBand& b = bands->people[0];
+    for (int t = 0; t <= last; ++t) {
+      EXPECT_LE(b.lower90[t][0], b.lower50[t][0]);
+      EXPECT_LE(b.lower50[t][0], b.median[t][0]);
+      EXPECT_LE(b.median[t][0], b.upper50[t][0]);
+      EXPECT_LE(b.upper50[t][0], b.upper90[t][0]);
+    }
+    EXPECT_NEAR(b.upper90[0][0] - b.lower90[0][0], 0.0, 1e-9);  // everybody starts there
+  }
+  const auto width = [last](const PredictiveBands& bands) {
+    return bands.people[0].upper90[last][0] - bands.people[0].lower90[last][0];
+  };
+  EXPECT_GT(width(narrow), 0.0);
+  EXPECT_GT(width(wide), 1.5 * width(narrow));
+}
+
+// Every member of an ensemble is drawn along.
+TEST(PredictiveBands, OfAnEnsembleOfEqualsAreThoseOfOne) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitResult one = Fit(recordings, DefaultFit(TinyStudy()));
+  FitResult three = one;
+  three.others.assign(2, {one.parameters, nullptr});
+  BandOptions options;
+  options.samples = 20;
+  const auto samples = SampleParameters(one, options);
+  ASSERT_TRUE(samples.ok());
+  const PredictiveBands a = ComputeBands(one, samples.value(), {}, recordings[0], 1);
+  const PredictiveBands b = ComputeBands(three, samples.value(), {}, recordings[0], 1);
+  ASSERT_EQ(a.people.size(), 1u);
+  const size_t last = a.people[0].lower90.size() - 1;
+  EXPECT_GT((a.people[0].upper90[last] - a.people[0].lower90[last]).norm(), 1e-4);
+  EXPECT_EQ(a.people[0].lower90[last], b.people[0].lower90[last]);
+  EXPECT_EQ(a.people[0].upper90[last], b.people[0].upper90[last]);
+}
+
+TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
+  const std::vector<Fold> folds = MakeFolds(recordings, FoldScheme::kStratified, 4, 1, 1).value();
+  const std::vector<BandCoverage> coverage =
+      CrossValidateBands(recordings, folds, UnbiasedFit(VaryingStudy()), BandOptions(), 2);
+  ASSERT_EQ(coverage.size(), 2u);
+  EXPECT_EQ(coverage[1].recordings, 24);
+  EXPECT_LT(coverage[0].inside90[0], 0.7);  // where the mean person goes
+  EXPECT_NEAR(coverage[1].inside90[0], 0.9, 0.1);
+  EXPECT_NEAR(coverage[1].inside50[0], 0.5, 0.2);
+  EXPECT_TRUE(Contains(BandCoverageText(coverage), "parameters alone"));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,250 @@
+// Which models stand again after a push, and which walk away or fall.
+#include "ident/problem/behaviour.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "datasets/files/random.h"
+#include "datasets/loading/load_recordings.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/report/report_tables.h"
+#include "ident/results/fit_result.h"
+#include "models/free_modes.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// Somewhat more friction than identified, with which the hardest push, 80 N s on 60 kg, is over
+// within two seconds as well.
+ParameterSet<double> FirmParameters() {
+  ParameterSet<double> p = PublishedTailParameters();
+  p[kMu] = 60.0;
+  return p;
+}
+
+Behaviour Of(const ParameterSet<double>& parameters) {
+  return ComputeBehaviour(SyntheticOptions::TailModel(), parameters);
+}
+
+TEST(Behaviour, FirmGainsSettle) {
+  const Behaviour b = Of(FirmParameters());
+  ASSERT_EQ(b.demonstrations.size(), 9u);  // 60, 80, 100 kg after 4, 25, 80 N s
+  for (const Demonstration& d : b.demonstrations) {
+    EXPECT_TRUE(d.settled) << d.mass << " kg, " << d.impulse << " N s: " << d.speed << " m/s, "
+                           << d.lean << " rad";
+    EXPECT_FALSE(d.fell);
+    EXPECT_GT(d.distance, 0.0);
+  }
+  EXPECT_TRUE(b.settles);
+  EXPECT_FALSE(b.self_propelling);
+  EXPECT_LT(b.fastest_growth, 0.0);
+}
+
+TEST(Behaviour, IdentifiedGainsBarelySettle) {
+  const Behaviour b = Of(PublishedTailParameters());
+  EXPECT_LT(b.fastest_growth, 0.0);
+  for (const Demonstration& d : b.demonstrations) {
+    EXPECT_EQ(d.settled, d.mass > 60.0 || d.impulse < 80.0) << d.mass << " kg, " << d.impulse;
+  }
+}
+
+// A network that plays a gain moves the free modes as that gain does.
+TEST(Behaviour, FreeModesKnowTheNetwork) {
+  constexpr double kSmall = 1e-6;
+  SelfNetwork network{{NetworkKind::kMlp, 1}, {}};
+  network.weights.assign(network.shape.num_weights(), 0.0);
+  network.weights[0] = kSmall;                                     // e_theta
+  network.weights[network.shape.output_at() + 2] = -0.1 / kSmall;  // torque
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.self_network = std::make_shared<const SelfNetwork>(network);
+  const ParameterSet<double> p = FirmParameters();
+  ParameterSet<double> stiffer = p;
+  const GainScale scale(options.gain_scaling, {80.0, kReferenceRod, 0.0});
+  stiffer[kKpTheta] += 0.1 * kNetworkAcceleration * 80.0 / kNetworkAngle / scale.stiffness;
+  const double played = ComputeBehaviour(options, p).fastest_growth;
+  EXPECT_NEAR(played, Of(stiffer).fastest_growth, 1e-6);
+  EXPECT_GT(std::abs(played - Of(p).fastest_growth), 1e-3);
+}
+
+// A memory is part of the modes: with a GRU whose gates stay half open, what dies out slowest may
+// be the memory itself.
+TEST(Behaviour, FreeModesKnowTheMemory) {
+  SelfNetwork network{{NetworkKind::kGru, 2}, {}};
+  network.weights.assign(network.shape.num_weights(), 0.0);
+  const NetworkShape& s = network.shape;
+  // z = logistic(8): the memory decays by 1 - z = 3.4e-4 a step.
+  for (int row = 0; row < 2; ++row) {
+    network.weights[s.gates_at() + (row + 1) * s.gate_width() - 1] = 8.0;
+  }
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.self_network = std::make_shared<const SelfNetwork>(network);
+  const double z = 1.0 / (1.0 + std::exp(-8.0));
+  EXPECT_NEAR(ComputeBehaviour(options, FirmParameters()).fastest_growth, 60.0 * std::log(z), 1e-6);
+}
+
+TEST(Behaviour, HarderPushesGoFarther) {
+  const Behaviour b = Of(FirmParameters());
+  for (int mass = 0; mass < 3; ++mass) {
+    const Demonstration* d = &b.demonstrations[3 * mass];
+    EXPECT_LT(d[0].distance, d[1].distance);
+    EXPECT_LT(d[1].distance, d[2].distance);
+  }
+}
+
+TEST(Behaviour, NegativeDampingIsSelfPropelling) {
+  ParameterSet<double> p = FirmParameters();
+  p[kMu] = -60.0;
+  const Behaviour b = Of(p);
+  EXPECT_TRUE(b.self_propelling);
+  EXPECT_GT(b.fastest_growth, 0.0);
+  EXPECT_FALSE(b.settles);
+  // By c_x, not by mu alone: with a cart gain that makes up for it all is well.
+  p[kKpX] = 60.0 + FirmParameters()[kMu];
+  EXPECT_TRUE(Of(p).settles);
+  EXPECT_FALSE(Of(p).self_propelling);
+}
+
+TEST(Behaviour, TooSoftABalanceFalls) {
+  ParameterSet<double> p = FirmParameters();
+  p[kKpTheta] = p[kKpPhi] = 100.0;  // m g l is about 670 N m/rad
+  const Behaviour b = Of(p);
+  EXPECT_GT(b.fastest_growth, 0.5);
+  EXPECT_FALSE(b.settles);
+  EXPECT_TRUE(b.demonstrations.back().fell);
+}
+
+// Largest real root of the free modes' polynomials, 1/s.
+double FastestFreeMode(const ModelOptions& options, const ParameterSet<double>& p) {
+  const Body body{80.0, kReferenceRod, 0.0};
+  double fastest = -1e9;
+  for (int plane : {0, 1}) {
+    const ModePolynomial<double> c = FreeModes<double>(options, body, p, plane);
+    Eigen::Matrix3d companion;
+    companion << 0, 0, -c.c0, 1, 0, -c.c1, 0, 1, -c.c2;
+    fastest = std::max(fastest, companion.eigenvalues().real().maxCoeff());
+  }
+  return fastest;
+}
+
+// The step's growth is that of the modes in the limit of short steps; here they differ by percents.
+TEST(Behaviour, GrowthIsThatOfTheFreeModesWithAndWithoutTheCartsAcceleration) {
+  Random random(11);
+  int grow = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    ModelOptions options = SyntheticOptions::TailModel();
+    options.friction = FrictionKind::kAnisotropic;
+    ParameterSet<double> p = FirmParameters();
+    p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
+    p[kAx] = random.Uniform(-15, 2);
+    p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
+    for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
+      options.cart_derivative = derivative;
+      const double growth = ComputeBehaviour(options, p).fastest_growth;
+      const double mode = FastestFreeMode(options, p);
+      EXPECT_NEAR(growth, mode, 0.02 + 0.1 * std::abs(mode)) << "Kd_x " << p[kKdX];
+      grow += growth > 0.0;
+    }
+  }
+  EXPECT_GT(grow, 10);
+  EXPECT_LT(grow, 110);
+}
+
+// Five in a line, the pushed one thrown back by the contact: the signed means say so.
+TEST(Behaviour, MovesAreSignedAlongThePush) {
+  ModelOptions options = SyntheticOptions::TailModel();
+  options.interaction.spring = options.interaction.damping = true;
+  ParameterSet<double> p = FirmParameters();
+  p[kContactStiffness] = 2900.0, p[kContactDistance] = 0.47, p[kContactKappa] = 0.45;
+  p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
+  p[kAx] = -18.0, p[kMu] = 8.0;
+  const Behaviour b = ComputeBehaviour(options, p);
+  ASSERT_EQ(b.demonstrations.size(), 12u);
+  for (const Demonstration& d : b.demonstrations) {
+    if (d.people == 1) {
+      EXPECT_EQ(d.advance, d.pushed_advance);
+      EXPECT_NEAR(std::abs(d.advance), d.distance, 1e-3);
+    }
+    EXPECT_LE(std::abs(d.advance), d.distance + 1e-12);
+  }
+  const Demonstration& hardest = b.demonstrations.back();
+  EXPECT_LT(hardest.pushed_advance, 0.0);
+  EXPECT_LT(hardest.advance, 0.9 * hardest.distance);
+  ASSERT_NE(b.FarthestBehind(), nullptr);
+  EXPECT_LE(b.FarthestBehind()->pushed_advance, hardest.pushed_advance);
+  EXPECT_EQ(Of(FirmParameters()).FarthestBehind(), nullptr);
+}
+
+TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
+  Behaviour b;
+  Demonstration weak, hard;
+  weak.people = hard.people = kLinePeople;
+  weak.setting = hard.setting = "row";
+  weak.advance = -0.01, hard.advance = -0.3, hard.pushed_advance = -0.6;
+  weak.distance = 0.01, hard.distance = 0.4;
+  b.demonstrations = {weak, hard};
+  b.harder_moves_farther = false;
+  FitResult result;
+  result.behaviour = b;
+  const std::string text = BehaviourText(result) + LinesTable(result).ToString();
+  EXPECT_TRUE(Contains(text, "does NOT move the line on farther: row"));
+  EXPECT_TRUE(Contains(text, "-0.3"));
+  EXPECT_TRUE(Contains(text, "-0.6"));
+}
+
+// Upright, friction and damping off along x: the cart's speed neither grows nor fades.
+TEST(Behaviour, AnUndampedCartIsMarginal) {
+  ParameterSet<double> p = FirmParameters();
+  p[kMu] = p[kKpX] = p[kAx] = 0.0;
+  const Behaviour b = Of(p);
+  EXPECT_NEAR(b.fastest_growth, 0.0, 1e-6);
+  EXPECT_FALSE(b.settles);
+}
+
+TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
+  SyntheticOptions study;
+  study.parameters[kMu] = -25.0;
+  study.frames = 50;
+  const auto made = MakeSyntheticRecordings(study);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  std::vector<PendulumRecording> recordings;
+  for (const Recording& r : Recordings(made.value())) {
+    recordings.push_back(MakePendulumRecording(r, SkeletonMapping::kExact));
+  }
+  FitOptions options;
+  options.model = study.model;
+  options.table = MakePreset("tail").value().table;
+  for (ParameterSpec& spec : options.table.specs) {
+    if (!spec.free) spec.nominal = study.parameters[spec.id];
+  }
+  const FitResult walking = Fit(recordings, options);
+  ASSERT_TRUE(walking.ok());
+  EXPECT_TRUE(walking.behaviour.self_propelling);
+  bool warned = false;
+  for (const std::string& w : walking.warnings) {
+    warned = warned || w.find("self-propelling") == 0;
+  }
+  EXPECT_TRUE(warned);
+}
+
+// The trap in the published data: least squares makes people drive themselves, and must say so.
+TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
+  if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
+  LoadOptions load;
+  load.setting = "single";
+  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const Preset preset = MakePreset("ldp").value();
+  FitOptions options;
+  options.model = preset.model;
+  options.table = preset.table;
+  const FitResult result = Fit(AsPendulums(loaded.value()), options);
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(result.behaviour.self_propelling);
+  EXPECT_LT(result.derived[0].value, 0.0) << result.derived[0].name;
+}
+
+}  // namespace
+}  // namespace pushid

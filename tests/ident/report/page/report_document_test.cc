@@ -1,0 +1,94 @@
+// Reports as page, text and numbers: escaped, whole, nothing shown that is not there.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ident/figures/chart.h"
+#include "ident/report/page/document_files.h"
+#include "ident/report/page/page.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+Report Sample() {
+  TextTable table({"name", "value"}, {true, false});
+  table.Add({"a<b", "1"});
+  TextTable numbers({"time_s", "what"}, {true, true});
+  numbers.Add({"0.5", "say \"x\", y"});
+  ReportSection full{"full",
+                     "Full & <whole>",
+                     {"one\ntwo"},
+                     {{"try", "pushid-fit --x='1<2'"}},
+                     {{"caption", table}},
+                     {{"a/../b", "see", "<svg></svg>", numbers}},
+                     {{"fold <1>", {}}},
+                     ""};
+  ReportSection empty;
+  empty.id = "empty";
+  empty.title = "Nothing";
+  return {"Title <&>", "sub", {full, empty}};
+}
+
+TEST(ReportDocument, PageEscapesAndLeavesOutEmptySections) {
+  const std::string page = ToPage(Sample());
+  for (const char* part :
+       {"<h1>Title &lt;&amp;&gt;</h1>", "<h2>Full &amp; &lt;whole&gt;</h2>", "<p>one<br>two</p>",
+        "<pre>pushid-fit --x=&#39;1&lt;2&#39;</pre>", "<td>a&lt;b</td><td class=\"number\">1</td>",
+        "<summary>fold &lt;1&gt;</summary>", "<a href=\"#full\">"}) {
+    EXPECT_TRUE(Contains(page, part));
+  }
+  EXPECT_EQ(page.find("empty"), std::string::npos);
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+}
+
+TEST(ReportDocument, TextHasTheSameContent) {
+  const std::string text = ToText(Sample());
+  for (const char* part :
+       {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n", "a<b       1\n",
+        "see\ntime_s  what\n0.5     say \"x\", y\n", "fold <1>\n"}) {
+    EXPECT_TRUE(Contains(text, part));
+  }
+  EXPECT_EQ(text.find("Nothing"), std::string::npos);
+}
+
+class ReportNumbers : public TempDirTest {};
+
+TEST_F(ReportNumbers, StayInTheirFolderAndQuote) {
+  ASSERT_FALSE(WriteNumbers(Sample(), Path("numbers")));
+  EXPECT_EQ(ReadText(Path("numbers/a____b.csv")), "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
+  WriteText("file", "");
+  const MaybeError error = WriteNumbers(Sample(), Path("file/below"));
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(), "cannot make the folder"));
+}
+
+TEST(Chart, DrawsWhatItIsGiven) {
+  Chart chart;
+  chart.title = "x & y";
+  chart.lines = {{{{0, 0}, {1, 2}, {2, NAN}, {3, 1}}, kPredictedLook, false},
+                 {{{0, 1}, {1, 1}}, "fill:#000", true}};
+  chart.bands = {{{{0, -1}, {3, -1}}, {{0, 1}, {3, 1}}, kWideBandLook}};
+  chart.levels = {1.5};
+  const std::string svg = DrawCharts({chart, Chart()}, "two", 2, 200, 100);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_TRUE(Contains(svg, "x &amp; y"));
+  EXPECT_TRUE(Contains(svg, "stroke-dasharray"));
+  size_t circles = 0;
+  for (size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) {
+    ++circles;
+  }
+  EXPECT_EQ(circles, 2u);
+}
+
+TEST(Chart, ThinLinesKeepTheirShape) {
+  SvgPicture svg(100, 100, "");
+  ChartPoints points;
+  for (int i = 0; i <= 100; ++i) points.emplace_back(i, i <= 50 ? i : 100 - i);
+  svg.Polyline(points, "ink");
+  EXPECT_TRUE(Contains(svg.ToInline(), "points=\"0,0 50,50 100,0\""));
+}
+
+}  // namespace
+}  // namespace pushid

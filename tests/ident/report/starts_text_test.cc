@@ -1,0 +1,33 @@
+// What a report says of several starts.
+#include "ident/report/starts_text.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/report/report_text.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+TEST(AcrossStarts, OneStartSaysNothing) {
+  EXPECT_EQ(AcrossStartsText(Fit(MakePendulums(TinyStudy()), DefaultFit(TinyStudy()))), "");
+}
+
+TEST(AcrossStarts, CountsTheGoodOnesAndTheirSpread) {
+  FitOptions options = DefaultFit(TinyStudy());
+  options.num_starts = 3;
+  FitResult result = Fit(MakePendulums(TinyStudy()), options);
+  ASSERT_EQ(result.starts.size(), 3u);
+  EXPECT_NE(AcrossStartsText(result).find("3 of 3 starts"), std::string::npos);
+  // Push one of them away: a start that ended elsewhere is not part of the spread.
+  const int other = result.best_start == 0 ? 1 : 0;
+  result.starts[other].cost = 2.0 * result.cost;
+  result.starts[other].to.shared[0] = 1e6;
+  const std::string text = AcrossStartsText(result);
+  EXPECT_NE(text.find("2 of 3 starts"), std::string::npos) << text;
+  EXPECT_EQ(text.find("1e+06"), std::string::npos) << text;
+  EXPECT_NE(ReportText(result).find(text), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pushid

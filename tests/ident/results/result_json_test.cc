@@ -1,0 +1,231 @@
+// A result is its JSON: nothing is lost, damage is named, the same seed gives the same bytes.
+#include "ident/results/result_json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "datasets/files/json_file.h"
+#include "ident/report/report_text.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+FitResult SampleResult(const TableEdits& edits = {}, int num_threads = 1) {
+  const SyntheticOptions study = TinyStudy();
+  FitOptions options = DefaultFit(study);
+  options.num_starts = 2;
+  options.num_threads = num_threads;
+  EXPECT_FALSE(EditTable(edits, &options.table));
+  FitResult result = Fit(MakePendulums(study), options);
+  result.version = "0.1.0";
+  result.configuration = {{"seed", "1"}, {"preset", "tail"}};
+  result.changed_flags = {"preset"};
+  result.manifest = "m.json";
+  result.manifest_hash = "abc";
+  result.setting = "single";
+  return result;
+}
+
+const RunInfo kRun = {"2024-01-01", "here", "model.json", 1.5, 1};
+
+Json RoundTrip(const Json& json) {
+  const Result<FitResult> read = FitResultFromJson(json, "model.json");
+  EXPECT_TRUE(read.ok()) << read.error().ToString();
+  return ToJson(read.value(), kRun);
+}
+
+TEST(ResultJson, RoundTripIsExact) {
+  // Plain; with null directions (infinite errors); with pooled subjects.
+  for (const TableEdits& edits : {TableEdits{}, TableEdits{"", "Kp_x", "", "", ""},
+                                  TableEdits{"", "", "", "", "mu,Kp_theta"}}) {
+    const Json json = ToJson(SampleResult(edits), kRun);
+    EXPECT_EQ(RoundTrip(json).dump(), json.dump());
+    // Through text too, as a file has it.
+    EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+  }
+}
+
+// Numbers that do not end in binary, an open side, a bootstrap and every diagnostic.
+FitResult JudgedResult() {
+  FitResult result = SampleResult();
+  const double infinity = std::numeric_limits<double>::infinity();
+  result.profiles = {{"mu",
+                      "N s/m",
+                      20.1,
+                      ProfileClass::kPracticallyNot,
+                      -infinity,
+                      30.7,
+                      1.1,
+                      0.3,
+                      "bound",
+                      "threshold",
+                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
+  result.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  Diagnostics& d = result.diagnostics;
+  d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
+  d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
+  d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
+  d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
+  d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
+  d.advice = {{"free less", "pushid-fit --fix=mu"}};
+  return result;
+}
+
+TEST(ResultJson, ConfidenceRoundTripIsExact) {
+  const Json json = ToJson(JudgedResult(), kRun);
+  for (const char* key : {"profiles", "bootstrap", "diagnostics"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+  EXPECT_EQ(json["profiles"][0]["interval_95"][0], "-infinity");
+  EXPECT_EQ(json["profiles"][0]["class"], "practically_not");
+}
+
+TEST(ResultJson, InfinitiesStayInfinite) {
+  const FitResult result = SampleResult({"", "Kp_x", "", "", ""});
+  const Json json = ToJson(result, kRun);
+  EXPECT_TRUE(Contains(json.dump(), "\"infinity\""));
+  EXPECT_FALSE(Contains(json.dump(), "null,"));
+  const FitResult read = FitResultFromJson(json, "").value();
+  const Estimate& e = *FindEstimate(read.estimates, "Kp_x");
+  EXPECT_EQ(e.status, EstimateStatus::kUnidentifiable);
+  EXPECT_EQ(e.standard_error, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(e.lower95, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ReportText(read), ReportText(result));
+}
+
+// Five recordings that the data of two parameters run away on: what is derived has no bounds then,
+// and a constant error has no autocorrelation. A null in their places is a model nobody can read.
+TEST(ResultJson, NumbersThatAreNoneComeBack) {
+  FitResult result = JudgedResult();
+  const double infinity = std::numeric_limits<double>::infinity(), none = std::nan("");
+  result.derived = {{"c_x", "N s/m", -infinity, infinity, -infinity, infinity}};
+  result.estimates[0].value = infinity;
+  result.profiles[0].points[0] = {infinity, infinity, {{"a_x", none}}};
+  result.profiles[0].estimate = result.profiles[0].cost = infinity;
+  Diagnostics& d = result.diagnostics;
+  d.start.null_directions[0].coefficients[0] = none;
+  d.start.null_directions[0].identified = result.derived;
+  d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
+  d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
+  d.trace[0] = {8, 0, infinity, none};
+  result.uncertainty.sigma = result.uncertainty.t_quantile = infinity;
+  result.behaviour.fastest_growth = none;
+  Demonstration& fallen = result.behaviour.demonstrations.front();
+  fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;
+  result.cost = result.recordings[0].cost = infinity;
+  SolveStart& start = result.starts.front();
+  start.cost = start.stages.front().initial_cost = start.stages.front().final_cost = infinity;
+  start.from.shared = start.to.shared = {infinity, none};
+  const Json json = ToJson(result, kRun);
+  EXPECT_FALSE(Contains(json.dump(), "null,") || Contains(json.dump(), "null]") ||
+               Contains(json.dump(), "null}"));
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+}
+
+TEST(ResultJson, PredictionsNeedTheJsonAlone) {
+  const FitResult result = SampleResult({"", "", "", "", "mu"});
+  const FitResult read = FitResultFromJson(ToJson(result, kRun), "").value();
+  const IdentifiedModel a = ModelOf(result), b = ModelOf(read);
+  EXPECT_EQ(a.parameters, b.parameters);
+  EXPECT_EQ(a.by_unit, b.by_unit);
+  EXPECT_EQ(a.by_unit.size(), 2u);
+}
+
+TEST(ResultJson, SameSeedSameBytes) {
+  Json a = ToJson(SampleResult(), kRun), b = ToJson(SampleResult(), kRun);
+  a.erase("run");
+  b.erase("run");
+  EXPECT_EQ(a.dump(), b.dump());
+}
+
+void ExpectClose(const Json& a, const Json& b, const std::string& where) {
+  ASSERT_EQ(a.is_number(), b.is_number()) << where;
+  if (a.is_number_float()) {
+    const double x = a.get<double>(), y = b.get<double>();
+    EXPECT_NEAR(x, y, 1e-9 * std::max({std::abs(x), std::abs(y), 1e-9})) << where;
+  } else if (a.is_structured()) {
+    ASSERT_EQ(a.size(), b.size()) << where;
+    auto other = b.begin();
+    int index = 0;
+    for (const Json& value : a) ExpectClose(value, *other++, where + "/" + std::to_string(index++));
+  } else {
+    EXPECT_EQ(a, b) << where;
+  }
+}
+
+TEST(ResultJson, ThreadsDoNotMatter) {
+  const Json a = ToJson(SampleResult({}, 1), kRun), b = ToJson(SampleResult({}, 2), kRun);
+  for (const char* part : {"parameters", "derived", "values", "behaviour"}) {
+    ExpectClose(a.at(part), b.at(part), part);
+  }
+  ExpectClose(a.at("fit").at("cost"), b.at("fit").at("cost"), "cost");
+}
+
+TEST(ResultJson, DamageIsNamed) {
+  const Json good = ToJson(SampleResult(), kRun);
+  const auto message = [](const Json& json) {
+    const Result<FitResult> read = FitResultFromJson(json, "some.json");
+    EXPECT_FALSE(read.ok());
+    return read.ok() ? std::string() : read.error().ToString();
+  };
+  EXPECT_TRUE(Contains(message(Json::array()), "some.json: this is no pushid model"));
+  EXPECT_TRUE(Contains(message({{"recordings", 3}}), "this is no pushid model"));
+  EXPECT_TRUE(Contains(message({{"format", 7}}), "this is no pushid model"));
+  Json json = good;
+  json["format_version"] = 99;
+  EXPECT_TRUE(Contains(message(json), "newer pushid"));
+  json = good;
+  json.erase("values");
+  EXPECT_TRUE(Contains(message(json), "values"));
+  json = good;
+  json["model"]["posture"] = "sitting";
+  EXPECT_TRUE(Contains(message(json), "posture is 'sitting'"));
+  json = good;
+  json["table"][0]["name"] = "nu";
+  EXPECT_TRUE(Contains(message(json), "unknown parameter 'nu'"));
+  json = good;
+  json["fit"]["cost"] = "cheap";
+  EXPECT_TRUE(Contains(message(json), "some.json: incomplete or damaged model"));
+  json = good;
+  json["uncertainty"]["covariance_fitted_scale"][1] = Json::array({1.0});
+  EXPECT_TRUE(Contains(message(json), "damaged"));
+  // Any entry of the top gone is an error, never a crash.
+  for (const auto& [key, value] : good.items()) {
+    // Older models have none.
+    if (key == "format_version" || key == "diagnostics" || key == "changed_flags") continue;
+    json = good;
+    json.erase(key);
+    EXPECT_FALSE(message(json).empty()) << key;
+  }
+}
+
+using ResultFile = TempDirTest;
+
+TEST_F(ResultFile, ReadsWhatWasWritten) {
+  const Json json = ToJson(SampleResult(), kRun);
+  ASSERT_FALSE(WriteJson(Path("model.json"), json));
+  const Result<FitResult> read = ReadFitResult(Path("model.json"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), kRun).dump(), json.dump());
+}
+
+TEST_F(ResultFile, BadFilesAreNamed) {
+  const std::string cut = WriteText("cut.json", "{\"format\": \"pushid model\",\n \"values\": {");
+  const Result<FitResult> read = ReadFitResult(cut);
+  ASSERT_FALSE(read.ok());
+  EXPECT_TRUE(Contains(read.error().ToString(), "cut.json:2"));
+  const Result<FitResult> missing = ReadFitResult(Path("missing.json"));
+  ASSERT_FALSE(missing.ok());
+  EXPECT_TRUE(Contains(missing.error().ToString(), "missing.json"));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,149 @@
+// The bootstrap draws whole recordings, repeats itself, and survives a kill.
+#include "ident/uncertainty/bootstrap.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <numeric>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/results/confidence.h"
+#include "ident/results/interval_agreement.h"
+#include "ident/solver/solver.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+TEST(Bootstrap, DrawsAsManyAsThereAre) {
+  std::vector<double> mean(8, 0.0);
+  for (int k = 0; k < 2000; ++k) {
+    const std::vector<int> counts = DrawRecordings(8, 5, k);
+    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 8);
+    for (int i = 0; i < 8; ++i) mean[i] += counts[i] / 2000.0;
+  }
+  for (double m : mean) EXPECT_NEAR(m, 1.0, 0.1);
+  EXPECT_NE(DrawRecordings(8, 5, 0), DrawRecordings(8, 5, 1));
+  EXPECT_NE(DrawRecordings(8, 5, 0), DrawRecordings(8, 6, 0));
+}
+
+TEST(Bootstrap, QuantilesAreThoseOfTheSample) {
+  std::vector<double> values(199);
+  std::iota(values.begin(), values.end(), 1.0);
+  std::reverse(values.begin(), values.end());
+  EXPECT_DOUBLE_EQ(Quantile(values, 0.025), 5.0);
+  EXPECT_DOUBLE_EQ(Quantile(values, 0.975), 195.0);
+  EXPECT_DOUBLE_EQ(Quantile({7.0}, 0.025), 7.0);
+}
+
+class BootstrapRun : public TempDirTest {
+ protected:
+  BootstrapRun()
+      : recordings_(MakePendulums(TinyStudy())),
+        options_(UnbiasedFit(TinyStudy())),
+        problem_(recordings_, options_),
+        estimate_(Solve(problem_).Best().to) {}
+
+  Result<Bootstrap> Run(int replicas, int threads, const std::string& file = "",
+                        uint64_t seed = 1) const {
+    return ComputeBootstrap(problem_, estimate_, {replicas, seed, file, threads});
+  }
+
+  std::vector<PendulumRecording> recordings_;
+  FitOptions options_;
+  FitProblem problem_;
+  FitPoint estimate_;
+};
+
+// Counting a recording twice is fitting two copies of it, and never counting it leaving it out.
+TEST_F(BootstrapRun, CountsAreCopies) {
+  const FitProblem counted(recordings_, options_, {2, 0, 1, 1, 1, 1});
+  std::vector<PendulumRecording> copies = {recordings_[0], recordings_[0]};
+  copies.insert(copies.end(), recordings_.begin() + 2, recordings_.end());
+  const FitProblem copied(copies, options_);
+  const SolveStart a = Refit(counted, estimate_), b = Refit(copied, estimate_);
+  EXPECT_NEAR(a.cost, b.cost, 1e-9 * b.cost);
+  for (size_t i = 0; i < a.to.shared.size(); ++i) {
+    EXPECT_NEAR(a.to.shared[i], b.to.shared[i], 1e-5 * std::abs(b.to.shared[i]) + 1e-6);
+  }
+}
+
+TEST_F(BootstrapRun, ThreadsAndFilesChangeNothing) {
+  const Bootstrap one = Run(12, 1).value();
+  ASSERT_EQ(one.values.size(), 12u);
+  EXPECT_EQ(one.names.front(), "mu");
+  const Bootstrap two = Run(12, 2, Path("replicas.jsonl")).value();
+  EXPECT_EQ(one.values, two.values);
+  const Bootstrap again = Run(12, 1, Path("replicas.jsonl")).value();
+  EXPECT_EQ(one.values, again.values);
+  for (size_t i = 0; i < one.names.size(); ++i) {
+    EXPECT_GT(one.standard_error[i], 0.0) << one.names[i];
+    EXPECT_LT(one.lower95[i], one.upper95[i]) << one.names[i];
+  }
+}
+
+TEST_F(BootstrapRun, GoesOnAfterAKill) {
+  const Bootstrap whole = Run(10, 1, Path("whole.jsonl")).value();
+  // Killed in the middle of a line: half of the last one reached the disk.
+  const std::string text = ReadText(Path("whole.jsonl"));
+  const std::string cut = WriteText("cut.jsonl", text.substr(0, text.size() - 40));
+  const Bootstrap resumed = Run(10, 1, cut).value();
+  EXPECT_EQ(resumed.values, whole.values);
+  EXPECT_EQ(ReadText(cut), text);
+  // More replicas build on those that are there.
+  EXPECT_EQ(Run(12, 2, cut).value().values.size(), 12u);
+}
+
+TEST_F(BootstrapRun, ForeignFilesAreRefused) {
+  ASSERT_TRUE(Run(2, 1, Path("a.jsonl")).ok());
+  const Result<Bootstrap> other = Run(2, 1, Path("a.jsonl"), 2);
+  ASSERT_FALSE(other.ok());
+  EXPECT_TRUE(Contains(other.error().ToString(), "a.jsonl"));
+  EXPECT_TRUE(Contains(other.error().ToString(), "another fit"));
+  const std::string poem = WriteText("poem.txt", "a rose is a rose\n");
+  EXPECT_FALSE(Run(2, 1, poem).ok());
+  EXPECT_EQ(ReadText(poem), "a rose is a rose\n");
+}
+
+// Taken for empty, it would be replaced by one that holds nothing.
+TEST_F(BootstrapRun, AFileThatCannotBeReadIsKept) {
+  ASSERT_TRUE(Run(2, 1, Path("a.jsonl")).ok());
+  const std::string before = ReadText(Path("a.jsonl"));
+  const bool root = geteuid() == 0;  // modes bind everybody else
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::none);
+  ASSERT_EQ(seteuid(root ? 65534 : geteuid()), 0);
+  const Result<Bootstrap> run = Run(2, 1, Path("a.jsonl"));
+  ASSERT_EQ(seteuid(root ? 0 : geteuid()), 0);
+  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::owner_all);
+  ASSERT_FALSE(run.ok());
+  EXPECT_TRUE(Contains(run.error().ToString(), "a.jsonl: cannot be read: Permission denied"));
+  EXPECT_EQ(ReadText(Path("a.jsonl")), before);
+}
+
+TEST_F(BootstrapRun, NeedsTwoRecordings) {
+  const std::vector<PendulumRecording> one(recordings_.begin(), recordings_.begin() + 1);
+  const FitProblem problem(one, options_);
+  EXPECT_FALSE(ComputeBootstrap(problem, estimate_, {}).ok());
+}
+
+TEST(Agreement, HasOneRowPerNumberAndFindsDisagreement) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitResult result = Fit(recordings, UnbiasedFit(TinyStudy()));
+  EXPECT_TRUE(CompareIntervals(result).empty());
+  ASSERT_FALSE(AddProfiles(recordings, {"mu"}, 1, nullptr, &result));
+  ASSERT_FALSE(AddBootstrap(recordings, {20, 1, "", 2}, nullptr, &result));
+  const std::vector<Agreement> rows = CompareIntervals(result);
+  ASSERT_EQ(rows.front().name, "mu");
+  ASSERT_TRUE(rows.front().profile && rows.front().bootstrap);
+  EXPECT_EQ(rows.front().classification, ProfileClass::kIdentifiable);
+  EXPECT_FALSE(rows[1].profile);
+  EXPECT_TRUE(rows[1].bootstrap);
+  result.profiles[0].upper95 = 1e9;
+  EXPECT_GT(CompareIntervals(result).front().ratio, 100.0);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,219 @@
+// Profiles against closed forms, against the clustered intervals they are scaled to, and where the
+// data say nothing.
+#include "ident/uncertainty/profile.h"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/problem.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "ident/solver/solver.h"
+#include "residuals/cost_functions/prior_residual.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// y = a f(b), f_i = 1 - exp(-b x_i): a follows from b, so the profile of b is known in closed form:
+//   2 profile(b) = |y|^2 - (y.f)^2 / (f.f)
+// It levels off as b grows: f tends to a step.
+struct Saturation {
+  std::vector<double> x, y;
+
+  double Profile(double b) const {
+    double yy = 0.0, yf = 0.0, ff = 0.0;
+    for (size_t i = 0; i < x.size(); ++i) {
+      const double f = 1.0 - std::exp(-b * x[i]);
+      yy += y[i] * y[i];
+      yf += y[i] * f;
+      ff += f * f;
+    }
+    return 0.5 * (yy - yf * yf / ff);
+  }
+
+  // The b with profile(b) = cost, between two that enclose it.
+  double Solve(double cost, double below, double above) const {
+    const bool rising = Profile(above) > Profile(below);
+    for (int i = 0; i < 200; ++i) {
+      const double middle = 0.5 * (below + above);
+      ((Profile(middle) < cost) == rising ? below : above) = middle;
+    }
+    return below;
+  }
+};
+
+struct SaturationResidual {
+  double x, y;
+  template <typename T>
+  bool operator()(const T* p, T* r) const {
+    using std::exp;
+    r[0] = y - p[0] * (1.0 - exp(-p[1] * x));
+    return true;
+  }
+};
+
+Saturation NoisyData(std::vector<double> x, double noise) {
+  Saturation s;
+  s.x = std::move(x);
+  Random random(3);
+  for (double at : s.x) s.y.push_back(2.0 * (1.0 - std::exp(-1.5 * at)) + noise * random.Normal());
+  return s;
+}
+
+// hold_sigma 0: free.
+HeldFit FitSaturation(const Saturation& s, double wanted, double hold_sigma,
+                      const std::vector<double>& from) {
+  std::vector<double> p = from;
+  ceres::Problem problem;
+  for (size_t i = 0; i < s.x.size(); ++i) {
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<SaturationResidual, 1, 2>(
+                                 new SaturationResidual{s.x[i], s.y[i]}),
+                             nullptr, p.data());
+  }
+  if (hold_sigma > 0.0) {
+    problem.AddResidualBlock(new PriorResidual(2, 1, wanted, hold_sigma), nullptr, p.data());
+  }
+  ceres::Solver::Options options = SolverOptions(FitOptions(), problem);
+  options.function_tolerance = 1e-15;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  const double pull = hold_sigma > 0.0 ? (p[1] - wanted) / hold_sigma : 0.0;
+  return {true, p[1], summary.final_cost - 0.5 * pull * pull, p};
+}
+
+ProfileSearch SearchAround(const Saturation& s, double threshold) {
+  const HeldFit best = FitSaturation(s, 0.0, 0.0, {2.0, 1.5});
+  ProfileSearch search;
+  search.estimate = best.value;
+  search.cost = best.cost;
+  search.point = best.point;
+  search.direction = {0.0, 1.0};
+  search.naive_error = 0.3;
+  search.threshold = threshold;
+  search.lower = 1e-3;
+  search.upper = 1e3;
+  return search;
+}
+
+HoldFit Holder(const Saturation& s) {
+  return [&s](double wanted, const std::vector<double>& from) {
+    return FitSaturation(s, wanted, 0.01, from);
+  };
+}
+
+TEST(ProfileSearch, FollowsTheClosedForm) {
+  const Saturation s = NoisyData({0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0}, 0.05);
+  const ProfileSearch search = SearchAround(s, 0.5 * 0.05 * 0.05 * 3.84);
+  const double level = search.cost + search.threshold;
+  for (int sign : {-1, 1}) {
+    const ProfileSide side = TraceProfile(search, sign, Holder(s));
+    EXPECT_EQ(side.end, "threshold");
+    EXPECT_GE(side.points.size(), 3u);
+    EXPECT_LE(side.points.size(), 15u);
+    for (const HeldFit& fit : side.points) {
+      EXPECT_NEAR(fit.cost, s.Profile(fit.value), 1e-9 * fit.cost) << fit.value;
+    }
+    const double exact = s.Solve(level, search.estimate, sign > 0 ? 10.0 : 0.1);
+    EXPECT_NEAR(side.crossing, exact, 2e-3 * std::abs(exact - search.estimate));
+  }
+}
+
+// Large x alone show the plateau, not how fast it is reached.
+TEST(ProfileSearch, LevelsOffWhereTheDataAreTooWeak) {
+  const Saturation s = NoisyData({2.0, 2.5, 3.0, 4.0}, 0.05);
+  const ProfileSearch search = SearchAround(s, 0.5 * 0.05 * 0.05 * 12.7 * 12.7);
+  ASSERT_LT(s.Profile(search.upper), search.cost + search.threshold);
+  const ProfileSide above = TraceProfile(search, 1, Holder(s));
+  EXPECT_EQ(above.end, "bound");
+  EXPECT_EQ(above.crossing, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(above.points.back().value, search.upper, 1.0);
+  EXPECT_EQ(TraceProfile(search, -1, Holder(s)).end, "threshold");
+}
+
+TEST(ProfileSearch, SaysWhenNothingHoldsANumber) {
+  ProfileSearch search;
+  search.point = search.direction = {0.0};
+  search.threshold = 1.0;
+  const HoldFit flat = [](double wanted, const std::vector<double>&) {
+    return HeldFit{true, wanted, 0.0, {wanted}};
+  };
+  EXPECT_EQ(TraceProfile(search, 1, flat).end, "flat");
+  const HoldFit nowhere = [](double, const std::vector<double>&) { return HeldFit(); };
+  EXPECT_EQ(TraceProfile(search, 1, nowhere).end, "domain");
+}
+
+const Profile* Find(const std::vector<Profile>& profiles, const std::string& name) {
+  for (const Profile& profile : profiles) {
+    if (profile.name == name) return &profile;
+  }
+  return nullptr;
+}
+
+struct Profiled {
+  std::vector<PendulumRecording> recordings;
+  FitOptions options;
+  FitResult result;
+
+  explicit Profiled(const SyntheticOptions& study, const std::string& freed)
+      : recordings(MakePendulums(study)), options(UnbiasedFit(study)) {
+    EXPECT_FALSE(EditTable({"", freed, "", "", ""}, &options.table));
+    result = Fit(recordings, options);
+  }
+  Result<std::vector<Profile>> Profiles(const std::vector<std::string>& names, int threads) const {
+    return ComputeProfiles(FitProblem(recordings, options), result.starts[result.best_start].to,
+                           result.uncertainty, names, threads);
+  }
+};
+
+// Little noise: the cost is quadratic over the interval.
+TEST(Profiles, AreTheClusteredIntervalsWhereTheCostIsQuadratic) {
+  SyntheticOptions study = TinyStudy();
+  study.joint_noise_m = 1e-5;
+  const Profiled profiled(study, "");
+  const std::vector<Profile> profiles = profiled.Profiles({}, 2).value();
+  for (const Estimate& e : profiled.result.uncertainty.estimates) {
+    const Profile* profile = Find(profiles, e.name);
+    ASSERT_NE(profile, nullptr) << e.name;
+    EXPECT_EQ(profile->classification, ProfileClass::kIdentifiable) << e.name;
+    EXPECT_NEAR(profile->lower95, e.lower95, 0.02 * (e.upper95 - e.lower95)) << e.name;
+    EXPECT_NEAR(profile->upper95, e.upper95, 0.02 * (e.upper95 - e.lower95)) << e.name;
+    EXPECT_EQ(profile->points.front().others.size(), 6u);
+  }
+}
+
+TEST(Profiles, OfSumsAreProfilesOfTheirFreePart) {
+  const Profiled profiled(TinyStudy(), "");
+  const std::vector<Profile> two = profiled.Profiles({"mu", "c_x"}, 1).value();
+  ASSERT_EQ(two.size(), 2u);
+  const double held = profiled.result.parameters[kKpX];
+  EXPECT_DOUBLE_EQ(two[1].lower95, two[0].lower95 + held);
+  EXPECT_DOUBLE_EQ(two[1].estimate, two[0].estimate + held);
+  EXPECT_EQ(two[1].points.size(), two[0].points.size());
+}
+
+TEST(Profiles, SeparateWhatIsIdentifiedFromWhatIsNot) {
+  const Profiled profiled(TinyStudy(), "Kp_x,Kp_y");
+  const std::vector<Profile> profiles = profiled.Profiles({"mu", "Kp_x", "c_x"}, 2).value();
+  for (const char* name : {"mu", "Kp_x"}) {
+    const Profile& profile = *Find(profiles, name);
+    EXPECT_EQ(profile.classification, ProfileClass::kStructurallyNot) << name;
+    EXPECT_EQ(profile.upper95, std::numeric_limits<double>::infinity()) << name;
+  }
+  const Profile& sum = *Find(profiles, "c_x");
+  EXPECT_EQ(sum.classification, ProfileClass::kIdentifiable);
+  EXPECT_LT(sum.lower95, sum.estimate);
+  EXPECT_LT(sum.estimate, sum.upper95);
+}
+
+TEST(Profiles, NamesThatDoNotMoveAreErrors) {
+  const Profiled profiled(TinyStudy(), "");
+  const Result<std::vector<Profile>> fixed = profiled.Profiles({"Kp_x"}, 1);
+  ASSERT_FALSE(fixed.ok());
+  EXPECT_TRUE(Contains(fixed.error().message, "no profile of 'Kp_x'"));
+  EXPECT_TRUE(Contains(fixed.error().message, "tail_gain"));
+}
+
+}  // namespace
+}  // namespace pushid

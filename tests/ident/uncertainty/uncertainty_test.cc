@@ -1,0 +1,235 @@
+// Covariances against their definitions, computed here in other ways.
+#include "ident/uncertainty/uncertainty.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "ident/problem/jacobian_blocks.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/covariance.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+struct Solved {
+  std::vector<PendulumRecording> recordings;
+  FitOptions options;
+  std::unique_ptr<FitProblem> problem;
+  FitPoint point;
+  ScoreBlocks score;
+  Uncertainty uncertainty;
+};
+
+// Three parameters, six recordings; priors or not.
+std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
+  auto solved = std::make_unique<Solved>();
+  const SyntheticOptions study = TinyStudy();
+  solved->recordings = MakePendulums(study);
+  solved->recordings.resize(recordings);
+  solved->options = UnbiasedFit(study);
+  for (ParameterSpec& spec : solved->options.table.specs) {
+    spec.free = spec.id == kMu || spec.id == kKpTheta || spec.id == kTailGain;
+    if (!spec.free) spec.nominal = study.parameters[spec.id];
+    if (spec.free && prior_sigma > 0.0)
+      spec.prior = Prior{spec.nominal, prior_sigma * spec.nominal};
+  }
+  solved->problem = std::make_unique<FitProblem>(solved->recordings, solved->options);
+  const Solution solution = Solve(*solved->problem);
+  EXPECT_GE(solution.best, 0);
+  solved->point = solution.Best().to;
+  FitPoint copy = solved->point;
+  solved->score = EvaluateScoreBlocks(solved->problem->Build(&copy, 0));
+  solved->uncertainty = ComputeUncertainty(*solved->problem, solved->point);
+  return solved;
+}
+
+std::vector<int> RowsOf(const ScoreBlocks& score, int cluster, bool inside) {
+  std::vector<int> rows;
+  for (int i = 0; i < score.residuals.size(); ++i) {
+    if ((score.cluster_of_row[i] == cluster) == inside) rows.push_back(i);
+  }
+  return rows;
+}
+
+void ExpectRelativelyEqual(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tolerance) {
+  ASSERT_EQ(a.rows(), b.rows());
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int j = 0; j < a.cols(); ++j) {
+      EXPECT_NEAR(a(i, j), b(i, j), tolerance * std::sqrt(b(i, i) * b(j, j))) << i << " " << j;
+    }
+  }
+}
+
+double CostAt(const Solved& s, const std::vector<double>& shared) {
+  FitPoint point = s.point;
+  point.shared = shared;
+  double cost = 0.0;
+  s.problem->Build(&point, 0).problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  return cost;
+}
+
+// Second differences of the cost itself.
+TEST(Uncertainty, HessianIsThatOfTheCost) {
+  const auto s = SolveSmall(6, 0.5);
+  const Covariance c = CovarianceAt(*s->problem, s->point);
+  ASSERT_TRUE(c.full_hessian);
+  const Eigen::MatrixXd hessian = c.inverse_hessian.inverse();
+  Eigen::Vector3d step;
+  for (int i = 0; i < 3; ++i) step[i] = 1e-2 * std::sqrt(1.0 / hessian(i, i));
+  const auto cost = [&](int i, double a, int j, double b) {
+    std::vector<double> shared = s->point.shared;
+    shared[i] += a * step[i];
+    shared[j] += b * step[j];
+    return CostAt(*s, shared);
+  };
+  Eigen::MatrixXd differences(3, 3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      differences(i, j) =
+          (cost(i, 1, j, 1) - cost(i, 1, j, -1) - cost(i, -1, j, 1) + cost(i, -1, j, -1)) /
+          (4.0 * step[i] * step[j]);
+    }
+  }
+  ExpectRelativelyEqual(hessian, differences, 1e-3);
+}
+
+// Bell and McCaffrey's correction by its definition, on the rows of each recording.
+TEST(Uncertainty, ClusteredIsBiasReduced) {
+  for (double prior : {0.0, 0.5}) {
+    const auto s = SolveSmall(6, prior);
+    const int groups = static_cast<int>(s->score.clusters.size());
+    ASSERT_EQ(groups, 6);
+    const Eigen::MatrixXd inverse = CovarianceAt(*s->problem, s->point).inverse_hessian;
+    Eigen::MatrixXd moves(3, groups);
+    for (int g = 0; g < groups; ++g) {
+      const std::vector<int> rows = RowsOf(s->score, s->score.clusters[g], true);
+      const Eigen::MatrixXd own = s->score.jacobian(rows, Eigen::all);
+      const Eigen::MatrixXd hat = own * inverse * own.transpose();
+      const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat;
+      moves.col(g) = inverse * own.transpose() *
+                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).operatorInverseSqrt() *
+                     s->score.residuals(rows);
+    }
+    moves.colwise() -= moves.rowwise().mean().eval();
+    ExpectRelativelyEqual(s->uncertainty.covariance, moves * moves.transpose(), 1e-4);
+  }
+}
+
+// One Newton step is what leaving a recording out really moves.
+TEST(Uncertainty, MovesAreCloseToRefitting) {
+  const auto s = SolveSmall(6, 0.0);
+  const Eigen::MatrixXd moves = CovarianceAt(*s->problem, s->point).moves;
+  for (int g = 0; g < 6; ++g) {
+    std::vector<PendulumRecording> others = s->recordings;
+    others.erase(others.begin() + g);
+    const FitProblem problem(others, s->options);
+    const FitPoint point = SolveFrom(problem, s->point, "nominal", "", nullptr).to;
+    for (int i = 0; i < 3; ++i) {
+      const double error = std::sqrt(s->uncertainty.covariance(i, i));
+      const double real = (point.shared[i] - s->point.shared[i]) / error;
+      EXPECT_NEAR(moves(i, g) / error, real, 0.05 + 0.4 * std::abs(real)) << g << " " << i;
+    }
+  }
+}
+
+TEST(Uncertainty, NaiveIsTheTextbookOne) {
+  const auto s = SolveSmall(6, 0.0);
+  const Eigen::MatrixXd& j = s->score.jacobian;
+  const double freedom = static_cast<double>(j.rows()) - 3.0;
+  const double variance = s->score.residuals.squaredNorm() / freedom;
+  EXPECT_NEAR(s->uncertainty.sigma, std::sqrt(variance), 1e-12);
+  EXPECT_EQ(s->uncertainty.num_residuals, j.rows());
+  const Eigen::MatrixXd expected = variance * (j.transpose() * j).inverse();
+  const auto& fitted = s->problem->map().fitted;
+  for (int i = 0; i < 3; ++i) {
+    const Estimate& e = s->uncertainty.estimates[i];
+    const double slope = TransformSlope(fitted[i].transform, e.value);
+    EXPECT_NEAR(e.standard_error_naive / (slope * std::sqrt(expected(i, i))), 1.0, 1e-6) << e.name;
+  }
+}
+
+TEST(Uncertainty, IntervalsAndCorrelation) {
+  const auto s = SolveSmall(6, 0.0);
+  const Uncertainty& u = s->uncertainty;
+  EXPECT_TRUE(u.clustered);
+  EXPECT_EQ(u.num_clusters, 6);
+  EXPECT_DOUBLE_EQ(u.t_quantile, StudentQuantile95(5));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(u.correlation(i, i), 1.0, 1e-12);
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_LE(std::abs(u.correlation(i, j)), 1.0 + 1e-12);
+      EXPECT_NEAR(u.correlation(i, j), u.correlation(j, i), 1e-12);
+      EXPECT_NEAR(u.covariance(i, j),
+                  u.correlation(i, j) * std::sqrt(u.covariance(i, i) * u.covariance(j, j)),
+                  1e-12 * std::sqrt(u.covariance(i, i) * u.covariance(j, j)));
+    }
+  }
+  const Estimate& plain = *FindEstimate(u.estimates, "mu");
+  EXPECT_NEAR(plain.upper95 - plain.value, u.t_quantile * plain.standard_error, 1e-9);
+  EXPECT_NEAR(plain.value - plain.lower95, u.t_quantile * plain.standard_error, 1e-9);
+  // Fitted as a log: by the same factor up and down.
+  const Estimate& log = *FindEstimate(u.estimates, "Kp_theta");
+  EXPECT_NEAR(log.upper95 / log.value, log.value / log.lower95, 1e-9);
+}
+
+TEST(Uncertainty, CombineAddsByTheDeltaMethod) {
+  const auto s = SolveSmall(6, 0.0);
+  const Uncertainty& u = s->uncertainty;
+  const Combination c =
+      Combine(*s->problem, s->point, u, {"2 mu - Kp", "", {{kMu, 2.0}, {kKpTheta, -1.0}}});
+  const double mu = u.estimates[0].value, kp = u.estimates[1].value;
+  EXPECT_NEAR(c.value, 2.0 * mu - kp, 1e-9);
+  const Eigen::Vector3d gradient(2.0, -kp, 0.0);  // Kp_theta is fitted as a log
+  EXPECT_NEAR(c.standard_error, std::sqrt(gradient.dot(u.covariance * gradient)), 1e-9);
+}
+
+TEST(Uncertainty, ASingleRecordingIsNotClustered) {
+  const auto s = SolveSmall(1, 0.0);
+  EXPECT_FALSE(s->uncertainty.clustered);
+  EXPECT_EQ(s->uncertainty.num_clusters, 1);
+  for (const Estimate& e : s->uncertainty.estimates) {
+    EXPECT_GT(e.standard_error, 0.0);
+    EXPECT_DOUBLE_EQ(e.standard_error, e.standard_error_naive) << e.name;
+  }
+  const FitResult result = Fit(s->recordings, s->options);
+  bool warned = false;
+  for (const std::string& w : result.warnings) {
+    warned = warned || w.find("a single recording") != std::string::npos;
+  }
+  EXPECT_TRUE(warned);
+}
+
+TEST(Uncertainty, AtABoundHasNoErrorAndSaysSo) {
+  const SyntheticOptions study = TinyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  options.table[kTailGain].upper = 0.8;  // the truth is 1.15
+  options.table[kTailGain].nominal = 0.5;
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.ok());
+  const Estimate& e = *FindEstimate(result.estimates, "tail_gain");
+  EXPECT_EQ(e.status, EstimateStatus::kAtBound);
+  EXPECT_NEAR(e.value, 0.8, 1e-6);
+  EXPECT_EQ(e.standard_error, 0.0);
+  EXPECT_TRUE(result.uncertainty.null_directions.empty());
+  bool warned = false;
+  for (const std::string& w : result.warnings) {
+    warned = warned || w.find("tail_gain stands at its bound") != std::string::npos;
+  }
+  EXPECT_TRUE(warned);
+}
+
+TEST(StudentQuantile, AgainstTables) {
+  EXPECT_NEAR(StudentQuantile95(1), 12.706, 5e-4);
+  EXPECT_NEAR(StudentQuantile95(2), 4.303, 5e-4);
+  EXPECT_NEAR(StudentQuantile95(5), 2.571, 5e-4);
+  EXPECT_NEAR(StudentQuantile95(31), 2.040, 5e-4);
+  EXPECT_NEAR(StudentQuantile95(1000), 1.962, 5e-4);
+  EXPECT_NEAR(StudentQuantile95(1000000), 1.960, 5e-4);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,240 @@
+// Folds, held-out scores, paired differences.
+#include "ident/validation/crossvalidation.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "ident/validation/predictors.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// 32 recordings like the published ones: three subjects, three strengths, unevenly.
+std::vector<PendulumRecording> Labels() {
+  std::vector<PendulumRecording> recordings;
+  const char* const strengths[] = {"weak", "medium", "strong"};
+  const int counts[3][3] = {{5, 4, 3}, {3, 4, 2}, {6, 3, 2}};
+  for (int subject = 0; subject < 3; ++subject) {
+    for (int strength = 0; strength < 3; ++strength) {
+      for (int i = 0; i < counts[subject][strength]; ++i) {
+        PendulumRecording r;
+        r.id = std::to_string(recordings.size());
+        r.magnitude = strengths[strength];
+        r.subject_ids = {"S" + std::to_string(subject)};
+        recordings.push_back(r);
+      }
+    }
+  }
+  return recordings;
+}
+
+TEST(Folds, StratifiedHoldOutEachOncePerRepeat) {
+  const std::vector<PendulumRecording> recordings = Labels();
+  const int total = static_cast<int>(recordings.size());
+  constexpr int kFolds = 4, kRepeats = 5;
+  const auto folds = MakeFolds(recordings, FoldScheme::kStratified, kFolds, kRepeats, 3);
+  ASSERT_TRUE(folds.ok());
+  ASSERT_EQ(folds.value().size(), static_cast<size_t>(kFolds * kRepeats));
+  std::map<std::pair<std::string, std::string>, int> strata;
+  for (const PendulumRecording& r : recordings) ++strata[{r.subject_ids[0], r.magnitude}];
+  std::set<std::vector<int>> distinct;
+  for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    std::vector<int> held(total, 0);
+    for (int f = 0; f < kFolds; ++f) {
+      const Fold& fold = folds.value()[repeat * kFolds + f];
+      distinct.insert(fold.held_out);
+      EXPECT_EQ(fold.name,
+                "repeat " + std::to_string(repeat + 1) + " fold " + std::to_string(f + 1));
+      const int size = static_cast<int>(fold.held_out.size());
+      EXPECT_GE(size, total / kFolds);
+      EXPECT_LE(size, (total + kFolds - 1) / kFolds);
+      std::map<std::pair<std::string, std::string>, int> own;
+      for (int i : fold.held_out) {
+        ++held[i];
+        ++own[{recordings[i].subject_ids[0], recordings[i].magnitude}];
+      }
+      for (const auto& [stratum, count] : strata) {
+        EXPECT_GE(own[stratum], count / kFolds);
+        EXPECT_LE(own[stratum], (count + kFolds - 1) / kFolds);
+      }
+    }
+    EXPECT_EQ(held, std::vector<int>(total, 1));
+  }
+  EXPECT_GT(distinct.size(), static_cast<size_t>(kFolds));  // repeats shuffle anew
+}
+
+TEST(Folds, SeedDecides) {
+  const auto held = [](uint64_t seed) {
+    std::vector<std::vector<int>> all;
+    const auto folds = MakeFolds(Labels(), FoldScheme::kStratified, 4, 2, seed);
+    for (const Fold& fold : folds.value()) {
+      all.push_back(fold.held_out);
+    }
+    return all;
+  };
+  EXPECT_EQ(held(1), held(1));
+  EXPECT_NE(held(1), held(2));
+}
+
+TEST(Folds, SubjectsAndStrongPushes) {
+  const std::vector<PendulumRecording> recordings = Labels();
+  const auto subjects = MakeFolds(recordings, FoldScheme::kSubject, 0, 0, 0);
+  ASSERT_TRUE(subjects.ok());
+  ASSERT_EQ(subjects.value().size(), 3u);
+  EXPECT_EQ(subjects.value()[0].name, "without S0");
+  EXPECT_EQ(subjects.value()[0].held_out.size(), 12u);
+  const auto strong = MakeFolds(recordings, FoldScheme::kStrong, 0, 0, 0);
+  ASSERT_TRUE(strong.ok());
+  ASSERT_EQ(strong.value().size(), 1u);
+  EXPECT_EQ(strong.value()[0].held_out.size(), 7u);
+  for (int i : strong.value()[0].held_out) EXPECT_EQ(recordings[i].magnitude, "strong");
+}
+
+TEST(Folds, ErrorsSayWhatIsMissing) {
+  std::vector<PendulumRecording> recordings = Labels();
+  const auto message = [&recordings](FoldScheme scheme, int folds, int repeats) {
+    const auto made = MakeFolds(recordings, scheme, folds, repeats, 1);
+    EXPECT_FALSE(made.ok());
+    return made.ok() ? std::string() : made.error().ToString();
+  };
+  EXPECT_TRUE(Contains(message(FoldScheme::kStratified, 1, 1), "--folds is 1"));
+  EXPECT_TRUE(Contains(message(FoldScheme::kStratified, 33, 1), "the 32 recordings"));
+  EXPECT_TRUE(Contains(message(FoldScheme::kStratified, 4, 0), "--repeats"));
+  for (PendulumRecording& r : recordings) {
+    r.subject_ids = {"only"};
+    r.magnitude = "weak";
+  }
+  EXPECT_TRUE(Contains(message(FoldScheme::kSubject, 0, 0), "at least two pushed subjects"));
+  EXPECT_TRUE(Contains(message(FoldScheme::kStrong, 0, 0), "'strong'"));
+  for (PendulumRecording& r : recordings) r.magnitude = "strong";
+  EXPECT_FALSE(MakeFolds(recordings, FoldScheme::kStrong, 0, 0, 0).ok());
+}
+
+std::vector<Fold> SomeFolds(const std::vector<PendulumRecording>& recordings) {
+  return MakeFolds(recordings, FoldScheme::kStratified, 3, 2, 1).value();
+}
+
+TEST(CrossValidation, HeldOutPredictionsOfTheRightModelAreGood) {
+  const SyntheticOptions study = SmallStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto folds = SomeFolds(recordings);
+  const CrossValidation model =
+      CrossValidate(recordings, folds, ModelPredictor("tail", ExactFit(study)), 1);
+  EXPECT_EQ(model.predictor, "tail");
+  EXPECT_EQ(model.folds.size(), 6u);
+  EXPECT_EQ(model.summary.mean.recordings, 24);
+  EXPECT_LT(model.summary.mean.hip_ade, 1e-7);
+  EXPECT_EQ(model.failures, 0);
+  EXPECT_EQ(model.falls, 0);
+  const CrossValidation still =
+      CrossValidate(recordings, folds, BaselinePredictor("static", StaticBaseline), 1);
+  EXPECT_GT(still.summary.mean.hip_ade, 0.05);
+  const CrossValidation ridge = CrossValidate(recordings, folds, RidgePredictor("ridge"), 1);
+  EXPECT_LT(ridge.summary.mean.hip_ade, still.summary.mean.hip_ade);
+  EXPECT_GT(ridge.summary.mean.hip_ade, model.summary.mean.hip_ade);
+}
+
+TEST(CrossValidation, ThreadsDoNotMatter) {
+  const SyntheticOptions study = TinyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto folds = SomeFolds(recordings);
+  const ModelPredictor predictor("tail", DefaultFit(study));
+  int reported = 0;
+  const CrossValidation one = CrossValidate(recordings, folds, predictor, 1);
+  const CrossValidation two =
+      CrossValidate(recordings, folds, predictor, 2, [&reported](int, int total) {
+        ++reported;
+        EXPECT_EQ(total, 6);
+      });
+  EXPECT_EQ(reported, 6);
+  ASSERT_EQ(one.summary.recordings.size(), two.summary.recordings.size());
+  for (size_t i = 0; i < one.summary.recordings.size(); ++i) {
+    EXPECT_EQ(one.summary.recordings[i].hip_ade, two.summary.recordings[i].hip_ade);
+  }
+  EXPECT_EQ(one.summary.mean.hip_fde_error, two.summary.mean.hip_fde_error);
+}
+
+// Scores 1, 2, 3, ... by recording; 10 more when it is asked the second time. Fails on one.
+class Scripted : public Predictor {
+ public:
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override {
+    EXPECT_EQ(train.size() + test.size(), recordings.size());
+    FoldPrediction prediction;
+    for (int i : test) {
+      for (int t : train) EXPECT_NE(i, t);
+      RecordingScore score;
+      score.id = recordings[i].id;
+      score.frames = 5;
+      score.hip_ade = i + 1.0 + 10.0 * asked_[i]++;
+      score.hip_fde = 2.0 * score.hip_ade;
+      if (i == fails) score.failure = "fell over";
+      prediction.scores.push_back(score);
+    }
+    return prediction;
+  }
+  int fails = -1;
+
+ private:
+  mutable std::map<int, int> asked_;
+};
+
+TEST(CrossValidation, RepeatsAreAveragedBeforeTheMean) {
+  std::vector<PendulumRecording> recordings = Labels();
+  recordings.resize(4);
+  const std::vector<Fold> folds = {{"a", {0, 1}}, {"b", {2}}, {"c", {0, 2}}};
+  Scripted scripted;
+  const CrossValidation result = CrossValidate(recordings, folds, scripted, 1);
+  ASSERT_EQ(result.summary.recordings.size(), 3u);  // recording 3 was never held out
+  EXPECT_EQ(result.summary.recordings[0].hip_ade, (1.0 + 11.0) / 2.0);
+  EXPECT_EQ(result.summary.recordings[1].hip_ade, 2.0);
+  EXPECT_EQ(result.summary.recordings[2].hip_ade, (3.0 + 13.0) / 2.0);
+  EXPECT_NEAR(result.summary.mean.hip_ade, (6.0 + 2.0 + 8.0) / 3.0, 1e-12);
+  EXPECT_EQ(result.folds[2].hip_ade, (11.0 + 13.0) / 2.0);
+  EXPECT_EQ(result.folds[2].hip_fde, 11.0 + 13.0);
+}
+
+TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
+  std::vector<PendulumRecording> recordings = Labels();
+  recordings.resize(3);
+  Scripted scripted;
+  scripted.fails = 1;
+  const CrossValidation result =
+      CrossValidate(recordings, {{"a", {0, 1}}, {"b", {2}}}, scripted, 1);
+  EXPECT_EQ(result.failures, 1);
+  EXPECT_EQ(result.folds[0].failures, 1);
+  EXPECT_EQ(result.folds[0].hip_ade, 1.0);
+  EXPECT_EQ(result.summary.mean.recordings, 2);
+  EXPECT_EQ(result.summary.recordings[1].failure, "fell over");
+}
+
+TEST(CrossValidation, PairedDifferenceByHand) {
+  const auto validation = [](const char* name, std::vector<double> scores) {
+    CrossValidation v;
+    v.predictor = name;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      v.summary.recordings.push_back({std::to_string(i), 5, scores[i], 2.0 * scores[i], "", false});
+    }
+    return v;
+  };
+  CrossValidation a = validation("a", {0.10, 0.20, 0.30, 5.0});
+  const CrossValidation b = validation("b", {0.11, 0.24, 0.31, 0.1});
+  a.summary.recordings[3].failure = "fell";
+  const PairedDifference d = Compare(a, b);
+  EXPECT_EQ(d.recordings, 3);
+  EXPECT_NEAR(d.hip_ade, 0.02, 1e-15);
+  // Deviations -0.01, 0.02, -0.01: variance 3e-4, over 3.
+  EXPECT_NEAR(d.hip_ade_error, std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_NEAR(d.hip_fde, 0.04, 1e-15);
+  EXPECT_NEAR(d.hip_fde_error, 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_EQ(d.a, "a");
+  EXPECT_EQ(d.b, "b");
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,103 @@
+// Which push to record next, checked by recording it.
+#include "ident/validation/experiment_design.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/covariance.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class Design : public ::testing::Test {
+ protected:
+  Design() : study_(SmallStudy()) {
+    study_.recording_spread = 0.1;
+    study_.joint_noise_m = 0.001;
+    recordings_ = MakePendulums(study_);
+    options_ = UnbiasedFit(study_);
+    options_.model.friction = FrictionKind::kAnisotropic;
+    EXPECT_FALSE(EditTable({"", "mu_y=20", "", "", ""}, &options_.table));
+    problem_ = std::make_unique<FitProblem>(recordings_, options_);
+    estimate_ = Solve(*problem_).Best().to;
+    uncertainty_ = ComputeUncertainty(*problem_, estimate_);
+  }
+  ExperimentDesign Of(const std::vector<CandidatePush>& candidates) const {
+    return DesignExperiments(*problem_, estimate_, uncertainty_, candidates);
+  }
+  static size_t Index(const ExperimentDesign& design, const std::string& name) {
+    return static_cast<size_t>(std::find(design.parameters.begin(), design.parameters.end(), name) -
+                               design.parameters.begin());
+  }
+
+  SyntheticOptions study_;
+  std::vector<PendulumRecording> recordings_;
+  FitOptions options_;
+  std::unique_ptr<FitProblem> problem_;
+  FitPoint estimate_;
+  Uncertainty uncertainty_;
+};
+
+// Sideways pushes tell about sideways friction, and a strong one more than a weak one.
+TEST_F(Design, ThePushThatMovesAParameterIsTheOneToRecord) {
+  const std::vector<CandidatePush> pushes = {
+      {0, 3, 1, 0.1, 80}, {90, 3, 1, 0.1, 80}, {90, 1, 1, 0.1, 80}, {90, 500, 1, 0.2, 80}};
+  const ExperimentDesign alike = Of(pushes);
+  ASSERT_EQ(alike.rows.size(), 3u);  // the last one fell
+  const size_t sideways = Index(alike, "mu_y");
+  const auto ratio = [&](const ExperimentDesign& d, int row) {
+    return d.rows[row].error_ratio[sideways];
+  };
+  uncertainty_.covariance = CovarianceAt(*problem_, estimate_).naive;
+  const ExperimentDesign noise_alone = Of(pushes);
+  for (const ExperimentDesign* d : {&alike, &noise_alone}) {
+    EXPECT_LT(ratio(*d, 1), ratio(*d, 0));
+    EXPECT_LT(ratio(*d, 1), ratio(*d, 2));
+    for (const DesignRow& row : d->rows) EXPECT_LT(row.volume_ratio, 1.0);
+  }
+  EXPECT_LT(ratio(noise_alone, 1), 0.9);
+  EXPECT_GT(ratio(noise_alone, 0), 0.95);
+  // Where recordings disagree, one more of 12 cannot help much.
+  for (const DesignRow& row : alike.rows) {
+    EXPECT_GT(row.volume_ratio, 0.9 * std::sqrt(12.0 / 13.0));
+  }
+}
+
+// The candidate's information is that of the recording it would be.
+TEST_F(Design, CandidatesCountAsRecordings) {
+  const CandidatePush push{90, 3, 1, 0.1, 80};
+  std::vector<PendulumRecording> more = recordings_;
+  more.push_back(MakeCandidate(*problem_, estimate_, push, PushKind::kNet));
+  const FitProblem with(more, options_);
+  // Without spread V = V_naive, and what is found is the naive error of the fit with it.
+  const Covariance now = CovarianceAt(*problem_, estimate_), then = CovarianceAt(with, estimate_);
+  uncertainty_.covariance = now.naive;
+  const double sigma = now.sigma / then.sigma;
+  const Eigen::MatrixXd expected = sigma * sigma * then.naive;
+  const ExperimentDesign d = Of({push});
+  for (int i = 0; i < expected.rows(); ++i) {
+    EXPECT_NEAR(d.rows[0].error_ratio[i], std::sqrt(expected(i, i) / now.naive(i, i)), 1e-6);
+  }
+}
+
+TEST_F(Design, TheTableIsSortedAndNamesItsUnits) {
+  const std::vector<CandidatePush> candidates = DefaultCandidates(recordings_);
+  EXPECT_EQ(candidates.size(), 96u);
+  const ExperimentDesign d = Of(candidates);
+  const std::string text = DesignText(d, "mu_y", 5).value();
+  EXPECT_TRUE(Contains(text, "error of mu_y"));
+  EXPECT_TRUE(Contains(text, "now: mu_y +- "));
+  EXPECT_LT(text.find("to the left"), text.find("forwards"));
+  EXPECT_TRUE(DesignText(d, "all", 5).ok());
+  const Result<std::string> wrong = DesignText(d, "nu", 5);
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_TRUE(Contains(wrong.error().message, "mu_y"));
+}
+
+}  // namespace
+}  // namespace pushid
