@@ -28,7 +28,7 @@ DEFINE_int32(folds, 4, "folds of the stratified scheme");
 DEFINE_int32(repeats, 5, "repeats of the stratified scheme, each with new folds");
 DEFINE_string(
     compare, "",
-    "rival configurations, semicolon-separated: name: --flag=value ... added to the flags "
+    "candidate configurations, semicolon-separated: name: --flag=value ... added to the flags "
     "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
 DEFINE_bool(yardsticks, true, "also static, constant velocity and ridge regression");
 DEFINE_string(frontier_out, "",
@@ -48,7 +48,7 @@ std::string Trim(const std::string& text) {
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-MaybeError AddRivals(Predictors* predictors) {
+MaybeError AddCandidates(Predictors* predictors) {
   std::stringstream list(FLAGS_compare);
   for (std::string item; std::getline(list, item, ';');) {
     if (Trim(item).empty()) continue;
@@ -82,7 +82,7 @@ int Run() {
   if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &scheme)) return Fail(*error);
   Predictors predictors;
   predictors.push_back(std::make_unique<ModelPredictor>(options.value().preset, options.value()));
-  if (MaybeError error = AddRivals(&predictors)) return Fail(*error);
+  if (MaybeError error = AddCandidates(&predictors)) return Fail(*error);
   if (FLAGS_yardsticks) {
     predictors.push_back(std::make_unique<RidgePredictor>("ridge"));
     predictors.push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline));

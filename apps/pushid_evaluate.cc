@@ -11,7 +11,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
-#include "ident/bodies/peer.h"
+#include "ident/bodies/simlpe_files.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 #include "models/self_network.h"
@@ -19,7 +19,7 @@
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_string(
     peer, "",
-    "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe) to "
+    "with --restoration: the folder of a siMLPe (pushid-train-restoration --kind=simlpe) to "
     "compare with");
 DEFINE_bool(per_recording, true, "print a line for every recording");
 
@@ -46,9 +46,9 @@ Result<std::optional<BodyEvaluation>> Bodies(const IdentifiedModel& model,
     ScoreRestoration(model, *restoration.value(), postprocess.value(), body, &scores);
   }
   if (!FLAGS_peer.empty()) {
-    const Result<PeerWeights> peer = LoadPeer(FLAGS_peer);
-    if (!peer.ok()) return peer.error();
-    for (const BodyRecording& body : bodies.value()) ScorePeer(peer.value(), body, &scores);
+    const Result<SimlpeWeights> simlpe = LoadSimlpe(FLAGS_peer);
+    if (!simlpe.ok()) return simlpe.error();
+    for (const BodyRecording& body : bodies.value()) ScoreSimlpe(simlpe.value(), body, &scores);
   }
   return std::optional<BodyEvaluation>(SummarizeAll(bodies.value(), scores));
 }

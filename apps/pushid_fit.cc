@@ -63,8 +63,9 @@ int Run() {
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
-  std::vector<std::string> odd;  // about the files; a result says what it was made of
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, false, &odd);
+  std::vector<std::string> file_warnings;  // about the files; a result says what it was made of
+  const Result<std::vector<Recording>> recordings =
+      LoadFlaggedRecordings({}, false, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
@@ -94,7 +95,7 @@ int Run() {
     return kFitFailed;
   }
   if (MaybeError error = AddConfidence(pendulums, &result)) return Fail(*error);
-  result.warnings.insert(result.warnings.begin(), odd.begin(), odd.end());
+  result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   result.version = Version();
   result.configuration = EffectiveFlags();
   // Where the data lay is no part of what was found; the hash is.

@@ -104,7 +104,7 @@ int Run() {
   if (!made.ok()) return Fail(made.error());
   if (MaybeError error = CheckFilesKept(made.value().manifest)) return Fail(*error);
   if (MaybeError error = WriteManifest(FLAGS_out, made.value().manifest)) return Fail(*error);
-  for (const std::string& warning : made.value().odd) Warn(warning);
+  for (const std::string& warning : made.value().warnings) Warn(warning);
   for (const Error& error : made.value().unreadable) Warn("left out: " + error.ToString());
   for (const std::string& id : made.value().without_push) Warn("recording " + id + " has no push");
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",

@@ -19,9 +19,10 @@
 #include "models/self_network.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
-DEFINE_string(kind, "window",
-              "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (a peer that "
-              "continues 12 given frames, for --peer of pushid-evaluate)");
+DEFINE_string(
+    kind, "window",
+    "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (siMLPe, which "
+    "continues 12 given frames, for --peer of pushid-evaluate)");
 DEFINE_string(coordinates, "tip",
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");

@@ -128,7 +128,8 @@ constexpr double kUsualFps = 60.0;
 std::string LeftDomainAdvice(double fps) {
   return fps < kUsualFps - 0.5
              ? "the steps are long: try --fps=60, and if that does not help a weaker --push"
-             : "she falls: try a weaker or longer push (--push, --push_duration), or a higher "
+             : "the person falls: try a weaker or longer push (--push, --push_duration), or a "
+               "higher "
                "--fps "
                "if the push is no harder than those the model was fitted to";
 }

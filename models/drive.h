@@ -1,4 +1,4 @@
-// models: whoever is pushed by others steps on for a while: the counterpart, for people pushed by
+// models: a person pushed by others steps on for a while: the counterpart, for people pushed by
 // people, of the push tail (push.h).
 //
 // With F the generalized force of the interaction and w what was received lately,

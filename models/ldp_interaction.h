@@ -13,7 +13,7 @@
 //
 // LdpDiscreteTerm is the exact form: switches, forward differences of 1 mm, equal coordinates count
 // as "behind". PotentialTerm and LeanTerm are its smooth twins, for fitting: tanh switches, soft
-// clamp and minimum, the exact gradient; the clamp at 10 m/s is left out, nobody gets there.
+// clamp and minimum, the exact gradient; the clamp at 10 m/s is left out: no motion gets there.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // models: who may act on whom at one frame: a search on a uniform grid of carts.
 //
 // People are sorted into the cells of a grid as wide as the reach, by a counting sort over hashed
-// cells: the cost per person does not grow with the crowd. The order in which a person meets her
+// cells: the cost per person does not grow with the crowd. The order in which a person meets the
 // neighbours is that of their places at frame 0 (ties: angles, then mass), never that of their
 // numbers, so that sums come out the same to the last bit however the people are numbered.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace pushid {
 
-// The largest |dx| and |dy| of two carts that may act on each other, where nobody's contact point
+// The largest |dx| and |dy| of two carts that may act on each other, where no contact point
 // is more than `lean` metres off the cart.
 Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterSet<double>& p,
                                  double lean);

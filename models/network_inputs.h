@@ -1,5 +1,5 @@
-// models: what the learned terms of a person see of her, in units of typical ranges, and how they
-// read matrices from a flat array of weights.
+// models: what the learned terms of a person see of that person, in units of typical ranges, and
+// how they read matrices from a flat array of weights.
 #pragma once
 
 #include <Eigen/Core>

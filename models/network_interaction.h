@@ -3,7 +3,7 @@
 //   u = ([dx, dy, dxd, dyd, th_n, th_j, ph_n, ph_j, dthd, dphd] - mean) / deviation    (n minus j)
 //   F on n = clamp(scale * MLP(u) + offset) * switch(range - d), d the carts' distance,
 //   switch = (1 + tanh(. / 0.05 m)) / 2, range = neighbour_range.
-// Not mutual: each of the two asks for herself. The clamp is optional and as hard as LDP's; a
+// Not mutual: each of the two asks alone. The clamp is optional and as hard as LDP's; a
 // network for fitting around should have none.
 #pragma once
 

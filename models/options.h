@@ -44,7 +44,7 @@ struct InteractionTerms {
   bool lean = false;          // LDP's torques against leaning on each other, smoothed
   bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
   bool network = false;       // a learned force (network_interaction.h)
-  bool drive = false;         // whoever was pushed by others steps on for a while (drive.h)
+  bool drive = false;         // a person pushed by others steps on for a while (drive.h)
 
   bool Contact() const { return spring || damping; }
   bool Any() const { return Contact() || AtCarts(); }

@@ -1,4 +1,4 @@
-// models: derivatives of the push tail, and the demonstration push.
+// models: derivatives of the push tail, and the push of the settling simulations.
 #include "models/push.h"
 
 namespace pushid {

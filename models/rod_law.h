@@ -7,7 +7,7 @@
 //   mlp     h_1 = tanh(W_1 u + b_1) - tanh(b_1),  h_i = tanh(W_i h_{i-1} + b_i) - tanh(b_i),
 //           f = o h_n
 // F_self: friction, balance, linear and learned self force, whether or not a push hides them for a
-// while; F_rest: the torque that holds the posture. Whoever stands at rest with the rod of frame 0
+// while; F_rest: the torque that holds the posture. A person at rest with the rod of frame 0
 // (u = 0) keeps exactly that rod, whatever the weights, and zero weights (of f or of o) are a
 // constant rod. Nothing pulls the rod back but the weights on l - l_0: built-in relaxation would
 // decide what the data can say. Source: LDP's rod network (Yue et al., CVPR 2024: 256-128-256),

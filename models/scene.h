@@ -36,18 +36,18 @@ inline Scene ScalePushes(Scene scene, double factor) {
   return scene;
 }
 
-inline constexpr double kDemonstrationSpacing = 0.45;  // m
+inline constexpr double kSettlingSpacing = 0.45;  // m
 
 // People in a line along +x, upright, the first pushed along +x at the hip by a half-sine of 12
-// frames (0.2 s at 60 Hz) with the named impulse (N s): the demonstrations by which a fit is held
-// to settle. 0.45 m is how close people stand in the published group recordings.
-inline Scene DemonstrationScene(double mass, double impulse, int num_people = 1) {
+// frames (0.2 s at 60 Hz) with the named impulse (N s): the settling simulations by which a fit is
+// held to settle. 0.45 m is how close people stand in the published group recordings.
+inline Scene SettlingScene(double mass, double impulse, int num_people = 1) {
   constexpr int kPushFrames = 12;
   Scene scene;
   for (int n = 0; n < num_people; ++n) {
     ScenePerson person;
     person.body = {mass, kReferenceRod, 0.0};
-    person.start.q[0] = kDemonstrationSpacing * n;
+    person.start.q[0] = kSettlingSpacing * n;
     scene.people.push_back(person);
   }
   scene.pushes.push_back(

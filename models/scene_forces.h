@@ -114,8 +114,8 @@ class SceneForces {
     finder_.Update(Parameters(0), states);
   }
 
-  // What everybody does to one person, and what her own network answers: once a frame. Each person
-  // adds up in canonical order (neighbours.h).
+  // What all others do to one person, and what the person's own network answers: once a frame. Each
+  // person adds up in canonical order (neighbours.h).
   void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
     Vector4<T> sum = Vector4<T>::Zero();

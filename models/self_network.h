@@ -19,7 +19,7 @@
 //   F = 2 M [O h']                        m/s^2 and m^2/s^2 per unit of output
 //
 // s is the logistic function, products of vectors are by element, memories start at zero. What
-// could answer to k alone has no bias and no mass: whoever stands at rest (u = 0) feels exactly no
+// could answer to k alone has no bias and no mass: a person at rest (u = 0) feels exactly no
 // force, whatever the weights, and O = 0 is no force at all. Source: LDP's self-force network
 // (Yue et al., CVPR 2024: a 32-d embedding before an LSTM of 256), with that guarantee added.
 //
@@ -74,7 +74,7 @@ struct SelfNetwork {
   int rod_at() const { return shape.num_weights(); }  // the first weight of the rod's law
 };
 
-// Whether somebody's rod moves.
+// Whether the rod moves.
 inline bool RodMoves(const ModelOptions& options) {
   return options.self_network != nullptr && options.self_network->rod.moves();
 }

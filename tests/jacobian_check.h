@@ -4,7 +4,7 @@
 //   ExpectCorrectJacobian(cost, blocks, tolerance);           // against Ridders' differentiation
 // An entry is right when |actual - expected| <= relative * (largest |expected| of its column) +
 // absolute. Relative to the column, not to the entry: an entry that vanishes by cancellation
-// carries the rounding of its column. Outputs are filled with NaN first, so that an entry nobody
+// carries the rounding of its column. Outputs are filled with NaN first, so that an entry not
 // wrote is caught; asking for some blocks' Jacobians only must give the same numbers.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Dependencies point down only: apps -> ident -> residuals -> models. datasets serves residuals,
-// ident and apps, and may use models; models knows nobody.
+// ident and apps, and may use models; models includes no other room.
 #include <gtest/gtest.h>
 
 #include <algorithm>

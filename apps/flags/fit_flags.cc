@@ -62,10 +62,10 @@ DEFINE_double(sigma_rate, 3.0, "standard deviation of the angular rates, rad/s")
 DEFINE_double(robust, 0.5, "pseudo-Huber scale of a frame in sigmas; 0: plain least squares");
 DEFINE_string(recording_weight, "recording",
               "what counts the same: every recording, or every frame");
-DEFINE_double(
-    settling_weight, -1.0,
-    "weight of the demonstrations that a pushed person stands again; 0: off (default: the "
-    "preset's)");
+DEFINE_double(settling_weight, -1.0,
+              "weight of the settling simulations, after which a pushed person must have settled; "
+              "0: off (default: the "
+              "preset's)");
 DEFINE_double(
     mode_weight, -1.0,
     "weight of the hinge that makes a person's free modes at rest decay (it sees no network); 0: "
@@ -113,7 +113,7 @@ MaybeError ReadModel(FitOptions* o) {
   return std::nullopt;
 }
 
-// A linear self force can feed a mode that the demonstrations do not excite.
+// A linear self force can feed a mode that the settling simulations do not excite.
 constexpr double kLinearModeWeight = 30.0;
 
 constexpr long kLongestHorizon = 1000000;  // frames

@@ -13,7 +13,7 @@ namespace pushid {
 Result<FitOptions> FitOptionsFromFlags();
 
 // The same with a space-separated list of other flags ("--self_force=linear --push_tail=none") on
-// top: a rival for pushid-crossvalidate. The flags are put back afterwards.
+// top: a candidate for pushid-crossvalidate. The flags are put back afterwards.
 Result<FitOptions> FitOptionsWith(const std::string& extra_flags);
 
 int NumThreads();

@@ -69,11 +69,11 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
     options.value().ids = ids;
     options.value().leave_out.clear();
   }
-  std::vector<std::string> odd;
+  std::vector<std::string> found;
   Result<std::vector<Recording>> recordings =
-      LoadRecordings(FLAGS_recordings, options.value(), &odd);
-  for (const std::string& warning : odd) Warn(warning);
-  if (warnings != nullptr) *warnings = odd;
+      LoadRecordings(FLAGS_recordings, options.value(), &found);
+  for (const std::string& warning : found) Warn(warning);
+  if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) return recordings;
   // Pushes may be written again where they were read; a motion cannot be had back.
   const Result<Manifest> manifest = ReadManifest(FLAGS_recordings);

@@ -185,7 +185,7 @@ Result<SensorPush> PushFromSensors(const Recording& recorded, const PendulumReco
     if (records[i].height_m && *records[i].height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
                                 " lies on the floor: what it measures is the ground's force on "
-                                "whoever stands there, which is no push");
+                                "the person who stands there, which is no push");
     }
     AddPush(push.value(), &result.push);
   }

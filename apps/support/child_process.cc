@@ -82,7 +82,7 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   close(out);
   close(err);
   if (child < 0) return Error{"no process can be started: " + std::string(std::strerror(reason))};
-  setpgid(child, child);  // in both, so that it is done whoever comes first
+  setpgid(child, child);  // in both, so that it is done whichever comes first
   return child;
 }
 

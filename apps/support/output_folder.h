@@ -7,7 +7,7 @@
 
 namespace pushid {
 
-// Earlier output of pushid-simulate may be replaced; somebody's real recordings may not. flag: the
+// Earlier output of pushid-simulate may be replaced; real recordings may not. flag: the
 // one that names the folder, for messages.
 MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder);
 

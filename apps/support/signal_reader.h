@@ -23,7 +23,7 @@ class SignalReader {
     sigprocmask(SIG_SETMASK, &before_, nullptr);
   }
 
-  // Until a child ends, somebody interrupts, or the time is up.
+  // Until a child ends, an interrupt comes, or the time is up.
   void Wait(int milliseconds) {
     pollfd waiting{descriptor_, POLLIN, 0};
     poll(&waiting, 1, milliseconds);

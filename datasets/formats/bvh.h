@@ -107,7 +107,7 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path,
 // end site gets one at its own place, which other programs insist on.
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit);
 
-// "there is no joint 'Hip'; it has Hips, Spine, ..." for whoever looks joints up by name.
+// "there is no joint 'Hip'; it has Hips, Spine, ..." for callers that look joints up by name.
 Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
                         const std::string& name);
 

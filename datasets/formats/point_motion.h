@@ -60,7 +60,7 @@ struct PointReadOptions {
 Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options = {});
 
-// "there is no point 'hip'; it has LASI, RASI, ..." for whoever looks points up by name.
+// "there is no point 'hip'; it has LASI, RASI, ..." for callers that look points up by name.
 Error UnknownPointError(const std::string& path, const std::vector<std::string>& names,
                         const std::string& name);
 

@@ -9,7 +9,7 @@
 namespace pushid {
 
 // Adds facts about the manifest at inspection->path, and a warning for every recording that cannot
-// be read and everything odd about the others.
+// be read and everything unusual about the others.
 MaybeError InspectManifest(Inspection* inspection);
 
 // "a, b, c, ... (51)": the first dozen names.

@@ -221,7 +221,7 @@ class MotionInspector {
   }
 
   // Whether the hip gathers speed before the onset, as a push makes it do, rather than coming with
-  // it: whoever walks in is as fast at first as later.
+  // it: a person who walks in is as fast at first as later.
   bool PushedFromRest(int first) const {
     const int end = found_.onset_frame, step = std::max(1, (end - first) / 4);
     const auto way = [&](int t) { return (found_.hip[t + step] - found_.hip[t]).norm(); };

@@ -97,8 +97,8 @@ class Maker {
     for (const std::string& name : pattern_.names()) {
       const std::string meant = MeantBy(name, kUnderstood);
       if (meant.empty() || pattern_.Has(meant)) continue;
-      made_.odd.push_back("the pattern has {" + name +
-                          "}, which only tells recordings apart; is {" + meant + "} meant?");
+      made_.warnings.push_back("the pattern has {" + name +
+                               "}, which only tells recordings apart; is {" + meant + "} meant?");
     }
   }
 
@@ -176,7 +176,7 @@ class Maker {
     recording.pushed_person = options_.pushed_person;
     if (recording.pushed_person >= static_cast<int>(files->size())) {
       return Error{"recording " + Quoted(id) + " has " + std::to_string(files->size()) +
-                   " people, so that nobody is person " + std::to_string(recording.pushed_person)};
+                   " people, so there is no person " + std::to_string(recording.pushed_person)};
     }
     SetPush(values, &recording);
     recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();

@@ -46,7 +46,7 @@ struct MadeManifest {
   int files = 0;                          // that fitted the pattern
   int others = 0;                         // that did not
   std::vector<std::string> without_push;  // recordings for which push_pattern named no file
-  std::vector<std::string> odd;           // what looks wrong about the pattern
+  std::vector<std::string> warnings;      // what looks wrong about the pattern
   std::vector<Error> unreadable;          // what is wrong with the files of recordings left out
 };
 

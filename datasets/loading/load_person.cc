@@ -87,7 +87,7 @@ class PersonLoader {
   }
 
  private:
-  // By whoever does not have to believe the file; the first one counts.
+  // By a reader that does not have to believe the file; the first one counts.
   std::optional<LengthUnit> UnitGiven() const {
     for (const auto& unit :
          {options_.length_unit, entry_.length_unit, manifest_.length_unit, mapping_.length_unit}) {

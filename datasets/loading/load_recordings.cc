@@ -63,8 +63,8 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
 
-  for (const std::string& odd : MisspeltKeys(entry)) {
-    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + odd);
+  for (const std::string& misspelt : MisspeltKeys(entry)) {
+    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + misspelt);
   }
 
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next

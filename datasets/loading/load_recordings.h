@@ -37,8 +37,8 @@ struct LoadOptions {
   PreparationOptions preparation{};
 };
 
-// Reads and checks the selected recordings, in the manifest's order. Things that look odd but can
-// be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
+// Reads and checks the selected recordings, in the manifest's order. Things that look unusual but
+// can be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
 // `warnings`.
 //
 // Besides what the readers of the single files refuse: fewer than three frames, a number of frames

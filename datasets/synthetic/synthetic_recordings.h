@@ -94,7 +94,7 @@ struct SyntheticRecording {
   std::vector<SyntheticSkeleton> skeletons;      // one per person
 };
 
-// Fails on unsound options, and when somebody falls (names recording, frame and quantity).
+// Fails on unsound options, and when a person falls (names recording, frame and quantity).
 Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticOptions& options);
 
 // The recordings alone.

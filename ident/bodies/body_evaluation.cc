@@ -1,4 +1,4 @@
-// ident: scores of restorations and yardsticks.
+// ident: scores of restorations and baselines.
 #include "ident/bodies/body_evaluation.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
-// ident: restored bodies beside the yardsticks that any restoration has to beat.
+// ident: restored bodies beside the baselines that any restoration has to beat.
 //
 //   restoration        predicted pendulum, restored
 //   true_pendulum      the recorded pendulum, restored: what the restoration itself errs
 //   rigid              predicted pendulum, first pose carried by the rod's tip
-//   static             nobody moves
+//   static             no person moves
 //   constant_velocity  the recording until the last push ends, then the pose carried on with the
 //                      hip's last velocity
 //   recorded           the recording against itself: its own FSE

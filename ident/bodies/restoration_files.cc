@@ -139,7 +139,7 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
         TakeCvae(&reader), coordinates == "tip" ? CvaeCoordinates::kTip : CvaeCoordinates::kLdp);
   } else {
     return Error{"the kind is " + Quoted(file.kind) +
-                     "; known are window and cvae (a peer, simlpe, is named by --peer)",
+                     "; known are window and cvae (simlpe is named by --peer)",
                  InFolder(folder, kJsonFile)};
   }
   if (!reader.problem().empty()) {

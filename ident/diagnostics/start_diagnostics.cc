@@ -26,7 +26,7 @@ constexpr double kMinFps = 10.0, kMaxFps = 2000.0;
 
 // Norms of the shared columns over the rows of data, per typical size of each parameter.
 std::vector<double> ColumnNorms(const FitProblem& problem, FitPoint point) {
-  const ScoreBlocks score = EvaluateScoreBlocks(problem.Build(&point, 0));
+  const JacobianBlocks score = EvaluateJacobianBlocks(problem.Build(&point, 0));
   std::vector<double> norms(point.shared.size(), 0.0);
   for (size_t i = 0; i < norms.size(); ++i) {
     const FittedParameter& f = problem.map().fitted[i];

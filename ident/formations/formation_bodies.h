@@ -1,5 +1,5 @@
 // ident: bodies for people who were never recorded: a formation's people get the skeleton and pose
-// of somebody recorded, or of the synthetic skeleton, and a restoration moves them.
+// of a recorded person, or of the synthetic skeleton, and a restoration moves them.
 #pragma once
 
 #include <vector>

@@ -111,7 +111,7 @@ std::vector<ForcePart> ActingParts(const FormationRun& run) {
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames) {
   FormationRun run;
   run.recording = AsRecording(scene);
-  // Nobody of a formation is a subject of the fit.
+  // No person of a formation is a subject of the fit.
   IdentifiedModel shared = model;
   shared.by_unit.clear();
   run.prediction = Predict(shared, run.recording, num_frames);

@@ -41,7 +41,7 @@ class WavePicture {
   double RowTop(int person) const { return kTop + row_ * person; }
   // The colour goes with the root of the speed: a wave that fades stays visible.
   double Fraction(double speed) const { return fastest_ > 0.0 ? std::sqrt(speed / fastest_) : 0.0; }
-  // Negative for whoever goes back more than aside.
+  // Negative for a person who goes back more than aside.
   int Level(int person, int frame) const {
     const int level =
         static_cast<int>(std::lround(Fraction(HipSpeed(run_, person, frame)) * (kColours - 1)));

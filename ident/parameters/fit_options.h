@@ -32,8 +32,8 @@ struct FitOptions {
 
   ResidualSigmas sigmas;
   RecordingWeight recording_weight = RecordingWeight::kRecording;
-  // Weight of the demonstrations (80 kg after 4, 25, 80 N s) in the cost; 0 where recovery of known
-  // parameters is measured, more where a fit keeps walking.
+  // Weight of the settling simulations (80 kg after 4, 25, 80 N s) in the cost; 0 where recovery of
+  // known parameters is measured, more where a fit keeps walking.
   double settling_weight = 0.0;
   // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
   // for models with no term that could feed a mode.

@@ -3,24 +3,25 @@
 
 namespace pushid {
 
-ContactBooks KeepBooks(const RolloutPath<double>& path, const ForceTrace& forces, double dt) {
+ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const ForceTrace& forces,
+                                          double dt) {
   const int people = path.num_people();
-  ContactBooks books;
-  books.work.assign(people, 0.0);
-  books.impulse.assign(people, Vector4<double>::Zero());
+  ContactEnergyBalance balance;
+  balance.work.assign(people, 0.0);
+  balance.impulse.assign(people, Vector4<double>::Zero());
   for (int t = 0; t + 1 < path.num_frames(); ++t) {
     double total = 0.0;
     for (int n = 0; n < people; ++n) {
       const Vector4<double> step = path.At(t + 1, n).q - path.At(t, n).q;
       const Vector4<double>& now = forces.At(t, n).interaction;
       const double work = 0.5 * (now + forces.At(t + 1, n).interaction).dot(step);
-      books.work[n] += work;
-      books.impulse[n] += dt * now;
+      balance.work[n] += work;
+      balance.impulse[n] += dt * now;
       total += work;
     }
-    (total < 0.0 ? books.absorbed : books.returned) += std::abs(total);
+    (total < 0.0 ? balance.absorbed : balance.returned) += std::abs(total);
   }
-  return books;
+  return balance;
 }
 
 Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt) {

@@ -1,4 +1,4 @@
-// ident: the books of contact along a rollout: work and impulse on each person.
+// ident: The contact energy balance along a rollout: work and impulse on each person.
 //
 // Work on a person between two frames: (Q_t + Q_t+1) / 2 . (q_t+1 - q_t), the trapezoid of the
 // generalized force along the path, so that a spring alone gives back what it took, whatever the
@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-struct ContactBooks {
+struct ContactEnergyBalance {
   std::vector<double> work;               // J, on each person
   std::vector<Vector4<double>> impulse;   // integral of the generalized force
   double absorbed = 0.0, returned = 0.0;  // J
@@ -21,7 +21,8 @@ struct ContactBooks {
 };
 
 // forces: those that drove the path (Rollout's trace); its last frame must hold them too.
-ContactBooks KeepBooks(const RolloutPath<double>& path, const ForceTrace& forces, double dt);
+ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const ForceTrace& forces,
+                                          double dt);
 
 // The integral of all pushes on a person, tails included, over the path's steps.
 Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt);

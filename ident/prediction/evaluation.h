@@ -2,7 +2,7 @@
 //
 // hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
 // the last frame. Means over recordings and, beside them, weighted by frames. Baselines: static
-// (nobody moves) and constant velocity (the recording until the last push ends, then on with the
+// (no person moves) and constant velocity (the recording until the last push ends, then on with the
 // last hip velocity).
 #pragma once
 
@@ -20,7 +20,7 @@ struct RecordingScore {
   int frames = 0;
   double hip_ade = 0.0, hip_fde = 0.0;  // m
   std::string failure;                  // why there is no score; such a recording is in no mean
-  bool fell = false;                    // somebody leaned beyond 1.0 rad
+  bool fell = false;                    // a person leaned beyond 1.0 rad
   bool fell_harder = false;             // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};    // empty for a single person and after a failure
 };

@@ -189,27 +189,28 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
                        const Prediction& prediction, PropagationScore* score) {
   if (score->people.empty() || !model.options.interaction.Any()) return;
   const double dt = recording.scene.dt;
-  const ContactBooks books = KeepBooks(prediction.path, prediction.forces, dt);
+  const ContactEnergyBalance balance = BalanceContactEnergy(prediction.path, prediction.forces, dt);
   const Vector2d along = PushDirection(recording);
   const std::vector<int> order = ByRank(score->people);
   double crossed = 0.0;  // from the last in rank to the first
   for (size_t k = order.size(); k-- > 0;) {
     PersonPropagation& person = score->people[order[k]];
     person.impulse_on = crossed;
-    person.contact_work = books.work[order[k]];
-    crossed += books.impulse[order[k]].head<2>().dot(along);
+    person.contact_work = balance.work[order[k]];
+    crossed += balance.impulse[order[k]].head<2>().dot(along);
   }
   const Vector4<double> push = PushImpulse(prediction.forces, recording.pushed_person, dt);
   auto& f = score->figures;
   f[kPushPassedOn] = {score->people[order[0]].impulse_on, push.head<2>().dot(along)};
-  for (size_t k = 1; k + 1 < order.size(); ++k) {  // the last in rank has nobody to pass it to
+  for (size_t k = 1; k + 1 < order.size();
+       ++k) {  // the last in rank has no neighbour to pass it to
     f[kContactPassedOn].sum += score->people[order[k]].impulse_on;
     f[kContactPassedOn].weight += score->people[order[k - 1]].impulse_on;
   }
-  f[kContactWork] = {books.TotalWork(), 1.0};
-  f[kContactAbsorbed] = {books.absorbed, 1.0};
+  f[kContactWork] = {balance.TotalWork(), 1.0};
+  f[kContactAbsorbed] = {balance.absorbed, 1.0};
   // Of mutual contact alone: LDP's terms and networks push without taking anything first.
-  if (!model.options.interaction.AtCarts()) f[kRestitution] = {books.returned, books.absorbed};
+  if (!model.options.interaction.AtCarts()) f[kRestitution] = {balance.returned, balance.absorbed};
 }
 
 }  // namespace pushid

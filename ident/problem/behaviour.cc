@@ -1,4 +1,4 @@
-// ident: the demonstrations and the free modes.
+// ident: the settling simulations and the free modes.
 #include "ident/problem/behaviour.h"
 
 #include <Eigen/Dense>
@@ -16,13 +16,14 @@ constexpr double kImpulses[] = {4.0, 25.0, 80.0};
 constexpr double kLineMass = 80.0;
 constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};
 
-Demonstration Demonstrate(const ModelOptions& options, const ParameterSet<double>& parameters,
-                          double mass, double impulse, int people) {
-  Demonstration result;
+SettlingSimulation SimulateSettling(const ModelOptions& options,
+                                    const ParameterSet<double>& parameters, double mass,
+                                    double impulse, int people) {
+  SettlingSimulation result;
   result.people = people;
   result.mass = mass;
   result.impulse = impulse;
-  const Scene scene = DemonstrationScene(mass, impulse, people);
+  const Scene scene = SettlingScene(mass, impulse, people);
   const int frames =
       scene.LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / scene.dt)) + 1;
   RolloutPath<double> path;
@@ -93,7 +94,7 @@ Eigen::MatrixXd LearnedStep(const SelfNetwork& network, const SelfForce& self,
 // Eigenvalues of one free step about rest, as growth rates. Where the cart stands does not matter:
 // x and y are no part of the state.
 double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
-  const Scene scene = DemonstrationScene(80.0, 0.0);
+  const Scene scene = SettlingScene(80.0, 0.0);
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   SelfForce::Jacobian jacobian;
@@ -129,9 +130,9 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 }  // namespace
 
-const Demonstration* Behaviour::FarthestBehind() const {
-  const Demonstration* farthest = nullptr;
-  for (const Demonstration& d : demonstrations) {
+const SettlingSimulation* Behaviour::FarthestBehind() const {
+  const SettlingSimulation* farthest = nullptr;
+  for (const SettlingSimulation& d : simulations) {
     if (d.fell || d.pushed_advance > -kBehind) continue;
     if (farthest == nullptr || d.pushed_advance < farthest->pushed_advance) farthest = &d;
   }
@@ -139,9 +140,9 @@ const Demonstration* Behaviour::FarthestBehind() const {
 }
 
 void Behaviour::Add(const Behaviour& other, const std::string& setting) {
-  for (Demonstration d : other.demonstrations) {
+  for (SettlingSimulation d : other.simulations) {
     d.setting = setting;
-    demonstrations.push_back(d);
+    simulations.push_back(d);
   }
   fastest_growth = std::max(fastest_growth, other.fastest_growth);
   settles = settles && other.settles;
@@ -151,16 +152,16 @@ void Behaviour::Add(const Behaviour& other, const std::string& setting) {
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
   Behaviour behaviour;
-  std::vector<Demonstration>& all = behaviour.demonstrations;
+  std::vector<SettlingSimulation>& all = behaviour.simulations;
   for (double mass : kMasses) {
     for (double impulse : kImpulses) {
-      all.push_back(Demonstrate(options, parameters, mass, impulse, 1));
+      all.push_back(SimulateSettling(options, parameters, mass, impulse, 1));
     }
   }
   if (options.interaction.Any()) {
     const size_t first = all.size();
     for (double impulse : kLineImpulses) {
-      all.push_back(Demonstrate(options, parameters, kLineMass, impulse, kLinePeople));
+      all.push_back(SimulateSettling(options, parameters, kLineMass, impulse, kLinePeople));
     }
     for (size_t i = first + 1; i < all.size(); ++i) {
       behaviour.harder_moves_farther =
@@ -170,7 +171,7 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;
   behaviour.self_propelling = behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
-  for (const Demonstration& d : all) {
+  for (const SettlingSimulation& d : all) {
     behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;
   }

@@ -1,4 +1,4 @@
-// ident: what a model does with people who are pushed and left alone: do they stand again?
+// ident: what a model does with people who are pushed and left alone: do they settle?
 // A fit can score well and never stop walking; this tells.
 #pragma once
 
@@ -19,8 +19,8 @@ inline constexpr double kSettledLean = 0.05;  // rad
 
 inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
 
-// The demonstration people two seconds after the last push, which goes forwards.
-struct Demonstration {
+// The people of the settling simulations two seconds after the last push, which goes forwards.
+struct SettlingSimulation {
   std::string setting;    // where settings differ: with whose parameters; empty: the shared ones
   int people = 1;         // more than one: in a line, the first one pushed
   double mass = 0.0;      // kg
@@ -37,22 +37,22 @@ struct Demonstration {
 struct Behaviour {
   // One person of 60, 80, 100 kg after 4, 25, 80 N s; where people touch, also five of 80 kg in a
   // line after 4, 20, 80 N s.
-  std::vector<Demonstration> demonstrations;
+  std::vector<SettlingSimulation> simulations;
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
   double fastest_growth = 0.0;
   // A rod that nothing pulls back neither grows nor decays, but for rounding.
   bool unstable() const { return fastest_growth > 1e-6; }
-  bool settles = false;  // every demonstration settled
+  bool settles = false;  // every settling simulation settled
   // Each line moved on farther along the push than the one pushed more weakly.
   bool harder_moves_farther = true;
-  // The person drives herself: an unstable free mode, negative damping of the cart, or a fall. One
-  // who is merely slow to stand again does not.
+  // The person is driven by the fitted forces: an unstable free mode, negative damping of the cart,
+  // or a fall. One who is merely slow to settle is not.
   bool self_propelling = false;
 
-  // The demonstration whose pushed person ends farthest behind the start, beyond kBehind; nullptr
-  // when there is none.
-  const Demonstration* FarthestBehind() const;
+  // The settling simulation whose pushed person ends farthest behind the start, beyond kBehind;
+  // nullptr when there is none.
+  const SettlingSimulation* FarthestBehind() const;
 
   // Adds what people do in one setting.
   void Add(const Behaviour& other, const std::string& setting);

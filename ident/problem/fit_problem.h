@@ -70,7 +70,7 @@ class FitProblem {
     std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
-    int rests_left_out = 0;  // demonstrations that could not be rolled out to their end here
+    int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
   };
 
   // hold_network: its weights are constant.

@@ -4,7 +4,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/equation_error_residual.h"
-#include "residuals/cost_functions/mode_residual.h"
+#include "residuals/cost_functions/modal_stability_residual.h"
 #include "residuals/cost_functions/network_takeover.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
@@ -12,9 +12,9 @@
 namespace pushid {
 namespace {
 
-constexpr double kDemonstrationMass = 80.0;                     // kg
-constexpr double kDemonstrationImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
-constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};           // N s, on the first in a line
+constexpr double kSettlingMass = 80.0;                     // kg
+constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
+constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 }  // namespace
@@ -101,7 +101,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     built->blocks.push_back(
         {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
   };
-  // Where settings differ, people must stand again in each of them.
+  // Where settings differ, people must settle in each of them.
   std::vector<std::string> units = {""};
   if (map_.num_deviations > 0 && map_.pool_by == PoolBy::kSetting) {
     for (const auto& [unit, values] : point->unit) units.push_back(unit);
@@ -112,21 +112,21 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     std::vector<double*> rollout_blocks = blocks;
     if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
     const auto settle = [&](double impulse, int people) {
-      const Scene scene = DemonstrationScene(kDemonstrationMass, impulse, people);
+      const Scene scene = SettlingScene(kSettlingMass, impulse, people);
       add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight,
                           unit),
           rollout_blocks);
     };
     if (options_.settling_weight > 0.0) {
-      for (double impulse : kDemonstrationImpulses) settle(impulse, 1);
+      for (double impulse : kSettlingImpulses) settle(impulse, 1);
       if (options_.model.interaction.Any()) {
         for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
       }
     }
     if (options_.mode_weight > 0.0) {
-      const Body body = DemonstrationScene(kDemonstrationMass, 0.0).people[0].body;
-      auto* cost = new ModeResidual(options_.model, body, map_, options_.mode_margin,
-                                    options_.mode_weight, !unit.empty());
+      const Body body = SettlingScene(kSettlingMass, 0.0).people[0].body;
+      auto* cost = new ModalStabilityResidual(options_.model, body, map_, options_.mode_margin,
+                                              options_.mode_weight, !unit.empty());
       built->blocks.push_back(
           {built->problem->AddResidualBlock(cost, nullptr, blocks), kPriorCluster});
     }
@@ -161,7 +161,7 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
         {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
   }
   AddPriors(point, &built);
-  // The demonstrations are long rollouts: they join once the horizon is as long.
+  // The settling simulations are long rollouts: they join once the horizon is as long.
   if (horizon == 0) {
     AddRest(point, &built);
   } else {

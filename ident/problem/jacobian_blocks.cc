@@ -6,7 +6,7 @@
 
 namespace pushid {
 
-ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
+JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   std::map<const double*, int> column_of;
   int columns = 0, rows = 0;
@@ -18,7 +18,7 @@ ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
     rows += built.problem->GetCostFunctionForResidualBlock(id)->num_residuals();
   }
 
-  ScoreBlocks score;
+  JacobianBlocks score;
   score.jacobian = Eigen::MatrixXd::Zero(rows, columns);
   score.residuals.resize(rows);
   std::set<int> present;
@@ -51,7 +51,7 @@ ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built) {
   return score;
 }
 
-std::vector<int> ScoreBlocks::RowsOf(int cluster) const {
+std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(cluster_of_row.size()); ++row) {
     if (cluster_of_row[row] == cluster) rows.push_back(row);
@@ -65,7 +65,8 @@ constexpr double kDifference = 1e-4;
 
 }  // namespace
 
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit, ScoreBlocks* score) {
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit,
+                  JacobianBlocks* score) {
   const Eigen::Index size = score->jacobian.cols();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index column = 0;
@@ -75,9 +76,9 @@ void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit, S
       if (step == 0.0) continue;
       const double value = block[k];
       block[k] = value + step;
-      const ScoreBlocks above = EvaluateScoreBlocks(built);
+      const JacobianBlocks above = EvaluateJacobianBlocks(built);
       block[k] = value - step;
-      const ScoreBlocks below = EvaluateScoreBlocks(built);
+      const JacobianBlocks below = EvaluateJacobianBlocks(built);
       block[k] = value;
       if (above.cluster_of_row != score->cluster_of_row ||
           below.cluster_of_row != score->cluster_of_row) {

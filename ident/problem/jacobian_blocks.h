@@ -8,7 +8,7 @@
 
 namespace pushid {
 
-struct ScoreBlocks {
+struct JacobianBlocks {
   Eigen::MatrixXd jacobian;  // all residuals x all fitted numbers
   Eigen::VectorXd residuals;
   std::vector<int> cluster_of_row;  // recording, or a cluster of FitProblem
@@ -21,11 +21,12 @@ struct ScoreBlocks {
   std::vector<int> RowsOf(int cluster) const;
 };
 
-ScoreBlocks EvaluateScoreBlocks(const FitProblem::Built& built);
+JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built);
 
 // Central differences of the gradient J'r, one column at a time, a ten-thousandth of `unit` to
 // either side (0: a column that does not move). Leaves the curvature empty where some residual
 // cannot be evaluated beside the point.
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit, ScoreBlocks* score);
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit,
+                  JacobianBlocks* score);
 
 }  // namespace pushid

@@ -71,7 +71,7 @@ void Adviser::Solver() {
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
     if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-      Add("The law of the rod moves nobody's rod; leave it out.", Same().Set("rod", "constant"));
+      Add("The law of the rod moves no rod; leave it out.", Same().Set("rod", "constant"));
       continue;
     }
     Add("The data cannot say: " + n.sentence + ". Hold one of them.",
@@ -117,12 +117,12 @@ void Adviser::Person() {
         Same().Set("rod", "constant"));
   } else if (result_.behaviour.self_propelling) {
     const bool tail = result_.options.model.push_tail == PushTail::kExponential;
-    Add(tail ? "The fitted person drives herself; hold the fit to people who stand again."
-             : "The fitted person drives herself; let a push tail carry what the recorded push "
+    Add(tail ? "The fitted person is self-propelling; hold the fit to people who settle."
+             : "The fitted person is self-propelling; let a push tail carry what the recorded push "
                "leaves out.",
         tail ? SettleHarder(kMuchSettling) : Same().Set("push_tail", "exponential"));
   } else if (!result_.behaviour.settles) {
-    Add("The fitted person is slow to stand again; see what holding it to settle costs.",
+    Add("The fitted person is slow to settle; see what holding it to settle costs.",
         SettleHarder(kSomeSettling));
   }
 }

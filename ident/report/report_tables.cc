@@ -10,8 +10,8 @@
 namespace pushid {
 
 bool SettingsDiffer(const Behaviour& behaviour) {
-  return std::any_of(behaviour.demonstrations.begin(), behaviour.demonstrations.end(),
-                     [](const Demonstration& d) { return !d.setting.empty(); });
+  return std::any_of(behaviour.simulations.begin(), behaviour.simulations.end(),
+                     [](const SettlingSimulation& d) { return !d.setting.empty(); });
 }
 
 namespace {
@@ -22,17 +22,17 @@ std::string Interval(double lower, double upper) {
 
 std::string SettlingText(const Behaviour& b) {
   if (b.settles) {
-    const bool lines = std::any_of(b.demonstrations.begin(), b.demonstrations.end(),
-                                   [](const Demonstration& d) { return d.people > 1; });
+    const bool lines = std::any_of(b.simulations.begin(), b.simulations.end(),
+                                   [](const SettlingSimulation& d) { return d.people > 1; });
     return std::string(
-               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg stand again within "
+               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg settle within "
                "two seconds") +
            (lines ? "; so do lines of five after 4, 20 and 80 N s\n" : "\n");
   }
   std::string text = "NOT SETTLING, two seconds after a push:\n";
-  for (const Demonstration& d : b.demonstrations) {
+  for (const SettlingSimulation& d : b.simulations) {
     if (d.settled) continue;
-    text += "  " + DemonstrationName(d, SettingsDiffer(b)) + ": " +
+    text += "  " + SettlingSimulationName(d, SettingsDiffer(b)) + ": " +
             (d.fell ? "fell"
                     : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
                           " rad from rest") +
@@ -45,8 +45,8 @@ std::string SettlingText(const Behaviour& b) {
 std::string NoFartherText(const Behaviour& b) {
   if (b.harder_moves_farther) return "";
   std::string where;
-  const Demonstration* before = nullptr;
-  for (const Demonstration& d : b.demonstrations) {
+  const SettlingSimulation* before = nullptr;
+  for (const SettlingSimulation& d : b.simulations) {
     if (d.people == 1) continue;
     const std::string name = d.setting.empty() ? "shared values" : d.setting;
     const bool harder = before != nullptr && before->setting == d.setting;
@@ -61,7 +61,7 @@ std::string NoFartherText(const Behaviour& b) {
 
 }  // namespace
 
-std::string DemonstrationName(const Demonstration& d, bool settings_differ) {
+std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ) {
   const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
   const std::string where = !d.setting.empty() ? d.setting + ": "
                             : settings_differ  ? "shared values: "
@@ -153,9 +153,9 @@ TextTable LinesTable(const FitResult& result) {
                    "either way, m"},
                   {true, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
-  for (const Demonstration& d : result.behaviour.demonstrations) {
+  for (const SettlingSimulation& d : result.behaviour.simulations) {
     if (d.people == 1) continue;
-    table.Add({DemonstrationName(d, differ), Significant(d.advance, 2),
+    table.Add({SettlingSimulationName(d, differ), Significant(d.advance, 2),
                Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
   }
   return table;
@@ -166,8 +166,8 @@ TextTable BehaviourTable(const FitResult& result) {
                    "m moved on", "the pushed, m"},
                   {true, true, false, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
-  for (const Demonstration& d : result.behaviour.demonstrations) {
-    table.Add({DemonstrationName(d, differ),
+  for (const SettlingSimulation& d : result.behaviour.simulations) {
+    table.Add({SettlingSimulationName(d, differ),
                d.fell      ? "fell"
                : d.settled ? "stands"
                            : "still moving",

@@ -25,11 +25,11 @@ std::string CorrelationText(const FitResult& result);
 // "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
 // for the shared values and say so.
 bool SettingsDiffer(const Behaviour& behaviour);
-std::string DemonstrationName(const Demonstration& d, bool settings_differ);
+std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ);
 
-// What people do after a push, in words, and demonstration by demonstration.
+// What people do after a push, in words, and settling simulation by settling simulation.
 std::string BehaviourText(const FitResult& result);
-// Where lines that are pushed forwards at their first person end up; only a header where nobody
+// Where lines that are pushed forwards at their first person end up; only a header where no person
 // touches.
 TextTable LinesTable(const FitResult& result);
 TextTable BehaviourTable(const FitResult& result);

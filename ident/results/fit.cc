@@ -138,18 +138,19 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
                        "--network_prior or --rod=constant holds it)");
   } else if (result.behaviour.self_propelling) {
     warnings.push_back(
-        "self-propelling: the fitted person drives herself after a push; such a fit may score well "
+        "self-propelling: the fitted forces drive the person after a push; such a fit may score "
+        "well "
         "and predicts nothing beyond the data (--settling_weight holds it to settle)");
   } else if (!result.behaviour.settles) {
     warnings.push_back(
-        "slow to settle: the fitted person stands again later than two seconds after "
+        "slow to settle: the fitted person settles later than two seconds after "
         "some pushes (--settling_weight holds it to settle sooner)");
   }
-  if (const Demonstration* d = result.behaviour.FarthestBehind()) {
+  if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
     warnings.push_back("pushed forwards by " + Significant(d->impulse) + " N s, the pushed person" +
                        (d->people > 1 ? " of the line" : "") + " ends " +
                        Significant(-d->pushed_advance, 2) + " m behind the start (" +
-                       DemonstrationName(*d, SettingsDiffer(result.behaviour)) + ")");
+                       SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   if (result.uncertainty.num_clusters == 1) {
     warnings.push_back("a single recording: errors cannot be clustered and are too small");

@@ -93,7 +93,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 
 IdentifiedModel ModelOf(const FitResult& result);
 
-// Whether a rod that moves makes a person unstable at rest who stands again after pushes: settling
+// Whether a rod that moves makes a person unstable at rest who settles after pushes: settling
 // cannot hold it.
 bool RodRunsAway(const FitResult& result);
 

@@ -59,7 +59,7 @@ Behaviour BehaviourFrom(const Json& json) {
   b.fastest_growth = NumberFrom(json.at("fastest_growth_per_s"));
   b.harder_moves_farther = json.at("harder_moves_farther");
   for (const Json& from : json.at("demonstrations")) {
-    Demonstration d;
+    SettlingSimulation d;
     d.setting = from.at("setting");
     d.people = from.at("people");
     d.mass = from.at("mass_kg");
@@ -72,7 +72,7 @@ Behaviour BehaviourFrom(const Json& json) {
     d.pushed_advance = NumberFrom(from.value("pushed_advance_m", Json(0.0)));
     d.fell = from.at("fell");
     d.settled = from.at("settled");
-    b.demonstrations.push_back(d);
+    b.simulations.push_back(d);
   }
   return b;
 }

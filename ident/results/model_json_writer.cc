@@ -90,25 +90,25 @@ Json EstimatesJson(const std::vector<Estimate>& estimates) {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const Behaviour& b) {
-  Json demonstrations = Json::array();
-  for (const Demonstration& d : b.demonstrations) {
-    demonstrations.push_back({{"setting", d.setting},
-                              {"people", d.people},
-                              {"mass_kg", d.mass},
-                              {"impulse_Ns", d.impulse},
-                              {"speed_m_s", NumberJson(d.speed)},
-                              {"lean_rad", NumberJson(d.lean)},
-                              {"distance_m", NumberJson(d.distance)},
-                              {"advance_m", NumberJson(d.advance)},
-                              {"pushed_advance_m", NumberJson(d.pushed_advance)},
-                              {"fell", d.fell},
-                              {"settled", d.settled}});
+  Json simulations = Json::array();
+  for (const SettlingSimulation& d : b.simulations) {
+    simulations.push_back({{"setting", d.setting},
+                           {"people", d.people},
+                           {"mass_kg", d.mass},
+                           {"impulse_Ns", d.impulse},
+                           {"speed_m_s", NumberJson(d.speed)},
+                           {"lean_rad", NumberJson(d.lean)},
+                           {"distance_m", NumberJson(d.distance)},
+                           {"advance_m", NumberJson(d.advance)},
+                           {"pushed_advance_m", NumberJson(d.pushed_advance)},
+                           {"fell", d.fell},
+                           {"settled", d.settled}});
   }
   return {{"settles", b.settles},
           {"self_propelling", b.self_propelling},
           {"fastest_growth_per_s", NumberJson(b.fastest_growth)},
           {"harder_moves_farther", b.harder_moves_farther},
-          {"demonstrations", demonstrations}};
+          {"demonstrations", simulations}};
 }
 
 nlohmann::ordered_json SettingsJson(const FitOptions& options) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStartBox = 5.0;
 constexpr double kOffBound = 0.1;
-constexpr double kNetworkTolerance = 1e-6;  // of the cost: what more would bring nobody sees
+constexpr double kNetworkTolerance = 1e-6;  // of the cost: what more would bring cannot be seen
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -38,7 +38,7 @@ std::string HorizonName(int horizon) {
 }
 
 // QR keeps weak directions accurate, and is twice the work of normal equations: up to so many
-// multiplications nobody notices.
+// multiplications do not matter.
 constexpr double kQrWork = 2e7;
 // More columns than these are those of units (subjects, settings), of which a recording has few:
 // sparse normal equations cost a tenth then, and every unit's column has its prior.

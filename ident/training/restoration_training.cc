@@ -86,7 +86,7 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
                                             const TrainingProgress& progress) {
   const auto train = options.kind == "window"   ? TrainWindow
                      : options.kind == "cvae"   ? TrainCvae
-                     : options.kind == "simlpe" ? TrainPeer
+                     : options.kind == "simlpe" ? TrainSimlpe
                                                 : nullptr;
   if (train == nullptr) {
     return Error{"--kind is '" + options.kind + "'; it must be window, cvae or simlpe"};

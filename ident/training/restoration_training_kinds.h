@@ -12,11 +12,11 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
                                      const RestorationTrainingOptions& options,
                                      const TrainingProgress& progress);
 
-// The peer learns from the true motions alone.
-Result<TrainedRestoration> TrainPeer(const std::vector<RestorationSample>& training,
-                                     const std::vector<RestorationSample>& held,
-                                     const RestorationTrainingOptions& options,
-                                     const TrainingProgress& progress);
+// siMLPe learns from the true motions alone.
+Result<TrainedRestoration> TrainSimlpe(const std::vector<RestorationSample>& training,
+                                       const std::vector<RestorationSample>& held,
+                                       const RestorationTrainingOptions& options,
+                                       const TrainingProgress& progress);
 
 // `epochs` times the options' effort of a dense network, or until it is done, with checkpoints
 // under `key`. Adds points to trained->curve; returns the best weights.

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <numeric>
 
-#include "ident/bodies/peer.h"
+#include "ident/bodies/simlpe_files.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {
@@ -36,15 +36,15 @@ std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vecto
   return picked;
 }
 
-// A restoration beside its yardsticks; the peer alone.
+// A restoration beside its baselines; siMLPe alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const PostprocessOptions& postprocess,
                                 const BodyRecording& recording) {
   BodyScores scores;
-  if (file.kind == kPeerKind) {
-    const Result<PeerWeights> peer = MakePeer(file, "");
-    if (!peer.ok()) return peer.error();
-    ScorePeer(peer.value(), recording, &scores);
+  if (file.kind == kSimlpeKind) {
+    const Result<SimlpeWeights> simlpe = MakeSimlpe(file, "");
+    if (!simlpe.ok()) return simlpe.error();
+    ScoreSimlpe(simlpe.value(), recording, &scores);
     return scores;
   }
   const auto restoration = MakeRestoration(file, "");
@@ -61,7 +61,7 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   std::vector<RolloutPath<double>> paths;
-  if (options.predicted_pendulums && options.training.kind != kPeerKind) {
+  if (options.predicted_pendulums && options.training.kind != kSimlpeKind) {
     paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
                              options.training.seed, [&](int fold, int folds) {
                                if (progress) {

@@ -17,7 +17,7 @@ bool IsMinimum(const Eigen::LDLT<Eigen::MatrixXd>& hessian) {
 
 // In the coordinates of `back`'s columns (a base of the identified subspace), with their Hessian H:
 // H^-1/2 (1 - M)^-1/2 H^-1/2 s_g for each cluster, M = H^-1/2 J_g'J_g H^-1/2.
-Eigen::MatrixXd UnbiasedMoves(const ScoreBlocks& score, const Eigen::MatrixXd& back,
+Eigen::MatrixXd UnbiasedMoves(const JacobianBlocks& score, const Eigen::MatrixXd& back,
                               const Eigen::MatrixXd& hessian) {
   const Eigen::MatrixXd root =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).operatorInverseSqrt();
@@ -37,7 +37,7 @@ Eigen::MatrixXd UnbiasedMoves(const ScoreBlocks& score, const Eigen::MatrixXd& b
 }
 
 // H^-1 s_g G / (G - 1) for each cluster.
-Eigen::MatrixXd LeftOutMoves(const ScoreBlocks& score, const Eigen::MatrixXd& inverse_hessian) {
+Eigen::MatrixXd LeftOutMoves(const JacobianBlocks& score, const Eigen::MatrixXd& inverse_hessian) {
   const double groups = static_cast<double>(score.clusters.size());
   Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
   for (size_t g = 0; g < score.clusters.size(); ++g) {
@@ -73,7 +73,7 @@ Directions Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
   return directions;
 }
 
-Covariance ComputeCovariance(const ScoreBlocks& score, const Eigen::VectorXd& unit,
+Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
                              double null_value) {
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   Covariance c;

@@ -51,7 +51,7 @@ struct Covariance {
 };
 
 // unit: the size of one step in each column, for judging what counts as null; 0 holds a column.
-Covariance ComputeCovariance(const ScoreBlocks& score, const Eigen::VectorXd& unit,
+Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
                              double null_value = kNullSingularValue);
 
 }  // namespace pushid

@@ -1,5 +1,5 @@
-// ident: profile likelihood: how far a parameter can be moved before the data object, everything
-// else refitted at every step.
+// ident: profile likelihood: how far a parameter can be moved before the cost rises too far,
+// everything else refitted at every step.
 //
 //   profile(v) = min of the cost C over all fitted numbers with parameter = v,  C = |r|^2 / 2
 //   interval   = { v : 2 (profile(v) - C_min) <= threshold }

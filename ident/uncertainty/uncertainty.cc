@@ -77,9 +77,9 @@ std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
 // d fitted / d (natural / scale): the change of variables to physical units.
 double PhysicalUnit(const Column& c) { return c.scale / TransformSlope(c.transform, c.natural); }
 
-// Directions that the recordings say nothing about, whatever priors and demonstrations say: a
+// Directions that the recordings say nothing about, whatever priors and settling simulations say: a
 // number that only its prior holds is not identified.
-Eigen::MatrixXd DataNullSpace(const ScoreBlocks& score, const Eigen::MatrixXd& scaled,
+Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd& scaled,
                               const std::vector<Column>& columns) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
@@ -150,14 +150,14 @@ Eigen::VectorXd Units(const std::vector<Column>& columns) {
 
 // Residuals, Jacobian and, unless there are too many columns, second derivatives.
 struct Evaluated {
-  ScoreBlocks score;
+  JacobianBlocks score;
   std::vector<Column> columns;
   Eigen::VectorXd unit;
 };
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateScoreBlocks(built), Columns(problem, point), {}};
+  Evaluated e{EvaluateJacobianBlocks(built), Columns(problem, point), {}};
   e.unit = Units(e.columns);
   if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
     AddCurvature(built, e.unit, &e.score);

@@ -149,7 +149,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       ++result.fits;
       result.settling += fold.behaviour->settles;
       result.harder_farther += fold.behaviour->harder_moves_farther;
-      for (const Demonstration& d : fold.behaviour->demonstrations) {
+      for (const SettlingSimulation& d : fold.behaviour->simulations) {
         result.slowest_to_settle = std::max(result.slowest_to_settle, d.speed);
       }
     }

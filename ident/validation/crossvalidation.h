@@ -24,7 +24,7 @@ struct Fold {
 };
 
 // For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
-// Errors: fewer recordings or subjects than the scheme needs, nobody pushed strongly.
+// Errors: fewer recordings or subjects than the scheme needs, no strong push.
 Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
 
@@ -62,8 +62,8 @@ struct CrossValidation {
   ScoreSummary summary;
   int failures = 0, falls = 0, falls_harder = 0;  // over all folds
   // Over all folds whose model was fitted: how many, how many of them settle in every
-  // demonstration, how many move a line on the farther the harder it is pushed, and the fastest
-  // anybody still is two seconds after a push.
+  // settling simulation, how many move a line on the farther the harder it is pushed, and the
+  // fastest anybody still is two seconds after a push.
   int fits = 0, settling = 0, harder_farther = 0;
   double slowest_to_settle = 0.0;  // m/s
 };

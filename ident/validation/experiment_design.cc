@@ -85,7 +85,7 @@ Eigen::MatrixXd CandidateJacobian(const FitProblem& problem, const FitPoint& est
   FitPoint point = alone.NominalPoint();
   point.shared = estimate.shared;
   const FitProblem::Built built = alone.Build(&point, 0);
-  return EvaluateScoreBlocks(built).jacobian.leftCols(problem.map().num_shared());
+  return EvaluateJacobianBlocks(built).jacobian.leftCols(problem.map().num_shared());
 }
 
 }  // namespace

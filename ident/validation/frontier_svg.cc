@@ -44,7 +44,7 @@ void DrawAxes(const SvgScale& across, const SvgScale& up, SvgPicture* svg) {
     svg->Text(kLeft - 8, up(tick) + 4, Significant(tick, 3), "ink end small");
   }
   svg->Text((kLeft + kRight) / 2, kBottom + 42,
-            "fastest cart two seconds after a push, any fold and demonstration (m/s)",
+            "fastest cart two seconds after a push, any fold and settling simulation (m/s)",
             "ink middle");
   svg->Text(kLeft, kTop - 14, "hipADE (m), with its standard error", "ink");
 }

@@ -1,4 +1,4 @@
-// ident: the model, the baselines and the ridge yardstick.
+// ident: the model, the baselines and the ridge baseline.
 #include "ident/validation/predictors.h"
 
 #include <Eigen/Dense>

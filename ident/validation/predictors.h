@@ -1,4 +1,4 @@
-// ident: the predictors that cross-validation compares: an identified model, and the yardsticks
+// ident: the predictors that cross-validation compares: an identified model, and the baselines
 // that any model has to beat.
 #pragma once
 

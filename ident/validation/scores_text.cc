@@ -90,16 +90,16 @@ std::string ConclusionText(const PairedDifference& d) {
 
 }  // namespace
 
-std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
+std::string CrossValidationText(const std::vector<CrossValidation>& candidates) {
   std::string text;
-  if (rivals.empty()) return text;
-  const bool groups = rivals[0].summary.propagation.recordings > 0;
+  if (candidates.empty()) return text;
+  const bool groups = candidates[0].summary.propagation.recordings > 0;
   std::vector<std::string> header = {"fold", "held out", "hipADE m", "hipFDE m", "failed", "fell"};
   if (groups) header.insert(header.end(), {"onset error", "missed movers", "false movers"});
   std::vector<bool> left(header.size(), false);
   left[0] = true;
   TextTable folds(header, left);
-  for (const FoldScore& fold : rivals[0].folds) {
+  for (const FoldScore& fold : candidates[0].folds) {
     std::vector<std::string> row = {fold.name,
                                     std::to_string(fold.held_out),
                                     Significant(fold.hip_ade, 3),
@@ -114,37 +114,38 @@ std::string CrossValidationText(const std::vector<CrossValidation>& rivals) {
   }
   text += folds.ToString() + "\n";
   TextTable table(
-      {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + rivals[0].predictor,
+      {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + candidates[0].predictor,
        "failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""},
       {true, true, true, true, true, false, false, false, false, false});
-  const auto folds_that = [](int number, const CrossValidation& rival) {
-    return rival.fits > 0 ? std::to_string(number) + " of " + std::to_string(rival.fits) : "";
+  const auto folds_that = [](int number, const CrossValidation& candidate) {
+    return candidate.fits > 0 ? std::to_string(number) + " of " + std::to_string(candidate.fits)
+                              : "";
   };
-  for (const CrossValidation& rival : rivals) {
-    const MeanScore& mean = rival.summary.mean;
-    const MeanScore& frames = rival.summary.frame_weighted;
-    const PairedDifference difference = Compare(rivals[0], rival);
-    const bool compared = &rival != &rivals[0] && difference.recordings > 0;
-    table.Add({rival.predictor, WithError(mean.hip_ade, mean.hip_ade_error, mean),
+  for (const CrossValidation& candidate : candidates) {
+    const MeanScore& mean = candidate.summary.mean;
+    const MeanScore& frames = candidate.summary.frame_weighted;
+    const PairedDifference difference = Compare(candidates[0], candidate);
+    const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
+    table.Add({candidate.predictor, WithError(mean.hip_ade, mean.hip_ade_error, mean),
                WithError(mean.hip_fde, mean.hip_fde_error, mean),
                Significant(frames.hip_ade, 3) + " / " + Significant(frames.hip_fde, 3),
                compared ? Significant(difference.hip_ade, 2) + " +- " +
                               Significant(difference.hip_ade_error, 2)
                         : "",
-               std::to_string(rival.failures), std::to_string(rival.falls),
-               rival.fits > 0 ? std::to_string(rival.falls_harder) : "",
-               folds_that(rival.settling, rival),
-               groups ? folds_that(rival.harder_farther, rival) : ""});
+               std::to_string(candidate.failures), std::to_string(candidate.falls),
+               candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
+               folds_that(candidate.settling, candidate),
+               groups ? folds_that(candidate.harder_farther, candidate) : ""});
   }
   text += table.ToString() +
           "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
-  for (size_t i = 1; i < rivals.size(); ++i) {
-    text += ConclusionText(Compare(rivals[0], rivals[i])) + "\n";
+  for (size_t i = 1; i < candidates.size(); ++i) {
+    text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
   if (!groups) return text;
   std::vector<PropagationColumn> columns;
-  for (const CrossValidation& rival : rivals) {
-    columns.push_back({rival.predictor, &rival.summary.propagation});
+  for (const CrossValidation& candidate : candidates) {
+    columns.push_back({candidate.predictor, &candidate.summary.propagation});
   }
   return text + "\n" + PropagationText(columns);
 }

@@ -9,7 +9,7 @@
 namespace pushid {
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
-// One column per summary: all recordings, one setting, one rival.
+// One column per summary: all recordings, one setting, one candidate.
 struct PropagationColumn {
   std::string name;
   const PropagationSummary* summary;
@@ -20,6 +20,6 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary)
 // A line per recording of several people.
 std::string OnsetsText(const std::vector<RecordingScore>& scores);
 
-std::string CrossValidationText(const std::vector<CrossValidation>& rivals);
+std::string CrossValidationText(const std::vector<CrossValidation>& candidates);
 
 }  // namespace pushid

@@ -1,7 +1,7 @@
 // models: LibTorch kept in one place: what the trainers share. Included by *_torch.cc files alone.
 #pragma once
 
-// LibTorch and glog both define LOG and CHECK: whoever includes this includes no glog.
+// LibTorch and glog both define LOG and CHECK: a file that includes this includes no glog.
 #include <torch/torch.h>
 
 #include <cmath>

@@ -18,7 +18,7 @@
 //   const AdjointCost cost = gradient.value().Evaluate(shared, weights, by_shared, by_weight);
 //
 // Shared parameters (on the fitted scale) and weights only: deviations of units and free initial
-// velocities are few and belong to Gauss-Newton. Nobody touches anybody.
+// velocities are few and belong to Gauss-Newton. No people touch.
 #pragma once
 
 #include <memory>

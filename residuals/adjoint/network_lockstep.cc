@@ -67,7 +67,7 @@ void NetworkLockstep::Start(const double* weights) {
   hidden_carry_.setZero();
   cell_carry_.setZero();
   if (shape_.kind != NetworkKind::kMlp) return;
-  // By the same product as every step's: nobody at rest must feel any force, not even by rounding.
+  // By the same product as every step's: a person at rest must feel no force, not even by rounding.
   Columns z = Columns::Zero(shape_.gate_width(), context_.cols());
   z.bottomRows<2>() = context_;
   right_.Pack(z.data(), static_cast<int>(z.cols()), static_cast<int>(z.rows()), z.rows(), 1);

@@ -33,7 +33,7 @@ class NetworkLockstep {
   // inputs: u, one column for each who is active. forces: 4 x active.
   void Forward(int step, const Columns& inputs, Columns* forces);
 
-  // Somebody leaves after a step: nothing of it is kept, and there is no memory after it.
+  // A person leaves after a step: nothing of it is kept, and there is no memory after it.
   void Forget(int step, int column);
 
   // From the last step to the first: the adjoints of a step's forces to those of its inputs.

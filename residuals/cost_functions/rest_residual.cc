@@ -7,16 +7,16 @@
 
 namespace pushid {
 
-RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
+RestProblem SettlingProblem(const Scene& scene, const ModelOptions& options,
                             const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
                             const std::string& unit) {
   RestProblem problem;
-  problem.scene = demonstration;
+  problem.scene = scene;
   problem.options = options;
   problem.map = map;
-  // Nobody in particular: only the shared block.
+  // No particular person: only the shared block.
   if (unit.empty()) problem.map.num_deviations = 0;
-  const std::vector<std::string> units(demonstration.people.size(), unit);
+  const std::vector<std::string> units(scene.people.size(), unit);
   problem.layout = BlockLayout(problem.map, units, false);
   problem.sigmas = sigmas;
   problem.weight = weight;

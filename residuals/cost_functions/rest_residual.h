@@ -1,14 +1,14 @@
-// residuals: somebody who was pushed shall stand again (settling), and shall not fall soon after
+// residuals: a pushed person shall settle, and shall not fall soon after
 // the recording ends (stability).
 //
 //   r = weight * sqrt(1 / (frames people)) [ cart velocity / s_velocity   2 (settling only)
 //                                   (angles - rest) / s_angle    2
 //                                   angular rates / s_rate       2 ]   for frames first .. last - 1
 // in the sigmas of frame_residual.h; `rest` is the upright or initial posture the balance aims at.
-// Settling: the demonstration people (models/scene.h), frames 110 to 180 (1.8 to 3 s at 60 Hz).
-// Stability: a recording's rollout continued beyond the data, with its push times a factor.
-// Both are non-zero at the truth of synthetic data, so they bias a fit: leave them out where
-// recovery or coverage is measured.
+// Settling: the people of the settling simulations (models/scene.h), frames 110 to 180 (1.8 to 3 s
+// at 60 Hz). Stability: a recording's rollout continued beyond the data, with its push times a
+// factor. Both are non-zero at the truth of synthetic data, so they bias a fit: leave them out
+// where recovery or coverage is measured.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -37,9 +37,9 @@ struct RestProblem {
   int residuals_per_frame() const { return penalize_velocity ? 6 : 4; }
 };
 
-// A demonstration (models/scene.h) of people with the shared parameters, or with those of `unit`
-// (whose deviations are then the second block).
-RestProblem SettlingProblem(const Scene& demonstration, const ModelOptions& options,
+// A settling simulation (models/scene.h) of people with the shared parameters, or with those of
+// `unit` (whose deviations are then the second block).
+RestProblem SettlingProblem(const Scene& scene, const ModelOptions& options,
                             const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
                             const std::string& unit = "");
 

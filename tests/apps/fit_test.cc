@@ -160,7 +160,7 @@ TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
   EXPECT_EQ(a.dump(1), b.dump(1));
 }
 
-// What is odd about the files belongs to the result: stderr is not kept.
+// Warnings about the files belong to the result: stderr is not kept.
 TEST_F(FitAppTest, WarningsAboutFilesStayWithTheResult) {
   const std::string recordings =
       ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"][0]["fps"] = 61; });

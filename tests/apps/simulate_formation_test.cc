@@ -101,7 +101,7 @@ TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   ASSERT_EQ(pushes.size(), 3u);
   EXPECT_EQ(pushes[1]["start_frame"], 120);
   EXPECT_EQ(pushes[2]["start_frame"], 300);
-  // Its own output may be replaced, somebody's recordings may not.
+  // Its own output may be replaced, recordings may not.
   EXPECT_EQ(Simulate({"--formation=line", "--bvh_out=" + Path("three")}).exit_code, 0);
   WriteText("real/manifest.json", R"({"recordings": []})");
   EXPECT_TRUE(Refused(Simulate({"--formation=line", "--bvh_out=" + Path("real")}),

@@ -1,7 +1,7 @@
 // What a crowd costs: person-steps per second from 100 to 100,000 people, on one thread and
 // on two, and how many times faster than real time 60 frames a second are.
 //
-// People stand 0.45 m apart on a square grid, everybody with a small velocity of her own, so that
+// People stand 0.45 m apart on a square grid, each with a small velocity, so that
 // contacts are loaded everywhere; the parameters are those identified from the published group
 // recordings (README).
 #include <benchmark/benchmark.h>
@@ -50,7 +50,7 @@ void CrowdSecond(benchmark::State& state) {
     Crowd crowd(scene, options, {Identified()}, threads);
     state.ResumeTiming();
     for (int t = 0; t < kFrames; ++t) {
-      if (!crowd.Advance().ok) state.SkipWithError("somebody falls");
+      if (!crowd.Advance().ok) state.SkipWithError("a person falls");
     }
   }
   const double seconds = static_cast<double>(state.iterations());

@@ -32,7 +32,7 @@ FitResult OfPreset(const std::string& name) {
   result.uncertainty.covariance = Eigen::MatrixXd::Identity(free, free);
   result.uncertainty.correlation = Eigen::MatrixXd::Identity(free, free);
   result.derived = {{"c_x", "N s/m", 23.1, 0.7, 21.7, 24.5}};
-  result.behaviour.demonstrations = {{"", 1, 80.0, 25.0, 0.01, 0.002, 0.4, 0.4, 0.4, false, true}};
+  result.behaviour.simulations = {{"", 1, 80.0, 25.0, 0.01, 0.002, 0.4, 0.4, 0.4, false, true}};
   result.recordings = {{"one", "00ff", 45, 1, 1.5, ""}, {"two", "0f0f", 40, 5, kInfinity, "fell"}};
   SolveStart start;
   start.kind = "nominal";

@@ -1,4 +1,4 @@
-// What the tests of formations share: a model of people who touch and stand again.
+// What the tests of formations share: a model of people who touch and settle.
 #pragma once
 
 #include "datasets/synthetic/synthetic_recordings.h"

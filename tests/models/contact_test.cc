@@ -64,7 +64,7 @@ TEST(Contact, PushesApartAndIsMutual) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(force.on_n[i], -force.on_j[i], 1e-12);
 }
 
-// Whoever is called first, the forces are the same.
+// Whichever is called first, the forces are the same.
 TEST(Contact, DoesNotDependOnTheOrder) {
   const Pair pair = TwoPeople(0.6);
   const Pair swapped = pair.Swapped();

@@ -74,7 +74,7 @@ TEST(Crowd, NamesWhoFallsAndStaysBefore) {
   EXPECT_EQ(status.quantity, "theta");
   EXPECT_EQ(status.frame, crowd.frame() + 1);
   EXPECT_LE(std::abs(crowd.states()[4].q[2]), kMaxAngle);
-  // Asked again: the same, and nobody has moved.
+  // Asked again: the same, and no person has moved.
   const Vector4<double> stayed = crowd.states()[0].q;
   const RolloutStatus again = crowd.Advance();
   EXPECT_FALSE(again.ok);

@@ -1,4 +1,4 @@
-// What whoever was pushed by others does afterwards: values by hand, derivatives by Jets in three
+// What a person pushed by others does afterwards: values by hand, derivatives by Jets in three
 // regimes, and that it dies out.
 #include "models/drive.h"
 

@@ -44,13 +44,14 @@ struct SignCase {
   int mine, theirs, torque;
 };
 
-// The neighbour in front (x_j > x_n): pushed back when I lean forwards or she leans back at me.
+// The neighbour in front (x_j > x_n): pushed back when I lean forwards or the other leans back at
+// me.
 constexpr SignCase kInFront[] = {{-1, -1, -1}, {-1, 0, 0},  {-1, 1, 0}, {0, -1, -1}, {0, 0, 0},
                                  {0, 1, 0},    {1, -1, -1}, {1, 0, -1}, {1, 1, -1}};
-// Behind: pushed forwards when I lean back or she leans forwards at me.
+// Behind: pushed forwards when I lean back or the other leans forwards at me.
 constexpr SignCase kBehind[] = {{-1, -1, 1}, {-1, 0, 1}, {-1, 1, 1}, {0, -1, 0}, {0, 0, 0},
                                 {0, 1, 1},   {1, -1, 0}, {1, 0, 0},  {1, 1, 1}};
-// To the left (y_j > y_n): phi < 0 leans left, towards her; a positive torque leans me away.
+// To the left (y_j > y_n): phi < 0 leans left, towards the other; a positive torque leans me away.
 constexpr SignCase kLeft[] = {{-1, -1, 1}, {-1, 0, 1}, {-1, 1, 1}, {0, -1, 0}, {0, 0, 0},
                               {0, 1, 1},   {1, -1, 0}, {1, 0, 0},  {1, 1, 1}};
 // To the right.
@@ -93,7 +94,7 @@ TEST(LdpDiscrete, ForceByHand) {
   EXPECT_NEAR(force.on_n[1], 0.0, 0.5);  // the forward difference's own error
   EXPECT_NEAR(force.on_n[2], -0.8 * 0.75 * 100.0, 1e-9);
   EXPECT_EQ(force.on_n[3], 0.0);
-  // j stands upright in front of me, who lean at her: she is pushed on.
+  // j stands upright in front of me, who lean on j: j is pushed on.
   EXPECT_NEAR(force.on_j[2], 0.8 * 0.75 * 100.0, 1e-9);
 }
 

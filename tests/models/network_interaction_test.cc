@@ -95,7 +95,7 @@ TEST(NetworkInteraction, LdpsSizeRunsInARollout) {
   network->lowest = Vector4<double>(-20, -10, -5, -5);
   network->highest = Vector4<double>(20, 10, 5, 5);
   EXPECT_EQ(network->mlp.num_weights(), 10 * 512 + 512 + 512 * 512 + 512 + 512 * 4 + 4);
-  Scene scene = DemonstrationScene(80.0, 40.0, 3);
+  Scene scene = SettlingScene(80.0, 40.0, 3);
   ModelOptions options;
   options.interaction.network = true;
   options.interaction_network = network;

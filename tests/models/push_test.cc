@@ -1,4 +1,5 @@
-// Pushes: the tail and its hand-derived Jacobian, generalized forces, the demonstration push.
+// Pushes: the tail and its hand-derived Jacobian, generalized forces, the push of the settling
+// simulations.
 #include "models/push.h"
 
 #include <ceres/jet.h>
@@ -112,7 +113,7 @@ TEST(HalfSinePush, HasExactlyTheNamedImpulse) {
 
 TEST(Scene, ScaledPushesScaleTheTailToo) {
   Random random(5);
-  Scene scene = DemonstrationScene(80.0, 25.0);
+  Scene scene = SettlingScene(80.0, 25.0);
   scene.pushes.push_back(RandomPush(&random, 5, PushKind::kNet));
   const Scene scaled = ScalePushes(scene, 1.4);
   const ParameterSet<double> p = RandomParameters(&random);

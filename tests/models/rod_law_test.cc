@@ -76,7 +76,7 @@ ParameterSet<double> StandingParameters() {
 
 // Two people who lean a little, the first of them pushed.
 Scene TwoPeople(double push) {
-  Scene scene = DemonstrationScene(70.0, push, 2);
+  Scene scene = SettlingScene(70.0, push, 2);
   scene.people[0].start.q[2] = 0.03, scene.people[1].start.q[3] = -0.02;
   return scene;
 }

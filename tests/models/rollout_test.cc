@@ -229,7 +229,7 @@ TEST(Rollout, InfiniteStateIsNamed) {
 
 TEST(Rollout, MatchesStepsByHand) {
   Random random(3);
-  Scene scene = DemonstrationScene(80.0, 25.0);
+  Scene scene = SettlingScene(80.0, 25.0);
   ModelOptions options;
   options.cart_derivative = CartDerivative::kBackward;
   std::vector<ParameterSet<double>> p(1, StandingParameters());

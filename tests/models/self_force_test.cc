@@ -188,7 +188,7 @@ TEST(SelfForce, GainsScaleWithTheBodyAsAsked) {
   EXPECT_DOUBLE_EQ(by_body.force, 1.5);
   EXPECT_DOUBLE_EQ(by_body.stiffness, 1.5 * 1.1);
   EXPECT_DOUBLE_EQ(by_body.damping, 1.5 * 1.1 * 1.1);
-  // The reference person is nobody's exception.
+  // The reference person is no exception.
   EXPECT_DOUBLE_EQ(GainScale(GainScaling::kBody, Body{}).damping, 1.0);
 }
 

@@ -133,7 +133,7 @@ ReportSection RecordingSection(const FitResult& result) {
   section.figures.push_back({"explained",
                              "Share of the hip's horizontal motion that the model explains; below "
                              "zero it does worse than "
-                             "somebody who stands still.",
+                             "a person who stands still.",
                              ExplainedBars(sorted), numbers});
   const TextTable outliers = OutlierTable(d);
   if (outliers.rows().size() > 1) {

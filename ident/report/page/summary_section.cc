@@ -20,10 +20,11 @@ std::string Verdict(const FitResult& result) {
   text += std::to_string(free - unsure) + " of " + std::to_string(free) +
           " free parameters are identified by the data. ";
   const Behaviour& b = result.behaviour;
-  text += b.self_propelling ? "The fitted person drives herself and never stands still: do not use "
-                              "the gains."
-          : b.settles       ? "The fitted people stand again after every demonstration push."
-                            : "The fitted people are slow to stand again after some pushes.";
+  text += b.self_propelling
+              ? "The fitted person is self-propelling and never stands still: do not use "
+                "the gains."
+          : b.settles ? "The fitted people settle after every push of the settling simulations."
+                      : "The fitted people are slow to settle after some pushes.";
   return text;
 }
 

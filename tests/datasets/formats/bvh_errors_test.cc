@@ -115,8 +115,8 @@ TEST_F(BvhErrorsTest, EveryDamageIsNamedWithItsLine) {
   }
 }
 
-// A file cut anywhere is an error, with two exceptions nobody can tell from a whole file: before
-// the last newline, and within the last number.
+// A file cut anywhere is an error, with two exceptions that cannot be told from a whole file:
+// before the last newline, and within the last number.
 TEST_F(BvhErrorsTest, CutAnywhere) {
   const std::string text = kGood;
   for (std::size_t length = 0; length + 2 < text.size(); ++length) {

@@ -115,7 +115,7 @@ TEST_F(InspectionTest, ForcesDoNotHideTheMotion) {
   EXPECT_EQ(said.find("ground_force_px peak"), std::string::npos) << said;
 }
 
-// A table of columns that nobody could guess, with the file that explains them to a fit.
+// A table of columns that cannot be guessed, with the file that explains them to a fit.
 TEST_F(InspectionTest, ThroughAMapping) {
   std::string text = "clock,wx,wy,wz,lx,ly,lz,rx,ry,rz\n";
   for (int t = 0; t < 60; ++t) {

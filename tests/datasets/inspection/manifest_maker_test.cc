@@ -97,7 +97,7 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
 
 TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
   WriteText("data/anna_weak_2.bvh", "no motion");
-  options_.masses.clear();  // nobody's mass is asked for who is left out
+  options_.masses.clear();  // no mass is asked for of a person left out
   const Result<MadeManifest> made = MakeManifest(options_);
   ASSERT_TRUE(made.ok()) << made.error().ToString();
   EXPECT_EQ(made.value().manifest.recordings.size(), 2u);
@@ -122,9 +122,9 @@ TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
   options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
   const Result<MadeManifest> made = MakeManifest(options_);
   ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_EQ(made.value().odd.size(), 1u);
-  EXPECT_TRUE(
-      Contains(made.value().odd[0], "{subjct}, which only tells recordings apart; is {subject}"));
+  ASSERT_EQ(made.value().warnings.size(), 1u);
+  EXPECT_TRUE(Contains(made.value().warnings[0],
+                       "{subjct}, which only tells recordings apart; is {subject}"));
 }
 
 TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {

@@ -1,4 +1,4 @@
-// Metrics of bodies against cases made by hand; means; yardsticks.
+// Metrics of bodies against cases made by hand; means; baselines.
 #include "ident/bodies/body_metrics.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(BodyMetricsTest, FootSkateByHeight) {
   for (int t : {1, 2}) motion[t].col(kLeftAnkle).z() += 0.02;
   EXPECT_EQ(FootSkate(motion), 0.0);
   for (int t : {1, 2}) motion[t].col(kRightAnkle).z() += 0.05;
-  EXPECT_LT(FootSkate(motion), 0.0) << "nobody touches the floor";
+  EXPECT_LT(FootSkate(motion), 0.0) << "no foot touches the floor";
 }
 
 TEST(BodyMetricsTest, TheOrderOfPeopleMakesNoDifference) {
@@ -104,7 +104,7 @@ TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
   EXPECT_EQ(summary.by_subject.at("s").recordings, 2);
 }
 
-TEST(BodyEvaluationTest, Yardsticks) {
+TEST(BodyEvaluationTest, Baselines) {
   BodyRecording recording = Standing(8);
   for (int t = 0; t < 8; ++t) {
     recording.bodies[0][t] = Placed(StandingPose(), 0.0, {0.01 * t * t, 0, 0});

@@ -57,7 +57,7 @@ TEST(FormationRun, ALineStartsToMoveOneAfterAnother) {
     EXPECT_GT(person.onset_frame, before) << n;
     EXPECT_NE(person.outcome, Outcome::kFell) << n;
   }
-  // Nobody moves before anything could have reached him.
+  // No person moves before the push could have arrived.
   EXPECT_EQ(HipSpeed(run, 5, run.summaries[0].onset_frame), 0.0);
 }
 
@@ -131,7 +131,7 @@ TEST(FormationPictures, NobodyPushedNobodyMoves) {
 }
 
 TEST(FormationPictures, RecoilIsNotDrawnAsTheWave) {
-  // The pushed one of a line comes back; alone with as much friction nobody does.
+  // The pushed one of a line comes back; alone with as much friction no person does.
   const std::string line = WaveSvg(RunShape(FormationShape::kLine, 3, {0}), "line");
   EXPECT_TRUE(Has(line, ">back<"));
   EXPECT_TRUE(Has(line, ">forward or aside<"));

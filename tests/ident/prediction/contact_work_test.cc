@@ -1,4 +1,4 @@
-// The books of contact: a spring gives back what it took, damping does not, energy adds up.
+// The contact energy balance: a spring gives back what it took, damping does not, energy adds up.
 #include "ident/prediction/contact_work.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ struct Bounce {
       path.At(t, 0).qd = (path.At(t, 0).q - path.At(t - 1, 0).q) / scene.dt;
     }
   }
-  ContactBooks Books(double damping) const {
+  ContactEnergyBalance Balance(double damping) const {
     const auto p = Contact(damping);
     const ModelOptions options = WithContact();
     const std::vector<ParameterSet<double>> parameters = {p};
@@ -61,7 +61,7 @@ struct Bounce {
         trace.At(t, n).interaction = forces.received(n).now;
       }
     }
-    return KeepBooks(path, trace, scene.dt);
+    return BalanceContactEnergy(path, trace, scene.dt);
   }
   static constexpr int kHalf = 30;
   Scene scene;
@@ -69,16 +69,16 @@ struct Bounce {
 };
 
 TEST(ContactWork, ASpringGivesBackWhatItTook) {
-  const ContactBooks books = Bounce().Books(0.0);
-  EXPECT_GT(books.absorbed, 5.0);
-  EXPECT_NEAR(books.TotalWork(), 0.0, 1e-9);
-  EXPECT_NEAR(books.work[1], 0.0, 1e-12);  // who does not move is done no work
-  EXPECT_NEAR(books.impulse[0][0] + books.impulse[1][0], 0.0, 1e-9);
-  EXPECT_LT(books.impulse[0][0], 0.0);
+  const ContactEnergyBalance balance = Bounce().Balance(0.0);
+  EXPECT_GT(balance.absorbed, 5.0);
+  EXPECT_NEAR(balance.TotalWork(), 0.0, 1e-9);
+  EXPECT_NEAR(balance.work[1], 0.0, 1e-12);  // who does not move is done no work
+  EXPECT_NEAR(balance.impulse[0][0] + balance.impulse[1][0], 0.0, 1e-9);
+  EXPECT_LT(balance.impulse[0][0], 0.0);
 }
 
 TEST(ContactWork, DampingDissipates) {
-  const ContactBooks soft = Bounce().Books(50.0), hard = Bounce().Books(250.0);
+  const ContactEnergyBalance soft = Bounce().Balance(50.0), hard = Bounce().Balance(250.0);
   EXPECT_LT(soft.TotalWork(), -1.0);
   EXPECT_LT(hard.TotalWork(), soft.TotalWork());
   EXPECT_LT(hard.returned / hard.absorbed, soft.returned / soft.absorbed);
@@ -103,14 +103,14 @@ TEST(ContactWork, IsTheChangeOfEnergy) {
     ASSERT_TRUE(
         Rollout<double>(scene, WithContact(), {p}, InitialVelocities(scene), 30001, &path, &forces)
             .ok);
-    const ContactBooks books = KeepBooks(path, forces, scene.dt);
+    const ContactEnergyBalance balance = BalanceContactEnergy(path, forces, scene.dt);
     double change = 0.0;
     for (int n : {0, 1}) {
       change += Energy(scene.people[n].body, path.At(30000, n)) -
                 Energy(scene.people[n].body, path.At(0, n));
     }
-    ASSERT_GT(books.absorbed, 5.0);
-    EXPECT_NEAR(books.TotalWork(), change, 0.005 * books.absorbed) << damping;
+    ASSERT_GT(balance.absorbed, 5.0);
+    EXPECT_NEAR(balance.TotalWork(), change, 0.005 * balance.absorbed) << damping;
   }
 }
 

@@ -86,7 +86,7 @@ TEST(Propagation, MoversAndBystandersByHand) {
   EXPECT_EQ(summary.false_movers, 1.0);
 }
 
-// Nobody moves, nobody is said to: no figure is made up, and nothing divides by zero.
+// No person moves, none is said to: no figure is made up, and nothing divides by zero.
 TEST(Propagation, NobodyMoves) {
   const std::vector<double> x = {0.0, 0.5, 1.0};
   const PendulumRecording row = Row(x, {-1, -1, -1}, 60);
@@ -111,7 +111,7 @@ TEST(Propagation, SinglePeopleHaveNone) {
   EXPECT_EQ(SummarizePropagation({&score}).recordings, 0);
 }
 
-// Whoever misses all but the pushed person has no onset error to be praised for.
+// A model that misses all but the pushed person has no onset error to be praised for.
 TEST(Propagation, OnsetErrorsOfAModelThatMissesMostMoversAreNotShown) {
   PropagationSummary misses;
   misses.recordings = 1;

@@ -1,4 +1,4 @@
-// Which models stand again after a push, and which walk away or fall.
+// Which models settle after a push, and which walk away or fall.
 #include "ident/problem/behaviour.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/report/report_tables.h"
 #include "ident/results/fit_result.h"
-#include "models/free_modes.h"
+#include "models/modal_stability.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -31,8 +31,8 @@ Behaviour Of(const ParameterSet<double>& parameters) {
 
 TEST(Behaviour, FirmGainsSettle) {
   const Behaviour b = Of(FirmParameters());
-  ASSERT_EQ(b.demonstrations.size(), 9u);  // 60, 80, 100 kg after 4, 25, 80 N s
-  for (const Demonstration& d : b.demonstrations) {
+  ASSERT_EQ(b.simulations.size(), 9u);  // 60, 80, 100 kg after 4, 25, 80 N s
+  for (const SettlingSimulation& d : b.simulations) {
     EXPECT_TRUE(d.settled) << d.mass << " kg, " << d.impulse << " N s: " << d.speed << " m/s, "
                            << d.lean << " rad";
     EXPECT_FALSE(d.fell);
@@ -46,7 +46,7 @@ TEST(Behaviour, FirmGainsSettle) {
 TEST(Behaviour, IdentifiedGainsBarelySettle) {
   const Behaviour b = Of(PublishedTailParameters());
   EXPECT_LT(b.fastest_growth, 0.0);
-  for (const Demonstration& d : b.demonstrations) {
+  for (const SettlingSimulation& d : b.simulations) {
     EXPECT_EQ(d.settled, d.mass > 60.0 || d.impulse < 80.0) << d.mass << " kg, " << d.impulse;
   }
 }
@@ -88,7 +88,7 @@ TEST(Behaviour, FreeModesKnowTheMemory) {
 TEST(Behaviour, HarderPushesGoFarther) {
   const Behaviour b = Of(FirmParameters());
   for (int mass = 0; mass < 3; ++mass) {
-    const Demonstration* d = &b.demonstrations[3 * mass];
+    const SettlingSimulation* d = &b.simulations[3 * mass];
     EXPECT_LT(d[0].distance, d[1].distance);
     EXPECT_LT(d[1].distance, d[2].distance);
   }
@@ -113,7 +113,7 @@ TEST(Behaviour, TooSoftABalanceFalls) {
   const Behaviour b = Of(p);
   EXPECT_GT(b.fastest_growth, 0.5);
   EXPECT_FALSE(b.settles);
-  EXPECT_TRUE(b.demonstrations.back().fell);
+  EXPECT_TRUE(b.simulations.back().fell);
 }
 
 // Largest real root of the free modes' polynomials, 1/s.
@@ -161,15 +161,15 @@ TEST(Behaviour, MovesAreSignedAlongThePush) {
   p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
   p[kAx] = -18.0, p[kMu] = 8.0;
   const Behaviour b = ComputeBehaviour(options, p);
-  ASSERT_EQ(b.demonstrations.size(), 12u);
-  for (const Demonstration& d : b.demonstrations) {
+  ASSERT_EQ(b.simulations.size(), 12u);
+  for (const SettlingSimulation& d : b.simulations) {
     if (d.people == 1) {
       EXPECT_EQ(d.advance, d.pushed_advance);
       EXPECT_NEAR(std::abs(d.advance), d.distance, 1e-3);
     }
     EXPECT_LE(std::abs(d.advance), d.distance + 1e-12);
   }
-  const Demonstration& hardest = b.demonstrations.back();
+  const SettlingSimulation& hardest = b.simulations.back();
   EXPECT_LT(hardest.pushed_advance, 0.0);
   EXPECT_LT(hardest.advance, 0.9 * hardest.distance);
   ASSERT_NE(b.FarthestBehind(), nullptr);
@@ -179,12 +179,12 @@ TEST(Behaviour, MovesAreSignedAlongThePush) {
 
 TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
   Behaviour b;
-  Demonstration weak, hard;
+  SettlingSimulation weak, hard;
   weak.people = hard.people = kLinePeople;
   weak.setting = hard.setting = "row";
   weak.advance = -0.01, hard.advance = -0.3, hard.pushed_advance = -0.6;
   weak.distance = 0.01, hard.distance = 0.4;
-  b.demonstrations = {weak, hard};
+  b.simulations = {weak, hard};
   b.harder_moves_farther = false;
   FitResult result;
   result.behaviour = b;

@@ -138,7 +138,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(HeldOutAde(study, read.value()), HeldOutAde(study, result));
   EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
   EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);
-  // Weights are nobody's table.
+  // Weights are not in the table.
   for (const Estimate& e : read.value().nuisance) {
     EXPECT_EQ(e.name.find("weight"), std::string::npos);
   }

@@ -56,7 +56,7 @@ TEST(Pooling, SubjectsKeepTheirOwnAndShrinkTogether) {
 }
 
 // Two settings in which people touch at different distances: what two people share may differ by
-// setting, and every setting has its demonstrations.
+// setting, and every setting has its settling simulations.
 TEST(Pooling, SettingsKeepTheirOwnContact) {
   SyntheticOptions study = TinyStudy();
   study.joint_noise_m = 0.0;
@@ -90,11 +90,11 @@ TEST(Pooling, SettingsKeepTheirOwnContact) {
   EXPECT_NEAR(model.For("elsewhere")[kContactDistance], std::sqrt(0.38 * 0.46), 0.01);
   EXPECT_LT(ScoreModel(model, recordings.front()).hip_ade, 1e-3);
   EXPECT_LT(ScoreModel(model, recordings.back()).hip_ade, 1e-3);
-  int demonstrations = 0;
-  for (const Demonstration& d : result.behaviour.demonstrations) {
-    demonstrations += d.setting == "near";
+  int simulations = 0;
+  for (const SettlingSimulation& d : result.behaviour.simulations) {
+    simulations += d.setting == "near";
   }
-  EXPECT_EQ(demonstrations, 12);
+  EXPECT_EQ(simulations, 12);
 }
 
 TEST(FreeVelocity, StartsThatMoveAreRecovered) {

@@ -102,7 +102,8 @@ TEST(ResultJson, InfinitiesStayInfinite) {
 }
 
 // Five recordings that the data of two parameters run away on: what is derived has no bounds then,
-// and a constant error has no autocorrelation. A null in their places is a model nobody can read.
+// and a constant error has no autocorrelation. A null in their places is a model that cannot be
+// read.
 TEST(ResultJson, NumbersThatAreNoneComeBack) {
   FitResult result = JudgedResult();
   const double infinity = std::numeric_limits<double>::infinity(), none = std::nan("");
@@ -118,7 +119,7 @@ TEST(ResultJson, NumbersThatAreNoneComeBack) {
   d.trace[0] = {8, 0, infinity, none};
   result.uncertainty.sigma = result.uncertainty.t_quantile = infinity;
   result.behaviour.fastest_growth = none;
-  Demonstration& fallen = result.behaviour.demonstrations.front();
+  SettlingSimulation& fallen = result.behaviour.simulations.front();
   fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;
   result.cost = result.recordings[0].cost = infinity;
   SolveStart& start = result.starts.front();

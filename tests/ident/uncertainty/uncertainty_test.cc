@@ -19,7 +19,7 @@ struct Solved {
   FitOptions options;
   std::unique_ptr<FitProblem> problem;
   FitPoint point;
-  ScoreBlocks score;
+  JacobianBlocks score;
   Uncertainty uncertainty;
 };
 
@@ -41,12 +41,12 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
   EXPECT_GE(solution.best, 0);
   solved->point = solution.Best().to;
   FitPoint copy = solved->point;
-  solved->score = EvaluateScoreBlocks(solved->problem->Build(&copy, 0));
+  solved->score = EvaluateJacobianBlocks(solved->problem->Build(&copy, 0));
   solved->uncertainty = ComputeUncertainty(*solved->problem, solved->point);
   return solved;
 }
 
-std::vector<int> RowsOf(const ScoreBlocks& score, int cluster, bool inside) {
+std::vector<int> RowsOf(const JacobianBlocks& score, int cluster, bool inside) {
   std::vector<int> rows;
   for (int i = 0; i < score.residuals.size(); ++i) {
     if ((score.cluster_of_row[i] == cluster) == inside) rows.push_back(i);

@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, AdjointTwins,
                                          Regime{"large", 0.1, 100.0, 0.05, 0.8, 1e-10}),
                          [](const auto& test) { return test.param.name; });
 
-// Somebody falls: the frames before count, for everybody in the recording, and others go on.
+// A person falls: the frames before count, for all people of the recording, and others go on.
 TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
   Random random(62);
   for (const Learned& learned : EveryLearned()) {

@@ -55,7 +55,7 @@ TEST(NetworkTakeover, FrictionInOneDirection) {
   options.self_network = OneGain(0, 2, -0.2);
   PendulumRecording recording = Pushed(options, &random);
   for (auto& states : recording.states) {
-    for (PendulumState<double>& state : states) state.qd[1] = 0.0;  // nobody moves sideways
+    for (PendulumState<double>& state : states) state.qd[1] = 0.0;  // no person moves sideways
   }
   const Takeover t = TakeoverResidual({recording}, options, 1.0).Of(options.self_network->weights);
   const double mu = 0.2 * kNetworkAcceleration * kReferenceMass / kNetworkSpeed;

@@ -1,4 +1,4 @@
-// Settling and stability: somebody who was pushed stands again.
+// Settling and stability: a person who was pushed settles.
 #include "residuals/cost_functions/rest_residual.h"
 
 #include "tests/residuals/residual_samples.h"
@@ -33,15 +33,14 @@ PendulumRecording PushedPair(double push, Random* random) {
 
 TEST(Settling, JacobianAgainstNumericDifferentiation) {
   Random random(51);
-  // Pooled parameters too: nobody in particular is pushed, so there are no columns for them.
+  // Pooled parameters too: no particular person is pushed, so there are no columns for them.
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta});
   for (Posture posture : {Posture::kUpright, Posture::kInitial}) {
     for (double impulse : {4.0, 25.0, 80.0}) {
       SCOPED_TRACE(impulse);
       ModelOptions options;
       options.posture = posture;
-      RestProblem problem =
-          SettlingProblem(DemonstrationScene(80.0, impulse), options, map, {}, 3.0);
+      RestProblem problem = SettlingProblem(SettlingScene(80.0, impulse), options, map, {}, 3.0);
       const RestResidual residual(problem);
       ASSERT_EQ(residual.parameter_block_sizes(), (std::vector<int>{kNumParameters}));
       EXPECT_EQ(residual.num_residuals(), 70 * 6);
@@ -55,8 +54,7 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
   ParameterMap map = EveryParameterMap({});
   for (double mass : {60.0, 80.0, 100.0}) {
     for (double impulse : {4.0, 25.0, 80.0}) {
-      const RestProblem problem =
-          SettlingProblem(DemonstrationScene(mass, impulse), {}, map, {}, 1.0);
+      const RestProblem problem = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
       // Half a mean square in sigmas; a settled person is within 0.1 m/s and 0.05 rad.
       EXPECT_LT(Cost(problem, {SharedBlock(map, SensibleGains())}), 0.02)
           << mass << ", " << impulse;
@@ -64,8 +62,7 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
       ParameterSet<double> self_propelling = SensibleGains();
       self_propelling[kMu] = -60.0;
       for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
-      const RestProblem walking =
-          SettlingProblem(DemonstrationScene(mass, impulse), {}, map, {}, 1.0);
+      const RestProblem walking = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
       const Evaluation evaluation =
           EvaluateCost(RestResidual(walking), {SharedBlock(map, self_propelling)}, {});
       if (evaluation.ok) {
@@ -81,7 +78,7 @@ TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
 TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
   const ParameterMap map = EveryParameterMap({});
   const Evaluation evaluation =
-      EvaluateCost(RestResidual(SettlingProblem(DemonstrationScene(80.0, 0.0), {}, map, {}, 3)),
+      EvaluateCost(RestResidual(SettlingProblem(SettlingScene(80.0, 0.0), {}, map, {}, 3)),
                    {SharedBlock(map, SensibleGains())}, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_EQ(evaluation.residuals.norm(), 0.0);
@@ -92,7 +89,7 @@ TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
 TEST(Settling, WeightIsThatOfAMeanSquare) {
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
-  RestProblem problem = SettlingProblem(DemonstrationScene(80.0, 25.0), {}, map, {}, 1.0);
+  RestProblem problem = SettlingProblem(SettlingScene(80.0, 25.0), {}, map, {}, 1.0);
   const double cost = Cost(problem, blocks);
   EXPECT_GT(cost, 0.0);
   problem.weight = 3.0;
@@ -110,7 +107,7 @@ TEST(Settling, FallingReturnsFalse) {
   ParameterMap map;
   map.values = SensibleGains();
   map.fitted = {{kKpTheta, Transform::kIdentity, -1}};
-  const RestResidual residual(SettlingProblem(DemonstrationScene(80.0, 80.0), {}, map, {}, 3.0));
+  const RestResidual residual(SettlingProblem(SettlingScene(80.0, 80.0), {}, map, {}, 3.0));
   EXPECT_TRUE(EvaluateCost(residual, {{1560.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {}).ok);

@@ -187,7 +187,7 @@ TEST_P(FailingRollout, ReturnsFalseAndNamesWhere) {
   EXPECT_FALSE(EvaluateCost(*Oracle(problem), {{failure.value}}, {true}).ok);
 }
 
-// An overflow leaves the domain while it is finite; a NaN spoils whoever stands first at once.
+// An overflow leaves the domain while it is finite; a NaN spoils the first person at once.
 INSTANTIATE_TEST_SUITE_P(EveryQuantity, FailingRollout,
                          testing::Values(Failure{"theta", kKpTheta, -3000.0},
                                          Failure{"phi", kKpPhi, -3000.0},

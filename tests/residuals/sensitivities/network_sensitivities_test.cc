@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, NetworkTwins,
                                          Regime{"large", 0.1, 150.0, 0.3, 0.05, 1.5, 1e-13}),
                          [](const auto& test) { return test.param.name; });
 
-// Whatever the weights, nobody who stands still is moved.
+// Whatever the weights, a person who stands still is not moved.
 TEST(SelfNetwork, IsSilentAtRest) {
   Random random(52);
   for (const NetworkShape& shape : EveryNetwork()) {

@@ -153,7 +153,7 @@ TEST(Sensitivities, FirstFrameKnowsTheInitialVelocityOnly) {
     Eigen::Matrix<double, 8, kColumns> expected = Eigen::Matrix<double, 8, kColumns>::Zero();
     expected.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
     EXPECT_EQ(sensitivities.At(0, n), expected);
-    // Nobody's parameters move anybody else.
+    // A person's parameters move no other person.
     const int other = (1 - n) * kNumParameters;
     EXPECT_EQ(sensitivities.At(1, n).middleCols(other, kNumParameters).norm(), 0.0);
   }

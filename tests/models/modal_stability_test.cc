@@ -1,6 +1,6 @@
 // The polynomial of the free modes against the eigenvalues of the linearized equations of motion,
 // and the Routh-Hurwitz conditions against the roots.
-#include "models/free_modes.h"
+#include "models/modal_stability.h"
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>

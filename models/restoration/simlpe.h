@@ -1,4 +1,4 @@
-// models: a peer from motion forecasting, to compare with: no pendulum and no push, only the motion
+// models: siMLPe, a motion forecaster to compare with: no pendulum and no push, only the motion
 // so far. In the manner of siMLPe (Guo et al., Back to MLP, WACV 2023): the cosine transform over
 // time of 12 given frames, fully connected layers, 6 frames predicted as displacements from the
 // last given one; again and again on its own output until all frames are there. Smaller than the
@@ -12,21 +12,21 @@
 
 namespace pushid {
 
-inline constexpr int kGivenFrames = 12, kPeerFrames = 6;
-inline constexpr int kPeerInputs = 3 * kBodyJoints * kGivenFrames;
-inline constexpr int kPeerOutputs = 3 * kBodyJoints * kPeerFrames;
+inline constexpr int kGivenFrames = 12, kSimlpeFrames = 6;
+inline constexpr int kSimlpeInputs = 3 * kBodyJoints * kGivenFrames;
+inline constexpr int kSimlpeOutputs = 3 * kBodyJoints * kSimlpeFrames;
 
-struct PeerWeights {
+struct SimlpeWeights {
   Scaling inputs;
   DenseNetwork network;  // outputs in m
 };
 
 // Of the frames [last - 11, last] of a motion.
-Eigen::VectorXf PeerInput(const BodyMotion& motion, int last);
+Eigen::VectorXf SimlpeInput(const BodyMotion& motion, int last);
 // Of the frames [last + 1, last + 6].
-Eigen::VectorXf PeerTarget(const BodyMotion& motion, int last);
+Eigen::VectorXf SimlpeTarget(const BodyMotion& motion, int last);
 
 // The first 12 frames as given, the rest predicted; `frames` in all.
-BodyMotion ContinueMotion(const PeerWeights& weights, const BodyMotion& given, int frames);
+BodyMotion ContinueMotion(const SimlpeWeights& weights, const BodyMotion& given, int frames);
 
 }  // namespace pushid

@@ -1,5 +1,5 @@
 // models: cosine transform, dense layers, and on.
-#include "models/restoration/motion_peer.h"
+#include "models/restoration/simlpe.h"
 
 #include <cmath>
 
@@ -25,7 +25,7 @@ const Transform& CosineTransform() {
 
 }  // namespace
 
-Eigen::VectorXf PeerInput(const BodyMotion& motion, int last) {
+Eigen::VectorXf SimlpeInput(const BodyMotion& motion, int last) {
   const Eigen::Matrix3d turn = TurnAboutZ(-Heading(motion[last]));
   const Eigen::Vector3d origin = motion[last].col(0);
   Eigen::Matrix<double, kGivenFrames, 3 * kBodyJoints> seen;
@@ -37,10 +37,10 @@ Eigen::VectorXf PeerInput(const BodyMotion& motion, int last) {
   return Eigen::Map<const Eigen::VectorXd>(seen.data(), seen.size()).cast<float>();
 }
 
-Eigen::VectorXf PeerTarget(const BodyMotion& motion, int last) {
+Eigen::VectorXf SimlpeTarget(const BodyMotion& motion, int last) {
   const Eigen::Matrix3d turn = TurnAboutZ(-Heading(motion[last]));
-  Eigen::VectorXf target(kPeerOutputs);
-  for (int t = 0; t < kPeerFrames; ++t) {
+  Eigen::VectorXf target(kSimlpeOutputs);
+  for (int t = 0; t < kSimlpeFrames; ++t) {
     const Pose way = turn * (motion[last + 1 + t] - motion[last]);
     target.segment<3 * kBodyJoints>(3 * kBodyJoints * t) =
         Eigen::Map<const Eigen::VectorXd>(way.data(), way.size()).cast<float>();
@@ -48,15 +48,15 @@ Eigen::VectorXf PeerTarget(const BodyMotion& motion, int last) {
   return target;
 }
 
-BodyMotion ContinueMotion(const PeerWeights& weights, const BodyMotion& given, int frames) {
+BodyMotion ContinueMotion(const SimlpeWeights& weights, const BodyMotion& given, int frames) {
   BodyMotion motion(given.begin(), given.begin() + kGivenFrames);
   while (static_cast<int>(motion.size()) < frames) {
     const int last = static_cast<int>(motion.size()) - 1;
     const Eigen::MatrixXf output =
-        weights.network.Evaluate(weights.inputs.Scaled(PeerInput(motion, last)));
+        weights.network.Evaluate(weights.inputs.Scaled(SimlpeInput(motion, last)));
     const Eigen::Matrix3d turn = TurnAboutZ(Heading(motion[last]));
     const Pose from = motion[last];
-    for (int t = 0; t < kPeerFrames && static_cast<int>(motion.size()) < frames; ++t) {
+    for (int t = 0; t < kSimlpeFrames && static_cast<int>(motion.size()) < frames; ++t) {
       const Eigen::VectorXd way =
           output.block<3 * kBodyJoints, 1>(3 * kBodyJoints * t, 0).cast<double>();
       motion.push_back(from + turn * Eigen::Map<const Pose>(way.data()));

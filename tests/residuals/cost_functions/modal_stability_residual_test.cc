@@ -1,5 +1,5 @@
 // The hinge on the free modes: silent where they decay, growing where they do not, differentiable.
-#include "residuals/cost_functions/mode_residual.h"
+#include "residuals/cost_functions/modal_stability_residual.h"
 
 #include "tests/residuals/residual_samples.h"
 
@@ -19,37 +19,38 @@ Eigen::VectorXd Residuals(const ParameterSet<double>& p, double margin) {
   ParameterMap map;
   map.values = p;
   map.fitted = {{kMu, Transform::kIdentity, -1}};
-  return EvaluateCost(ModeResidual({}, kBody, map, margin, 10.0), {{p[kMu]}}, {}).residuals;
+  return EvaluateCost(ModalStabilityResidual({}, kBody, map, margin, 10.0), {{p[kMu]}}, {})
+      .residuals;
 }
 
-TEST(ModeResidual, JacobianAgainstNumericDifferentiation) {
+TEST(ModalStabilityResidual, JacobianAgainstNumericDifferentiation) {
   Random random(61);
   const ParameterMap map = EveryParameterMap({});
   for (double spread : {0.0, 1e-8, 0.4}) {
     for (double margin : {0.0, 2.0}) {
-      const ModeResidual cost({}, kBody, map, margin, 10.0);
-      ASSERT_EQ(cost.num_residuals(), ModeResidual::kResiduals);
+      const ModalStabilityResidual cost({}, kBody, map, margin, 10.0);
+      ASSERT_EQ(cost.num_residuals(), ModalStabilityResidual::kResiduals);
       ExpectCorrectJacobian(cost, {SharedBlock(map, RandomRecoveringParameters(&random, spread))},
                             {1e-6, 1e-8, 1e-14});
     }
   }
 }
 
-TEST(ModeResidual, OfAUnit) {
+TEST(ModalStabilityResidual, OfAUnit) {
   Random random(62);
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta, kBx});
-  const ModeResidual cost({}, kBody, map, 2.0, 10.0, true);
+  const ModalStabilityResidual cost({}, kBody, map, 2.0, 10.0, true);
   ASSERT_EQ(cost.parameter_block_sizes(), (std::vector<int>{kNumParameters, 3}));
   ExpectCorrectJacobian(
       cost, {SharedBlock(map, RandomRecoveringParameters(&random, 0.2)), {0.1, -0.2, 0.3}},
       {1e-6, 1e-8, 1e-14});
 }
 
-TEST(ModeResidual, SilentWhereEveryModeDecays) {
+TEST(ModalStabilityResidual, SilentWhereEveryModeDecays) {
   EXPECT_LT(Residuals(Steady(), 0.0).maxCoeff(), 0.01);
 }
 
-TEST(ModeResidual, SpeaksWhereAModeGrowsOrIsTooSlow) {
+TEST(ModalStabilityResidual, SpeaksWhereAModeGrowsOrIsTooSlow) {
   ParameterSet<double> p = Steady();
   p[kBx] = -2.0;  // leaning faster drives the cart backwards
   EXPECT_GT(Residuals(p, 0.0).maxCoeff(), 1.0);

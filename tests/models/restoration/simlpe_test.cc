@@ -1,5 +1,5 @@
-// The peer's numbers by hand, and its way through a motion.
-#include "models/restoration/motion_peer.h"
+// The numbers of siMLPe by hand, and its way through a motion.
+#include "models/restoration/simlpe.h"
 
 #include <gtest/gtest.h>
 
@@ -14,10 +14,10 @@ BodyMotion Walking(int frames) {
   return motion;
 }
 
-TEST(MotionPeerTest, AStandingBodyHasOnlyTheMeanCoefficient) {
+TEST(SimlpeTest, AStandingBodyHasOnlyTheMeanCoefficient) {
   const BodyMotion motion(12, StandingPose());
-  const Eigen::VectorXf input = PeerInput(motion, 11);
-  ASSERT_EQ(input.size(), kPeerInputs);
+  const Eigen::VectorXf input = SimlpeInput(motion, 11);
+  ASSERT_EQ(input.size(), kSimlpeInputs);
   for (int joint = 0; joint < kBodyJoints; ++joint) {
     for (int i = 0; i < 3; ++i) {
       const int column = kGivenFrames * (3 * joint + i);
@@ -28,28 +28,28 @@ TEST(MotionPeerTest, AStandingBodyHasOnlyTheMeanCoefficient) {
   }
 }
 
-TEST(MotionPeerTest, TargetsAreWaysFromTheLastGivenFrameInItsHeading) {
+TEST(SimlpeTest, TargetsAreWaysFromTheLastGivenFrameInItsHeading) {
   const BodyMotion motion = Walking(20);
-  const Eigen::VectorXf target = PeerTarget(motion, 11);
-  for (int t = 0; t < kPeerFrames; ++t) {
+  const Eigen::VectorXf target = SimlpeTarget(motion, 11);
+  for (int t = 0; t < kSimlpeFrames; ++t) {
     const double way = 0.01 * (t + 1);
     EXPECT_NEAR(target[66 * t], way * std::cos(0.4), 1e-6);
     EXPECT_NEAR(target[66 * t + 1], -way * std::sin(0.4), 1e-6);
   }
-  // Neither depends on where the person stands and which way she faces.
+  // Neither depends on where the person stands and which way the person faces.
   BodyMotion turned;
   for (const Pose& pose : motion) turned.push_back(Placed(pose, 1.3, {5, 6, 0}));
-  EXPECT_LT((PeerTarget(turned, 11) - target).norm(), 1e-5);
-  EXPECT_LT((PeerInput(turned, 11) - PeerInput(motion, 11)).norm(), 1e-4);
+  EXPECT_LT((SimlpeTarget(turned, 11) - target).norm(), 1e-5);
+  EXPECT_LT((SimlpeInput(turned, 11) - SimlpeInput(motion, 11)).norm(), 1e-4);
 }
 
-TEST(MotionPeerTest, ContinuesItsOwnOutput) {
+TEST(SimlpeTest, ContinuesItsOwnOutput) {
   // A network that always says: a centimetre a frame along x of the heading.
-  PeerWeights weights;
-  weights.inputs = UnitScaling(kPeerInputs);
-  DenseLayer layer{Eigen::MatrixXf::Zero(kPeerOutputs, kPeerInputs),
-                   Eigen::VectorXf::Zero(kPeerOutputs)};
-  for (int t = 0; t < kPeerFrames; ++t) {
+  SimlpeWeights weights;
+  weights.inputs = UnitScaling(kSimlpeInputs);
+  DenseLayer layer{Eigen::MatrixXf::Zero(kSimlpeOutputs, kSimlpeInputs),
+                   Eigen::VectorXf::Zero(kSimlpeOutputs)};
+  for (int t = 0; t < kSimlpeFrames; ++t) {
     for (int j = 0; j < kBodyJoints; ++j) {
       layer.bias[66 * t + 3 * j] = 0.01f * static_cast<float>(t + 1);
     }

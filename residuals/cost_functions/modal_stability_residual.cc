@@ -1,5 +1,5 @@
 // residuals: the hinge on the free modes.
-#include "residuals/cost_functions/mode_residual.h"
+#include "residuals/cost_functions/modal_stability_residual.h"
 
 #include <ceres/jet.h>
 
@@ -13,8 +13,9 @@ constexpr double kHinge = 0.01;  // eps
 
 }  // namespace
 
-ModeResidual::ModeResidual(const ModelOptions& options, const Body& body, const ParameterMap& map,
-                           double margin, double weight, bool of_unit)
+ModalStabilityResidual::ModalStabilityResidual(const ModelOptions& options, const Body& body,
+                                               const ParameterMap& map, double margin,
+                                               double weight, bool of_unit)
     : options_(options), body_(body), map_(map), margin_(margin), weight_(weight) {
   mutable_parameter_block_sizes()->push_back(map.num_shared());
   if (of_unit) mutable_parameter_block_sizes()->push_back(map.num_deviations);
@@ -22,7 +23,8 @@ ModeResidual::ModeResidual(const ModelOptions& options, const Body& body, const 
 }
 
 template <typename T>
-Eigen::Matrix<T, ModeResidual::kResiduals, 1> ModeResidual::Hinges(const ParameterSet<T>& p) const {
+Eigen::Matrix<T, ModalStabilityResidual::kResiduals, 1> ModalStabilityResidual::Hinges(
+    const ParameterSet<T>& p) const {
   using std::sqrt;
   constexpr double kScale[] = {kRate, kRate * kRate * kRate, kRate * kRate * kRate};
   Eigen::Matrix<T, kResiduals, 1> hinges;
@@ -37,8 +39,8 @@ Eigen::Matrix<T, ModeResidual::kResiduals, 1> ModeResidual::Hinges(const Paramet
   return hinges;
 }
 
-bool ModeResidual::Evaluate(double const* const* blocks, double* residuals,
-                            double** jacobians) const {
+bool ModalStabilityResidual::Evaluate(double const* const* blocks, double* residuals,
+                                      double** jacobians) const {
   const bool of_unit = parameter_block_sizes().size() > 1;
   const ParameterSet<double> p = map_.Apply<double>(blocks[0], of_unit ? blocks[1] : nullptr);
   Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
