@@ -7,9 +7,9 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
-#include "ident/figures/text_table.h"
 
 DEFINE_string(joints_out, "",
               "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
@@ -95,10 +95,9 @@ int WriteBodies(const Recording& recorded, SkeletonMapping mapping, const Predic
               std::string(restoration.value()->kind()).c_str());
   for (const std::string& file : files) std::printf("  %s\n", file.c_str());
   if (compare) {
-    std::printf(
-        "against the recording: MPJPE %s m, hipADE %s m, hipFDE %s m, FSE %s cm\n",
-        Significant(score.value[kMpjpe], 3).c_str(), Significant(score.value[kHipAde], 3).c_str(),
-        Significant(score.value[kHipFde], 3).c_str(), Significant(score.value[kFse], 3).c_str());
+    std::printf("against the recording: MPJPE %s m, hipADE %s m, hipFDE %s m, FSE %s cm\n",
+                Rounded(score.value[kMpjpe], 3).c_str(), Rounded(score.value[kHipAde], 3).c_str(),
+                Rounded(score.value[kHipFde], 3).c_str(), Rounded(score.value[kFse], 3).c_str());
   }
   return kDone;
 }

@@ -12,7 +12,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
-#include "ident/figures/text_table.h"
+#include "datasets/files/number_text.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/results/result_json.h"
@@ -87,7 +87,7 @@ int Run() {
   FitResult result = Fit(pendulums, options.value(),
                          [&line](const std::string& phase, int iteration, double cost) {
                            line.Show("fitting " + phase + ": iteration " +
-                                     std::to_string(iteration) + ", cost " + Significant(cost, 6));
+                                     std::to_string(iteration) + ", cost " + Rounded(cost, 6));
                          });
   line.Finish();
   if (!result.ok()) {

@@ -9,7 +9,7 @@
 #include "apps/predict_bodies.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
-#include "ident/figures/text_table.h"
+#include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
 
 DEFINE_string(id, "", "the recording whose first frame and push are taken");
@@ -64,7 +64,7 @@ int Run() {
   if (FLAGS_frames == 0) {
     const RecordingScore score = ScoreHip(recording, prediction.hip);
     std::printf("against the recording: hipADE %s m, hipFDE %s m\n",
-                Significant(score.hip_ade, 3).c_str(), Significant(score.hip_fde, 3).c_str());
+                Rounded(score.hip_ade, 3).c_str(), Rounded(score.hip_fde, 3).c_str());
   }
   return kDone;
 }

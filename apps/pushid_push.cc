@@ -10,9 +10,9 @@
 #include "apps/flags/sensor_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/recording_names.h"
-#include "ident/figures/text_table.h"
 #include "ident/push/push_estimation.h"
 
 DEFINE_string(id, "", "the recording");
@@ -110,8 +110,8 @@ void PrintPush(const MadePush& made, double dt) {
               made.push.EndFrame() - made.push.start_frame, made.push.start_frame,
               made.how.c_str());
   std::printf("impulse %s N s forwards, %s N s to the left; peak %s N\n",
-              Significant(impulse[0], 3).c_str(), Significant(impulse[1], 3).c_str(),
-              Significant(peak, 3).c_str());
+              Rounded(impulse[0], 3).c_str(), Rounded(impulse[1], 3).c_str(),
+              Rounded(peak, 3).c_str());
   std::printf(
       "written to %s; in the recording's entry of the manifest put, instead of any push_csv:\n",
       FLAGS_out.c_str());

@@ -11,6 +11,7 @@
 #include "apps/simulate_formation.h"
 #include "apps/support/app_support.h"
 #include "apps/support/output_folder.h"
+#include "datasets/files/number_text.h"
 #include "datasets/manifest/recording_names.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/figures/text_table.h"
@@ -67,15 +68,14 @@ void PrintTruth(const IdentifiedModel& truth) {
   TextTable table({"parameter", "truth", "unit"}, {true, false, true});
   for (const ParameterSpec& spec : truth.table.specs) {
     const double value = truth.parameters[spec.id];
-    if (spec.free || value != spec.nominal) table.Add({spec.name, Significant(value), spec.unit});
+    if (spec.free || value != spec.nominal) table.Add({spec.name, Rounded(value, 4), spec.unit});
   }
   std::printf("%s", table.ToString().c_str());
   if (FLAGS_recording_spread > 0.0 || FLAGS_subject_spread > 0.0) {
     std::printf(
         "(the centre: every parameter varies about it by %s between recordings, %s "
         "between people)\n",
-        Significant(FLAGS_recording_spread, 3).c_str(),
-        Significant(FLAGS_subject_spread, 3).c_str());
+        Rounded(FLAGS_recording_spread, 3).c_str(), Rounded(FLAGS_subject_spread, 3).c_str());
   }
 }
 
@@ -116,7 +116,7 @@ int Run() {
   PrintTruth(truth.value());
   std::printf(
       "%zu recordings of %d people, joints noisy by %s mm: %s names the BVH and push files\n",
-      made.value().size(), FLAGS_people, Significant(1000.0 * FLAGS_noise, 3).c_str(),
+      made.value().size(), FLAGS_people, Rounded(1000.0 * FLAGS_noise, 3).c_str(),
       (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
 }

@@ -11,8 +11,8 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
-#include "ident/figures/text_table.h"
 #include "ident/results/result_json.h"
 #include "ident/training/curve_svg.h"
 #include "ident/training/restoration_training_run.h"
@@ -192,8 +192,8 @@ int Train(const std::vector<BodyRecording>& recordings, RestorationRunOptions op
   if (MaybeError error = WriteRestorationFile(FLAGS_out, file)) return Fail(*error);
   const TrainingPoint& last = trained.value().curve.back();
   std::printf("%s: %zu points of the curve, held-out loss %s at the end, %s s%s; %s\n",
-              title.c_str(), trained.value().curve.size(),
-              Significant(last.validation_loss, 3).c_str(), Significant(Now() - before, 3).c_str(),
+              title.c_str(), trained.value().curve.size(), Rounded(last.validation_loss, 3).c_str(),
+              Rounded(Now() - before, 3).c_str(),
               trained.value().resumed ? " (resumed from a checkpoint)" : "",
               in_out("restoration.json").c_str());
   return kDone;

@@ -10,6 +10,7 @@
 #include "apps/support/app_support.h"
 #include "apps/support/output_folder.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_pictures.h"
@@ -115,8 +116,8 @@ void PrintWave(const FormationRun& run) {
         run.Seconds(run.summaries[foremost].onset_frame - run.summaries[first].onset_frame);
     if (metres > 0.0 && seconds > 0.0) {
       std::printf("; from person %d to %d the onset went %s m in %s s: %s m/s", first, foremost,
-                  Significant(metres, 3).c_str(), Significant(seconds, 3).c_str(),
-                  Significant(metres / seconds, 3).c_str());
+                  Rounded(metres, 3).c_str(), Rounded(seconds, 3).c_str(),
+                  Rounded(metres / seconds, 3).c_str());
     }
   }
   std::printf("\n");
@@ -195,7 +196,7 @@ int SimulateFormation() {
     if (error) return Fail(*error);
   }
   std::printf("%s; %s s\n", plan.value().title.c_str(),
-              Significant(run.Seconds(run.num_frames() - 1), 3).c_str());
+              Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);
   PrintWave(run);
   return kDone;

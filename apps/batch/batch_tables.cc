@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "datasets/files/number_text.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
@@ -35,8 +36,8 @@ std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<
 }
 
 std::string WithError(double value, double error) {
-  const std::string text = Significant(value);
-  return std::isfinite(error) ? text + " +- " + Significant(error, 3) : text + " (unidentifiable)";
+  const std::string text = Rounded(value, 4);
+  return std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text + " (unidentifiable)";
 }
 
 }  // namespace
@@ -64,9 +65,9 @@ TextTable VariantTable(const std::vector<JobResult>& rows) {
       const double n = static_cast<double>(values.size()), mean = sum / n;
       for (double value : values) squares += (value - mean) * (value - mean);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      table.Add({"", "", "", "", what, Significant(mean),
-                 values.size() > 1 ? Significant(std::sqrt(squares / (n - 1.0)), 3) : "-",
-                 Significant(*low), Significant(*high)});
+      table.Add({"", "", "", "", what, Rounded(mean, 4),
+                 values.size() > 1 ? Rounded(std::sqrt(squares / (n - 1.0)), 3) : "-",
+                 Rounded(*low, 4), Rounded(*high, 4)});
     }
   }
   return table;
@@ -102,9 +103,9 @@ TextTable BootstrapTable(const std::vector<JobResult>& rows) {
                   {true, true, true, false, false, false, false, false});
   for (const BootstrapSpread& s : SpreadOverReplicas(rows)) {
     if (table.rows().size() > kMostRowsOnPage) break;
-    table.Add({s.job->variant, s.job->group, s.parameter, Significant(s.estimate),
-               std::to_string(s.replicas), Significant(s.standard_error, 3), Significant(s.lower95),
-               Significant(s.upper95)});
+    table.Add({s.job->variant, s.job->group, s.parameter, Rounded(s.estimate, 4),
+               std::to_string(s.replicas), Rounded(s.standard_error, 3), Rounded(s.lower95, 4),
+               Rounded(s.upper95, 4)});
   }
   return table;
 }
@@ -159,10 +160,10 @@ TextTable JobTable(const std::vector<JobResult>& rows) {
     }
     const bool done = row.done();
     cells.push_back(done ? (row.settles ? "yes" : "no") : "");
-    cells.push_back(row.hip_ade >= 0.0 ? Significant(row.hip_ade, 3) : "");
-    cells.push_back(row.hip_fde >= 0.0 ? Significant(row.hip_fde, 3) : "");
-    cells.push_back(done ? Significant(row.solve_s, 2) : "");
-    cells.push_back(row.status == "open" ? "" : Significant(row.seconds, 2));
+    cells.push_back(row.hip_ade >= 0.0 ? Rounded(row.hip_ade, 3) : "");
+    cells.push_back(row.hip_fde >= 0.0 ? Rounded(row.hip_fde, 3) : "");
+    cells.push_back(done ? Rounded(row.solve_s, 2) : "");
+    cells.push_back(row.status == "open" ? "" : Rounded(row.seconds, 2));
     cells.push_back(row.warnings.empty() ? "" : std::to_string(row.warnings.size()));
     table.Add(cells);
   }

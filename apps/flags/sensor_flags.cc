@@ -10,7 +10,6 @@
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/number_text.h"
-#include "ident/figures/text_table.h"
 #include "ident/push/sensor_offset.h"
 
 DEFINE_string(sensor, "",
@@ -164,11 +163,11 @@ Result<SensorPush> PushFromSensors(const Recording& recorded, const PendulumReco
     clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
     const double gain = offset.value().gain;
     if (gain < 1.0 / kOddGain || gain > kOddGain) {
-      result.warnings.push_back("the motion fits " + Significant(gain, 2) +
+      result.warnings.push_back("the motion fits " + Rounded(gain, 2) +
                                 " times the force best: check its unit and gain, and the mass");
     }
     result.how += "; clock at frame 0 moved by " + Rounded(offset_s, 4) + " +- " +
-                  Significant(offset.value().standard_error_s, 2) + " s (estimated)";
+                  Rounded(offset.value().standard_error_s, 2) + " s (estimated)";
   }
   for (std::size_t i = 0; i < records.size(); ++i) {
     const SensorChoice& sensor = sensors.value()[i];

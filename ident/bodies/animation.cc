@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/figures/text_table.h"
 
 namespace pushid {
 namespace {
@@ -130,7 +130,7 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
         if (person.recorded == recorded) drawn.Draw(person, t);
       }
     }
-    svg.Text(left + 0.5 * (panel - kSide), floor + 18, Significant(t * animation.dt, 3) + " s",
+    svg.Text(left + 0.5 * (panel - kSide), floor + 18, Rounded(t * animation.dt, 3) + " s",
              "axis middle");
   }
   return svg.ToString();

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/figures/text_table.h"
 
 namespace pushid {
 namespace {
@@ -43,8 +43,8 @@ std::string DrawHeatMap(const HeatMap& map) {
       svg.Rect({x + 1, y + 1, kWide - 2, kHigh - 2},
                std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
                    ";fill-opacity:" + SvgNumber(0.85 * share),
-               map.rows[i] + ", " + map.columns[j] + ": " + Significant(value, 3));
-      svg.Text(x + 0.5 * kWide, y + 15, Significant(value, map.digits), "ink small middle");
+               map.rows[i] + ", " + map.columns[j] + ": " + Rounded(value, 3));
+      svg.Text(x + 0.5 * kWide, y + 15, Rounded(value, map.digits), "ink small middle");
     }
   }
   return svg.ToInline();

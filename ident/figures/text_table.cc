@@ -2,15 +2,8 @@
 #include "ident/figures/text_table.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace pushid {
-
-std::string Significant(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
-}
 
 TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
     : rows_{std::move(header)}, left_(std::move(left)) {}

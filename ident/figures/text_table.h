@@ -1,13 +1,10 @@
-// ident: numbers in words, and columns of text, padded; numbers to the right.
+// ident: columns of text, padded; numbers to the right.
 #pragma once
 
 #include <string>
 #include <vector>
 
 namespace pushid {
-
-// "0.341", "1.86e+03": four significant digits.
-std::string Significant(double value, int digits = 4);
 
 class TextTable {
  public:

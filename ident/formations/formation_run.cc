@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "ident/figures/text_table.h"
+#include "datasets/files/number_text.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/behaviour.h"
 
@@ -78,9 +78,9 @@ std::string_view Name(Outcome outcome) {
 }
 
 std::string OutcomeLegend() {
-  return "outcome: judged " + Significant(kWaitSeconds) +
+  return "outcome: judged " + Rounded(kWaitSeconds, 4) +
          " s after the last push, or after the onset where that is later; settled: slower than " +
-         Significant(kSettledSpeed) + " m/s\nand within " + Significant(kSettledLean) +
+         Rounded(kSettledSpeed, 4) + " m/s\nand within " + Rounded(kSettledLean, 4) +
          " rad of the rest posture then; slow to settle: not yet. fell: at any time. displaced: at "
          "the end of the run\n";
 }

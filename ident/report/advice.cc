@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/figures/text_table.h"
+#include "datasets/files/number_text.h"
 #include "ident/parameters/self_network_io.h"
 #include "ident/report/fit_command.h"
 #include "ident/results/interval_agreement.h"
@@ -82,7 +82,7 @@ void Adviser::Identifiability() {
       Add(e.name +
               " stands at its bound, so its error is unknown; see whether the data mind its "
               "being held there.",
-          Same().Append("fix", e.name + "=" + Significant(e.value)));
+          Same().Append("fix", e.name + "=" + Rounded(e.value, 4)));
     }
     if (e.status == EstimateStatus::kWeak) {
       Add(e.name + " is only weakly known; ask which further push would tell most about it.",
@@ -95,11 +95,11 @@ void Adviser::Identifiability() {
     for (int j = i + 1; j < std::min<int>(shared, u.correlation.cols()); ++j) {
       if (std::abs(u.correlation(i, j)) < kStrongCorrelation) continue;
       const Estimate& second = u.estimates[j];
-      const std::string held = second.name + "=" + Significant(second.value);
+      const std::string held = second.name + "=" + Rounded(second.value, 4);
       FitCommand compare("pushid-crossvalidate", result_);
       compare.Set("compare", "held: --fix=" + compare.Appended("fix", held));
       Add(u.estimates[i].name + " and " + second.name + " trade off (correlation " +
-              Significant(u.correlation(i, j), 2) +
+              Rounded(u.correlation(i, j), 2) +
               "); hold one, and see whether the errors of prediction grow.",
           compare);
     }
@@ -108,7 +108,7 @@ void Adviser::Identifiability() {
 
 FitCommand Adviser::SettleHarder(double weight) const {
   const double more = std::max(weight, 2.0 * result_.options.settling_weight);
-  return Same().Set("settling_weight", Significant(more, 6));
+  return Same().Set("settling_weight", Rounded(more, 6));
 }
 
 void Adviser::Person() {
@@ -150,7 +150,7 @@ void Adviser::Recordings() {
   // Of a single one nothing would be left.
   if (most > kStrongLeverage && l.recordings.size() > 1) {
     Add("Recording " + l.recordings[recording] + " alone moves " + l.parameters[parameter] +
-            " by " + Significant(most, 2) + " standard errors; look at it, and fit without it.",
+            " by " + Rounded(most, 2) + " standard errors; look at it, and fit without it.",
         Same().Append("leave_out", l.recordings[recording]));
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
@@ -175,7 +175,7 @@ void Adviser::Intervals() {
   for (const Agreement& row : CompareIntervals(result_)) {
     if (!several) break;
     if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
-    Add("The intervals of " + row.name + " differ by a factor of " + Significant(row.ratio, 2) +
+    Add("The intervals of " + row.name + " differ by a factor of " + Rounded(row.ratio, 2) +
             " in width: its cost is far from quadratic; quote the widest, and more replicas.",
         Bootstrap(std::max(kManyReplicas, 2 * had)));
     break;  // one command serves all
@@ -191,8 +191,8 @@ void Adviser::Residuals() {
     for (size_t k = 0; k < w.push.size(); ++k) {
       const double limit = std::max(kPushDependence, 2.0 * w.push_error[k]);
       if (std::abs(w.push[k]) < limit) continue;
-      Add("The errors of " + w.channel + " follow the push (correlation " +
-              Significant(w.push[k], 2) + " at lag " + std::to_string(k) +
+      Add("The errors of " + w.channel + " follow the push (correlation " + Rounded(w.push[k], 2) +
+              " at lag " + std::to_string(k) +
               "): the model misses part of the answer to it; try more terms.",
           linear ? Same().Set("push_tail", "exponential")
                  : Same().Set("self_force", SelfForceText(SelfForceKind::kLinear, network)));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/interval_agreement.h"
@@ -17,7 +18,7 @@ constexpr double kDisagreement = 1.5;  // ratio of widths that is worth a word
 std::string IntervalText(const std::optional<Interval>& interval) {
   if (!interval) return "-";
   const auto side = [](double value) {
-    return std::isfinite(value) ? Significant(value) : std::string("open");
+    return std::isfinite(value) ? Rounded(value, 4) : std::string("open");
   };
   return "[" + side(interval->lower) + ", " + side(interval->upper) + "]";
 }
@@ -47,8 +48,7 @@ std::string LargestMove(const Leverage& leverage, const std::string& recording) 
     const auto most = std::max_element(
         row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
     if (most == row.end()) return "";
-    return leverage.parameters[static_cast<size_t>(most - row.begin())] + " " +
-           Significant(*most, 2);
+    return leverage.parameters[static_cast<size_t>(most - row.begin())] + " " + Rounded(*most, 2);
   }
   return "";
 }
@@ -63,7 +63,7 @@ std::string RecordingsText(const Diagnostics& d) {
       {"explained least", "% of motion", "cost", "outlier frames", "without it moves (std errors)"},
       {true, false, false, false, true});
   for (const RecordingDiagnostics* r : worst) {
-    table.Add({r->id, Significant(r->explained, 3), Significant(r->cost, 3),
+    table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3),
                std::to_string(r->outliers.size()), LargestMove(d.leverage, r->id)});
   }
   return worst.empty() ? "" : table.ToString();
@@ -74,8 +74,7 @@ std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
   for (const Whiteness& w : whiteness) {
     if (w.channel != "hip x" && w.channel != "theta") continue;
     text += "errors of " + w.channel + ": lag-1 correlation " +
-            Significant(w.autocorrelation.front(), 2) + " (white: +-" +
-            Significant(w.mean_band, 1) + ")\n";
+            Rounded(w.autocorrelation.front(), 2) + " (white: +-" + Rounded(w.mean_band, 1) + ")\n";
   }
   return text.empty() ? ""
                       : text + "frames of a recording err together: only clustered errors count\n";
@@ -97,7 +96,7 @@ TextTable AgreementTable(const FitResult& result) {
   TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class"},
                   {true, false, true, true, true, true, true});
   for (const Agreement& row : CompareIntervals(result)) {
-    table.Add({row.name, Significant(row.value), IntervalText(row.clustered),
+    table.Add({row.name, Rounded(row.value, 4), IntervalText(row.clustered),
                IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
                row.classification ? NameOf(*row.classification) : ""});
   }

@@ -1,4 +1,5 @@
 // ident: propagation as JSON and as tables.
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
@@ -20,8 +21,8 @@ Json SpeedJson(const PropagationMean& slowness) {
 
 std::string MeanText(const PropagationMean& mean) {
   if (!mean.known()) return "-";
-  const std::string value = Significant(mean.value, 3);
-  return mean.error > 0.0 ? value + " +- " + Significant(mean.error, 2) : value;
+  const std::string value = Rounded(mean.value, 3);
+  return mean.error > 0.0 ? value + " +- " + Rounded(mean.error, 2) : value;
 }
 
 std::string SpeedText(const PropagationMean& slowness) {
@@ -38,7 +39,7 @@ bool OfThoseWhoMoveInBoth(int figure) {
 }
 
 std::string CountsText(double part, double whole) {
-  return Significant(part, 3) + " of " + Significant(whole, 4);
+  return Rounded(part, 3) + " of " + Rounded(whole, 4);
 }
 
 std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
@@ -110,7 +111,7 @@ std::string PropagationText(const std::vector<PropagationColumn>& columns) {
 std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
   const PropagationMean& onset = s.figures[kOnsetError];
   const bool says = onset.known() && !MostMissed(s);
-  return {says ? Significant(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
+  return {says ? Rounded(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
           CountsText(s.false_movers, s.bystanders)};
 }
 

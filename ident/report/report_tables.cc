@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 
@@ -17,7 +18,7 @@ bool SettingsDiffer(const Behaviour& behaviour) {
 namespace {
 
 std::string Interval(double lower, double upper) {
-  return "[" + Significant(lower) + ", " + Significant(upper) + "]";
+  return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
 }
 
 std::string SettlingText(const Behaviour& b) {
@@ -34,7 +35,7 @@ std::string SettlingText(const Behaviour& b) {
     if (d.settled) continue;
     text += "  " + SettlingSimulationName(d, SettingsDiffer(b)) + ": " +
             (d.fell ? "fell"
-                    : "still at " + Significant(d.speed, 2) + " m/s, " + Significant(d.lean, 2) +
+                    : "still at " + Rounded(d.speed, 2) + " m/s, " + Rounded(d.lean, 2) +
                           " rad from rest") +
             "\n";
   }
@@ -66,7 +67,7 @@ std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_di
   const std::string where = !d.setting.empty() ? d.setting + ": "
                             : settings_differ  ? "shared values: "
                                                : "";
-  return where + who + Significant(d.mass) + " kg after " + Significant(d.impulse) + " N s";
+  return where + who + Rounded(d.mass, 4) + " kg after " + Rounded(d.impulse, 4) + " N s";
 }
 
 TextTable EstimateTable(const FitResult& result) {
@@ -76,18 +77,17 @@ TextTable EstimateTable(const FitResult& result) {
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Significant(e.value), "-", "-", e.unit, "fixed", "-", ""});
+      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", ""});
       continue;
     }
     const std::string prior =
         spec != nullptr && spec->prior
-            ? Significant(spec->prior->mean, 3) + " +- " + Significant(spec->prior->sigma, 3)
+            ? Rounded(spec->prior->mean, 3) + " +- " + Rounded(spec->prior->sigma, 3)
             : "";
     const bool unknown = e.status == EstimateStatus::kUnidentifiable;
-    table.Add({e.name, Significant(e.value),
-               unknown ? "infinite" : Significant(e.standard_error, 3),
+    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : Rounded(e.standard_error, 3),
                unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
-               unknown ? "infinite" : Significant(e.standard_error_naive, 3), prior});
+               unknown ? "infinite" : Rounded(e.standard_error_naive, 3), prior});
   }
   return table;
 }
@@ -101,7 +101,7 @@ std::string HowSure(const FitResult& result) {
                                 "as identified, and correlations are those of independent frames\n"
                               : "";
   return few + "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
-         "; Student's t = " + Significant(u.t_quantile, 3) + "); naive ones beside them\n";
+         "; Student's t = " + Rounded(u.t_quantile, 3) + "); naive ones beside them\n";
 }
 
 TextTable DerivedTable(const FitResult& result) {
@@ -109,7 +109,7 @@ TextTable DerivedTable(const FitResult& result) {
                   {true, false, false, true, true});
   for (const Combination& c : result.derived) {
     const bool fixed = c.standard_error == 0.0;
-    table.Add({c.name, Significant(c.value), fixed ? "-" : Significant(c.standard_error, 3),
+    table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
                fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
   }
   return table;
@@ -119,8 +119,8 @@ std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
   const std::string held = specs[kKpX].free || specs[kKpY].free
                                ? "Here Kp is fitted too."
-                               : "Convention: Kp_x = " + Significant(result.parameters[kKpX]) +
-                                     ", Kp_y = " + Significant(result.parameters[kKpY]) +
+                               : "Convention: Kp_x = " + Rounded(result.parameters[kKpX], 4) +
+                                     ", Kp_y = " + Rounded(result.parameters[kKpY], 4) +
                                      " N s/m held, mu = c - Kp.";
   return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " + held +
          "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
@@ -135,7 +135,7 @@ std::string CorrelationText(const FitResult& result) {
       if (std::abs(u.correlation(i, j)) < 0.9) continue;
       if (u.estimates[j].name.find('[') != std::string::npos) continue;  // a unit's deviation
       text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
-              Significant(u.correlation(i, j), 2) + "\n";
+              Rounded(u.correlation(i, j), 2) + "\n";
     }
   }
   return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
@@ -144,7 +144,7 @@ std::string CorrelationText(const FitResult& result) {
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
   return SettlingText(b) + NoFartherText(b) +
-         "fastest free mode at rest: " + Significant(b.fastest_growth, 3) + " 1/s (" +
+         "fastest free mode at rest: " + Rounded(b.fastest_growth, 3) + " 1/s (" +
          (b.unstable() ? "UNSTABLE" : "stable") + ")\n";
 }
 
@@ -155,8 +155,8 @@ TextTable LinesTable(const FitResult& result) {
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     if (d.people == 1) continue;
-    table.Add({SettlingSimulationName(d, differ), Significant(d.advance, 2),
-               Significant(d.pushed_advance, 2), Significant(d.distance, 2)});
+    table.Add({SettlingSimulationName(d, differ), Rounded(d.advance, 2),
+               Rounded(d.pushed_advance, 2), Rounded(d.distance, 2)});
   }
   return table;
 }
@@ -171,8 +171,8 @@ TextTable BehaviourTable(const FitResult& result) {
                d.fell      ? "fell"
                : d.settled ? "stands"
                            : "still moving",
-               Significant(d.speed, 2), Significant(d.lean, 2), Significant(d.advance, 2),
-               Significant(d.pushed_advance, 2)});
+               Rounded(d.speed, 2), Rounded(d.lean, 2), Rounded(d.advance, 2),
+               Rounded(d.pushed_advance, 2)});
   }
   return table;
 }
@@ -189,14 +189,14 @@ TextTable PooledTable(const FitResult& result) {
                             const std::map<std::string, Estimate>& pooled) {
     for (const auto& [name, e] : pooled) {
       std::vector<std::string> row = unit;
-      row.insert(row.end(), {name, Significant(e.value), Significant(e.standard_error, 3),
+      row.insert(row.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
                              Interval(e.lower95, e.upper95), e.unit});
       table.Add(row);
     }
   };
   if (!by_setting) {
     for (const auto& [id, subject] : result.subjects) {
-      add({id, Significant(subject.mass_kg)}, subject.pooled);
+      add({id, Rounded(subject.mass_kg, 4)}, subject.pooled);
     }
   }
   for (const auto& [setting, pooled] : result.settings) add({setting}, pooled);

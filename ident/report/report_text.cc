@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/self_network_io.h"
@@ -35,11 +36,11 @@ std::string SelfFromText(const FitResult& result) {
 
 std::string TrainingText(const FitOptions& o) {
   std::string text =
-      o.network_prior > 0.0 ? "prior " + Significant(o.network_prior) : std::string("no prior");
+      o.network_prior > 0.0 ? "prior " + Rounded(o.network_prior, 4) : std::string("no prior");
   if (o.early_stopping > 0.0) {
-    text += ", stopped early by " + Significant(100.0 * o.early_stopping) + " % of the recordings";
+    text += ", stopped early by " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
   }
-  if (o.takeover_weight > 0.0) text += ", takeover weight " + Significant(o.takeover_weight);
+  if (o.takeover_weight > 0.0) text += ", takeover weight " + Rounded(o.takeover_weight, 4);
   if (o.model.self_network->num_weights() > kMostGaussNewtonWeights) {
     text += ", held while the errors above were computed";
   }
@@ -61,12 +62,12 @@ std::string NetworkText(const FitResult& result) {
   if (!result.takeover) return text;
   const Takeover& t = *result.takeover;
   const auto signed_number = [](double value) {
-    return (value < 0.0 ? "" : "+") + Significant(value, 3);
+    return (value < 0.0 ? "" : "+") + Rounded(value, 3);
   };
   return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
          signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
-         " N m s/rad beside those above;\n  its force on the cart is " +
-         Significant(t.rms_force, 2) + " m/s^2 times the mass (root mean square)";
+         " N m s/rad beside those above;\n  its force on the cart is " + Rounded(t.rms_force, 2) +
+         " m/s^2 times the mass (root mean square)";
 }
 
 std::string ReportText(const FitResult& result) {
@@ -96,7 +97,7 @@ std::string ReportText(const FitResult& result) {
   const TextTable lines = LinesTable(result);
   if (lines.rows().size() > 1) text += lines.ToString();
   text += "\n";
-  text += "cost " + Significant(result.cost, 6) + " after " +
+  text += "cost " + Rounded(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";

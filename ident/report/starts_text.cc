@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
@@ -28,8 +29,8 @@ std::string AcrossStartsNote(const FitResult& result) {
     if (Ended(start)) worst = std::max(worst, start.cost);
   }
   return std::to_string(AsGood(result).size()) + " of " + std::to_string(result.starts.size()) +
-         " starts end within 1 % of the lowest cost, " + Significant(result.cost, 6) +
-         "; the highest is " + Significant(worst, 6) + "\n";
+         " starts end within 1 % of the lowest cost, " + Rounded(result.cost, 6) +
+         "; the highest is " + Rounded(worst, 6) + "\n";
 }
 
 TextTable AcrossStartsTable(const FitResult& result) {
@@ -49,8 +50,8 @@ TextTable AcrossStartsTable(const FitResult& result) {
     const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
                                        [&spec](const Estimate& e) { return e.name == spec.name; });
     const bool known = estimate != result.estimates.end() && estimate->standard_error > 0.0;
-    table.Add({spec.name, Significant(low), Significant(high), spec.unit,
-               known ? Significant((high - low) / estimate->standard_error, 2) : "-"});
+    table.Add({spec.name, Rounded(low, 4), Rounded(high, 4), spec.unit,
+               known ? Rounded((high - low) / estimate->standard_error, 2) : "-"});
     ++index;
   }
   return table;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
@@ -50,9 +51,8 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
     const bool inside = e.lower95 - slack <= known->second && known->second <= e.upper95 + slack;
     ++compared;
     covered += inside;
-    table.Add({e.name, Significant(known->second), Significant(e.value),
-               Significant(e.standard_error, 3),
-               "[" + Significant(e.lower95) + ", " + Significant(e.upper95) + "]", e.unit,
+    table.Add({e.name, Rounded(known->second, 4), Rounded(e.value, 4), Rounded(e.standard_error, 3),
+               "[" + Rounded(e.lower95, 4) + ", " + Rounded(e.upper95, 4) + "]", e.unit,
                inside ? "covers" : "misses"});
   }
   return table.ToString() + std::to_string(covered) + " of " + std::to_string(compared) +

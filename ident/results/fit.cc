@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/figures/text_table.h"
+#include "datasets/files/number_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/results/fit_result.h"
 #include "ident/solver/large_network_stage.h"
@@ -133,7 +133,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   if (!result.converged) warnings.push_back("the solver stopped before it converged");
   if (RodRunsAway(result)) {
     warnings.push_back("self-propelling: the rod or the person with it runs away from rest at " +
-                       Significant(result.behaviour.fastest_growth, 2) +
+                       Rounded(result.behaviour.fastest_growth, 2) +
                        " 1/s; such a fit predicts nothing beyond the data (a smaller "
                        "--network_prior or --rod=constant holds it)");
   } else if (result.behaviour.self_propelling) {
@@ -147,9 +147,9 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
         "some pushes (--settling_weight holds it to settle sooner)");
   }
   if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
-    warnings.push_back("pushed forwards by " + Significant(d->impulse) + " N s, the pushed person" +
+    warnings.push_back("pushed forwards by " + Rounded(d->impulse, 4) + " N s, the pushed person" +
                        (d->people > 1 ? " of the line" : "") + " ends " +
-                       Significant(-d->pushed_advance, 2) + " m behind the start (" +
+                       Rounded(-d->pushed_advance, 2) + " m behind the start (" +
                        SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   if (result.uncertainty.num_clusters == 1) {

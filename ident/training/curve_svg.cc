@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/figures/text_table.h"
 
 namespace pushid {
 namespace {
@@ -32,17 +32,17 @@ void DrawStage(const std::vector<TrainingPoint>& points, double top, SvgPicture*
   const SvgScale y = axis(most), y_held = axis(most_held);
   for (double tick : y.Ticks(4)) {
     svg->Line(kLeft, y(tick), kRight, y(tick), "grid");
-    svg->Text(kLeft - 6, y(tick) + 4, Significant(tick, 2), "axis end small");
+    svg->Text(kLeft - 6, y(tick) + 4, Rounded(tick, 2), "axis end small");
   }
   if (two_axes) {
     for (double tick : y_held.Ticks(4)) {
-      svg->Text(kRight + 6, y_held(tick) + 4, Significant(tick, 2) + " m",
+      svg->Text(kRight + 6, y_held(tick) + 4, Rounded(tick, 2) + " m",
                 "fill:#d1495b;font-size:10px");
     }
   }
   for (double tick : x.Ticks(8)) {
     if (tick != std::floor(tick)) continue;
-    svg->Text(x(tick), top + kPanel - kBottom + 16, Significant(tick, 4), "axis middle small");
+    svg->Text(x(tick), top + kPanel - kBottom + 16, Rounded(tick, 4), "axis middle small");
   }
   std::vector<std::pair<double, double>> training, held;
   for (const TrainingPoint& p : points) {
@@ -57,7 +57,7 @@ void DrawStage(const std::vector<TrainingPoint>& points, double top, SvgPicture*
   svg->Circle(x(best->epoch), y_held(best->validation_loss), 4, "fill:#d1495b");
   svg->Text(kLeft, top + 34, points.front().stage, "ink bold small");
   svg->Text(kRight, top + 34,
-            "best " + Significant(best->validation_loss, 3) + " at " + std::to_string(best->epoch),
+            "best " + Rounded(best->validation_loss, 3) + " at " + std::to_string(best->epoch),
             "ink end small");
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/time_series.h"
@@ -117,14 +118,13 @@ std::string BandCoverageText(const std::vector<BandCoverage>& coverage) {
   TextTable table({"bands of", "axis", "inside 50 %", "inside 90 %", "mean width of 90 %, m"},
                   {true, true, false, false, false});
   const auto percent = [](double share, double error) {
-    return Significant(100.0 * share, 3) + " +- " + Significant(100.0 * error, 2) + " %";
+    return Rounded(100.0 * share, 3) + " +- " + Rounded(100.0 * error, 2) + " %";
   };
   for (const BandCoverage& c : coverage) {
     for (int axis : {0, 1}) {
       table.Add({c.model_error ? "parameters and model error" : "parameters alone",
                  axis == 0 ? "x" : "y", percent(c.inside50[axis], c.inside50_error[axis]),
-                 percent(c.inside90[axis], c.inside90_error[axis]),
-                 Significant(c.width90[axis], 3)});
+                 percent(c.inside90[axis], c.inside90_error[axis]), Rounded(c.width90[axis], 3)});
     }
   }
   return table.ToString() + "share of held-out frames of " +

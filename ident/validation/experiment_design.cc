@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
@@ -229,7 +230,7 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
   std::vector<DesignRow> rows = design.rows;
   std::stable_sort(rows.begin(), rows.end(),
                    [&](const DesignRow& a, const DesignRow& b) { return score(a) < score(b); });
-  const auto change = [](double ratio) { return Significant(100.0 * (ratio - 1.0), 2) + " %"; };
+  const auto change = [](double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; };
   std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg"};
   if (!all) header.push_back("error of " + parameter);
   header.push_back("mean of all errors");
@@ -241,10 +242,10 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
     const std::string direction = degrees == 0.0     ? "forwards"
                                   : degrees == 90.0  ? "to the left"
                                   : degrees == 180.0 ? "backwards"
-                                                     : Significant(degrees) + " degrees left";
-    std::vector<std::string> cells = {
-        direction, Significant(row.push.acceleration, 3), Significant(row.push.height, 2),
-        Significant(row.push.duration_s, 2), Significant(row.push.mass_kg, 3)};
+                                                     : Rounded(degrees, 4) + " degrees left";
+    std::vector<std::string> cells = {direction, Rounded(row.push.acceleration, 3),
+                                      Rounded(row.push.height, 2), Rounded(row.push.duration_s, 2),
+                                      Rounded(row.push.mass_kg, 3)};
     if (!all) cells.push_back(change(score(row)));
     cells.push_back(change(row.volume_ratio));
     table.Add(cells);
@@ -268,7 +269,7 @@ Result<std::string> DesignText(const ExperimentDesign& design, const std::string
   const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
   if (at != design.parameters.end()) {
     const size_t index = static_cast<size_t>(at - design.parameters.begin());
-    text += "now: " + parameter + " +- " + Significant(design.standard_error[index], 3) + " " +
+    text += "now: " + parameter + " +- " + Rounded(design.standard_error[index], 3) + " " +
             design.units[index] + "\n";
   }
   return text;

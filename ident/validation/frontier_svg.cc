@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/figures/text_table.h"
 #include "ident/problem/behaviour.h"
 
 namespace pushid {
@@ -37,11 +37,11 @@ void DrawAxes(const SvgScale& across, const SvgScale& up, SvgPicture* svg) {
   svg->Line(kLeft, kTop, kLeft, kBottom, "axis");
   for (double tick : across.Ticks(6)) {
     svg->Line(across(tick), kTop, across(tick), kBottom, "grid");
-    svg->Text(across(tick), kBottom + 18, Significant(tick, 3), "ink middle small");
+    svg->Text(across(tick), kBottom + 18, Rounded(tick, 3), "ink middle small");
   }
   for (double tick : up.Ticks(6)) {
     svg->Line(kLeft, up(tick), kRight, up(tick), "grid");
-    svg->Text(kLeft - 8, up(tick) + 4, Significant(tick, 3), "ink end small");
+    svg->Text(kLeft - 8, up(tick) + 4, Rounded(tick, 3), "ink end small");
   }
   svg->Text((kLeft + kRight) / 2, kBottom + 42,
             "fastest cart two seconds after a push, any fold and settling simulation (m/s)",

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
@@ -11,7 +12,7 @@ namespace {
 // A single recording has no error.
 std::string WithError(double value, double error, const MeanScore& mean) {
   if (mean.recordings == 0) return "-";
-  return Significant(value, 3) + (mean.recordings > 1 ? " +- " + Significant(error, 2) : "");
+  return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
 std::string MeanText(const MeanScore& mean) {
@@ -29,10 +30,10 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
       const RecordingScore& r = evaluation.model.recordings[i];
       const bool ok = r.failure.empty();
-      table.Add({r.id, std::to_string(r.frames), ok ? Significant(r.hip_ade, 3) : "-",
-                 ok ? Significant(r.hip_fde, 3) : "-",
-                 Significant(evaluation.static_baseline.recordings[i].hip_ade, 3),
-                 Significant(evaluation.constant_velocity.recordings[i].hip_ade, 3), r.failure});
+      table.Add({r.id, std::to_string(r.frames), ok ? Rounded(r.hip_ade, 3) : "-",
+                 ok ? Rounded(r.hip_fde, 3) : "-",
+                 Rounded(evaluation.static_baseline.recordings[i].hip_ade, 3),
+                 Rounded(evaluation.constant_velocity.recordings[i].hip_ade, 3), r.failure});
     }
     text += table.ToString() + "\n";
     if (evaluation.model.propagation.recordings > 0) {
@@ -76,8 +77,8 @@ namespace {
 // One honest sentence on two configurations.
 std::string ConclusionText(const PairedDifference& d) {
   if (d.recordings == 0) return d.b + " cannot be compared with " + d.a + ".";
-  const std::string by = Significant(std::abs(d.hip_ade), 2) + " +- " +
-                         Significant(d.hip_ade_error, 2) + " m of hipADE";
+  const std::string by =
+      Rounded(std::abs(d.hip_ade), 2) + " +- " + Rounded(d.hip_ade_error, 2) + " m of hipADE";
   if (std::abs(d.hip_ade) <= d.hip_ade_error) {
     return d.b + " is not distinguishable from " + d.a + " (" + by + ").";
   }
@@ -102,8 +103,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (const FoldScore& fold : candidates[0].folds) {
     std::vector<std::string> row = {fold.name,
                                     std::to_string(fold.held_out),
-                                    Significant(fold.hip_ade, 3),
-                                    Significant(fold.hip_fde, 3),
+                                    Rounded(fold.hip_ade, 3),
+                                    Rounded(fold.hip_fde, 3),
                                     std::to_string(fold.failures),
                                     std::to_string(fold.falls)};
     if (groups) {
@@ -128,10 +129,10 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
     table.Add({candidate.predictor, WithError(mean.hip_ade, mean.hip_ade_error, mean),
                WithError(mean.hip_fde, mean.hip_fde_error, mean),
-               Significant(frames.hip_ade, 3) + " / " + Significant(frames.hip_fde, 3),
-               compared ? Significant(difference.hip_ade, 2) + " +- " +
-                              Significant(difference.hip_ade_error, 2)
-                        : "",
+               Rounded(frames.hip_ade, 3) + " / " + Rounded(frames.hip_fde, 3),
+               compared
+                   ? Rounded(difference.hip_ade, 2) + " +- " + Rounded(difference.hip_ade_error, 2)
+                   : "",
                std::to_string(candidate.failures), std::to_string(candidate.falls),
                candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
                folds_that(candidate.settling, candidate),

@@ -102,8 +102,8 @@ ReportSection IdentifiabilitySection(const FitResult& result) {
   ReportSection section{"identifiability", "What the data can tell apart", {}, {}, {}, {}, {}, ""};
   const Diagnostics& d = result.diagnostics;
   section.paragraphs.push_back(
-      "Condition number of the scaled Jacobian: " + Significant(d.start.condition_number, 3) +
-      " at the start, " + Significant(result.uncertainty.condition_number, 3) + " at the optimum.");
+      "Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
+      " at the start, " + Rounded(result.uncertainty.condition_number, 3) + " at the optimum.");
   for (const NullDirection& n : result.uncertainty.null_directions) {
     section.paragraphs.push_back("Unidentifiable: " + n.sentence);
   }

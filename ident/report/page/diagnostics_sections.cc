@@ -40,7 +40,7 @@ std::string ExplainedBars(std::vector<const RecordingDiagnostics*> recordings) {
     svg.Rect({std::min(scale(0.0), scale(value)), y + 1, std::abs(scale(value) - scale(0.0)), 11},
              value < 0.0 ? "fill:#d55e00" : "fill:#3b82f6");
     const bool beyond = recordings[i]->explained < worst;
-    svg.Text(right + 8, y + 10, Significant(recordings[i]->explained, 3) + (beyond ? " <<" : ""),
+    svg.Text(right + 8, y + 10, Rounded(recordings[i]->explained, 3) + (beyond ? " <<" : ""),
              "ink small");
   }
   return svg.ToInline();
@@ -82,8 +82,8 @@ TextTable OutlierTable(const Diagnostics& d) {
   for (size_t i = 0; i < std::min(kMostOutliers, runs.size()); ++i) {
     const OutlierRun& run = runs[i];
     table.Add({run.recording, std::to_string(run.person),
-               std::to_string(run.from) + " - " + std::to_string(run.to), Significant(run.worst, 3),
-               Significant(run.weight, 2)});
+               std::to_string(run.from) + " - " + std::to_string(run.to), Rounded(run.worst, 3),
+               Rounded(run.weight, 2)});
   }
   return table;
 }
@@ -208,9 +208,8 @@ ReportSection ResidualSection(const FitResult& result) {
     };
     add("own", w.autocorrelation, w.error, 1);
     add("push", w.push, w.push_error, 0);
-    tests.Add({w.channel, w.autocorrelation.empty() ? "-" : Significant(w.autocorrelation[0], 2),
-               Significant(w.mean_band, 1), Significant(w.ljung_box, 3),
-               Significant(w.ljung_box_p, 2)});
+    tests.Add({w.channel, w.autocorrelation.empty() ? "-" : Rounded(w.autocorrelation[0], 2),
+               Rounded(w.mean_band, 1), Rounded(w.ljung_box, 3), Rounded(w.ljung_box_p, 2)});
   }
   own.insert(own.end(), push.begin(), push.end());
   section.tables.push_back({"", tests});
@@ -231,7 +230,7 @@ ReportSection SolveSection(const FitResult& result) {
                    {false, true, false, false, true, false, true});
   for (size_t i = 0; i < ranked.size(); ++i) {
     const SolveStart& s = *ranked[i];
-    starts.Add({std::to_string(i + 1), s.kind, s.usable ? Significant(s.cost, 6) : "-",
+    starts.Add({std::to_string(i + 1), s.kind, s.usable ? Rounded(s.cost, 6) : "-",
                 std::to_string(s.iterations), s.converged ? "yes" : "no",
                 std::to_string(s.failed.size()), s.message});
   }

@@ -73,7 +73,7 @@ class Forest {
     svg_.Line(kForestLeft, y + 14, kForestRight, y + 14, "grid");
     for (double tick : scale.Ticks(6)) {
       svg_.Line(scale(tick), y + 14, scale(tick), y + 17, "axis");
-      svg_.Text(scale(tick), y + 26, Significant(tick, 6), "faint small middle");
+      svg_.Text(scale(tick), y + 26, Rounded(tick, 6), "faint small middle");
     }
     if (row.unit != "1") svg_.Text(kForestRight + 8, y + 17, row.unit, "faint small");
     double at = y - 3.0 * (static_cast<double>(row.intervals.size()) - 1.0);
@@ -83,7 +83,7 @@ class Forest {
       svg_.Polyline({{lower, at}, {upper, at}}, look);
       at += 6.0;
     }
-    svg_.Circle(scale(row.value), y, 4.5, "ink", row.name + " = " + Significant(row.value));
+    svg_.Circle(scale(row.value), y, 4.5, "ink", row.name + " = " + Rounded(row.value, 4));
     if (!row.has_nominal) return;
     const double x = scale(row.nominal);
     svg_.Polyline({{x, y - 8}, {x + 5, y}, {x, y + 8}, {x - 5, y}, {x, y - 8}}, kNominalLook);

@@ -1,4 +1,5 @@
 // ident: what was fitted and what came of it; and where it came from.
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/self_network_io.h"
@@ -48,10 +49,10 @@ ReportSection SummarySection(const FitResult& result) {
   facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.self_network->rod)});
   facts.Add({"interaction", NameOf(o.model.interaction)});
-  facts.Add({"cost", Significant(result.cost, 6)});
+  facts.Add({"cost", Rounded(result.cost, 6)});
   if (!result.diagnostics.recordings.empty()) {
-    facts.Add({"hip motion explained, mean over recordings",
-               Significant(MeanExplained(result), 3) + " %"});
+    facts.Add(
+        {"hip motion explained, mean over recordings", Rounded(MeanExplained(result), 3) + " %"});
   }
   section.tables.push_back({"", facts});
   if (const std::string network = NetworkText(result); !network.empty()) {
