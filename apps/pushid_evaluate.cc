@@ -65,7 +65,7 @@ int Run() {
   const Result<std::optional<BodyEvaluation>> bodies = Bodies(model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
   const Evaluation evaluation =
-      Evaluate(model.value(), MapRecordings(recordings.value(), model.value().mapping));
+      Evaluate(model.value(), MakePendulumRecordings(recordings.value(), model.value().mapping));
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
   if (bodies.value()) {

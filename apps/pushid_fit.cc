@@ -1,13 +1,11 @@
 // apps: pushid-fit: recordings in, identified parameters out.
-#include <gflags/gflags.h>
-
 #include <chrono>
 #include <cstdio>
 #include <ctime>
 
 #include "apps/flags/confidence_flags.h"
-#include "apps/flags/fit_flag_checks.h"
 #include "apps/flags/fit_flags.h"
+#include "apps/flags/fit_program_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -15,21 +13,14 @@
 #include "datasets/files/number_text.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
+#include "ident/results/fit.h"
 #include "ident/results/result_json.h"
-#include "ident/solver/large_network_stage.h"
 #include "ident/uncertainty/bootstrap.h"
 
-DECLARE_uint64(seed);
-DECLARE_string(bootstrap_file);
-
-DEFINE_string(model_out, "", "write the identified model here (JSON)");
-DEFINE_int32(
-    resample, 0,
-    "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
-    "k; 0: the recordings as they are");
-DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
-
 namespace {
+
+using namespace pushid;
+using Clock = std::chrono::steady_clock;
 
 std::string Today() {
   char text[32];
@@ -38,88 +29,98 @@ std::string Today() {
   return text;
 }
 
-// The recordings of replica k, those drawn several times standing there several times.
-std::vector<pushid::Recording> Resampled(const std::vector<pushid::Recording>& recordings) {
-  if (FLAGS_resample == 0) return recordings;
+// The recordings of a bootstrap's replica, those drawn several times standing there several times.
+std::vector<Recording> Resampled(const std::vector<Recording>& recordings, int replica) {
+  if (replica == 0) return recordings;
   const std::vector<int> counts =
-      pushid::DrawRecordings(static_cast<int>(recordings.size()), FLAGS_seed, FLAGS_resample);
-  std::vector<pushid::Recording> drawn;
+      DrawRecordings(static_cast<int>(recordings.size()), Seed(), replica);
+  std::vector<Recording> drawn;
   for (size_t i = 0; i < recordings.size(); ++i) {
     drawn.insert(drawn.end(), counts[i], recordings[i]);
   }
   return drawn;
 }
 
+Provenance FromHere() {
+  Provenance from;
+  from.version = Version();
+  from.configuration = EffectiveFlags();
+  // Where the data lay is no part of what was found; the hash is.
+  from.configuration.erase("recordings");
+  from.changed_flags = ChangedFlags();
+  from.manifest = FLAGS_recordings;
+  from.setting = FLAGS_setting;
+  const Result<std::string> hash = HashFile(FLAGS_recordings);
+  if (hash.ok()) from.manifest_hash = hash.value();
+  return from;
+}
+
+MaybeError WriteModel(const std::string& path, const FittedModel& model, Clock::time_point begin) {
+  RunInfo run;
+  run.date = Today();
+  run.host = HostName();
+  run.model_path = path;
+  run.num_threads = NumThreads();
+  run.total_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  return WriteJson(path, ToJson(model, run));
+}
+
 int Run() {
-  using namespace pushid;
-  const auto begin = std::chrono::steady_clock::now();
+  const auto begin = Clock::now();
   Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
-  if (FLAGS_resample < 0) return Fail("--resample must not be negative");
+  const Result<FitProgramFlags> flags = FitProgramFlagsFromCommandLine();
+  if (!flags.ok()) return Fail(flags.error());
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
-  if (FLAGS_check) return kDone;
-  for (const std::string& warning : FlagWarnings(options.value())) Warn(warning);
-  if (!FLAGS_model_out.empty()) {
-    if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
+  if (flags.value().check) return kDone;
+  const std::string& model_out = flags.value().model_out;
+  if (!model_out.empty()) {
+    if (MaybeError error = CheckWritable(model_out)) return Fail(*error);
   }
-  std::vector<std::string> file_warnings;  // about the files; a result says what it was made of
+  std::vector<std::string> file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({}, false, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
-  const std::vector<PendulumRecording> pendulums =
-      MapRecordings(Resampled(recordings.value()), options.value().mapping);
+  const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(
+      Resampled(recordings.value(), flags.value().resample), options.value().mapping);
 
-  HoldUnusedTail(pendulums, &options.value());
-  if (options.value().table.Free().empty()) {
-    return Fail("every parameter that acts on these recordings is fixed: nothing is left to fit");
+  options = FitOptionsFromFlags(&pendulums);
+  if (!options.ok()) return Fail(options.error());
+  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
+  if (MaybeError error = CheckConfidence(options.value(), static_cast<int>(pendulums.size()))) {
+    return Fail(*error);
   }
-  const int count = static_cast<int>(pendulums.size());
-  if (MaybeError error = CheckConfidence(options.value(), count)) return Fail(*error);
-  for (const std::string& warning : UnitWarnings(pendulums)) Warn(warning);
-  // A large network has no force yet and no Jacobian at all: the physical model is what is checked.
-  FitOptions checked = options.value();
-  if (NeedsGradientTraining(checked)) checked = PhysicsAlone(checked);
-  if (MaybeError error = CheckEffects(FitProblem(pendulums, checked))) return Fail(*error);
+  std::vector<std::string> unit_warnings;
+  const MaybeError unprepared = PrepareFit(pendulums, &options.value(), &unit_warnings);
+  for (const std::string& warning : unit_warnings) Warn(warning);
+  if (unprepared) return Fail(*unprepared);
 
   ProgressLine line;
-  FitResult result = Fit(pendulums, options.value(),
-                         [&line](const std::string& phase, int iteration, double cost) {
-                           line.Show("fitting " + phase + ": iteration " +
-                                     std::to_string(iteration) + ", cost " + Rounded(cost, 6));
-                         });
+  FittedModel model;
+  FitResult& result = model.fit;
+  result = Fit(pendulums, options.value(),
+               [&line](const std::string& phase, int iteration, double cost) {
+                 line.Show("fitting " + phase + ": iteration " + std::to_string(iteration) +
+                           ", cost " + Rounded(cost, 6));
+               });
   line.Finish();
   if (!result.ok()) {
     std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
     return kFitFailed;
   }
-  if (MaybeError error = AddConfidence(pendulums, &result)) return Fail(*error);
+  if (MaybeError error = AddConfidence(pendulums, &model)) return Fail(*error);
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
-  result.version = Version();
-  result.configuration = EffectiveFlags();
-  // Where the data lay is no part of what was found; the hash is.
-  result.configuration.erase("recordings");
-  result.changed_flags = ChangedFlags();
-  result.manifest = FLAGS_recordings;
-  result.setting = FLAGS_setting;
-  const Result<std::string> hash = HashFile(FLAGS_recordings);
-  if (hash.ok()) result.manifest_hash = hash.value();
-  result.diagnostics.advice = Advise(result);
+  model.provenance = FromHere();
+  model.advice = Advise(model);
   const Result<std::string> design = FlaggedDesign(pendulums, result);
   if (!design.ok()) return Fail(design.error());
 
-  std::printf("%s%s", ReportText(result).c_str(), design.value().c_str());
-  if (!FLAGS_model_out.empty()) {
-    RunInfo run;
-    run.date = Today();
-    run.host = HostName();
-    run.model_path = FLAGS_model_out;
-    run.num_threads = NumThreads();
-    run.total_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (MaybeError error = WriteJson(FLAGS_model_out, ToJson(result, run))) return Fail(*error);
-    std::printf("model written to %s\n", FLAGS_model_out.c_str());
+  std::printf("%s%s", ReportText(model).c_str(), design.value().c_str());
+  if (!model_out.empty()) {
+    if (MaybeError error = WriteModel(model_out, model, begin)) return Fail(*error);
+    std::printf("model written to %s\n", model_out.c_str());
   }
   if (result.converged) return kDone;
   std::fprintf(stderr, "pushid-fit: the fit did not converge: %s\n", result.message.c_str());

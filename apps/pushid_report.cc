@@ -25,21 +25,21 @@ namespace {
 using namespace pushid;
 
 // The recordings to draw: those of the flags, or those that were fitted.
-Result<std::vector<Recording>> RecordingsOf(const FitResult& result) {
+Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
   if (FLAGS_recordings.empty()) return std::vector<Recording>();
   std::vector<std::string> ids;
   const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != "all";
-  for (const FittedRecording& r : result.recordings) {
+  for (const FittedRecording& r : fit.recordings) {
     if (!chosen) ids.push_back(r.id);
   }
   return LoadFlaggedRecordings(ids, true);
 }
 
-int WriteWhole(const FitResult& result) {
+int WriteWhole(const FittedModel& model) {
   if (!FLAGS_html_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_html_out)) return Fail(*error);
   }
-  const Result<std::vector<Recording>> recordings = RecordingsOf(result);
+  const Result<std::vector<Recording>> recordings = RecordingsOf(model.fit);
   if (!recordings.ok()) return Fail(recordings.error());
   ProgressLine line;
   BuildReportOptions options;
@@ -47,7 +47,7 @@ int WriteWhole(const FitResult& result) {
   options.progress = [&line](int done, int total) {
     line.Show("recording " + std::to_string(done) + " of " + std::to_string(total));
   };
-  const Report report = BuildReport(result, recordings.value(), options);
+  const Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
   if (!FLAGS_csv_dir.empty()) {
@@ -68,18 +68,18 @@ int Run() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return Fail(*missing);
   }
-  const Result<FitResult> result = ReadFitResult(FLAGS_model);
-  if (!result.ok()) return Fail(result.error());
+  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
+  if (!model.ok()) return Fail(model.error());
   if (!FLAGS_truth.empty()) {
     const Result<std::map<std::string, double>> truth = ReadTruth(FLAGS_truth);
     if (!truth.ok()) return Fail(truth.error());
-    std::printf("%s", TruthTable(result.value(), truth.value()).c_str());
+    std::printf("%s", TruthTable(model.value().fit, truth.value()).c_str());
     return kDone;
   }
   if (FLAGS_text || !FLAGS_html_out.empty() || !FLAGS_csv_dir.empty()) {
-    return WriteWhole(result.value());
+    return WriteWhole(model.value());
   }
-  std::printf("%s", ReportText(result.value()).c_str());
+  std::printf("%s", ReportText(model.value()).c_str());
   return kDone;
 }
 

@@ -40,7 +40,7 @@ using namespace pushid;
 // Either with --set.
 Result<IdentifiedModel> Truth() {
   if (!FLAGS_model.empty()) return LoadFlaggedModel();
-  const Preset preset = MakePreset("tail").value();
+  const FitOptions preset = MakePreset("tail").value();
   IdentifiedModel model;
   model.options = preset.model;
   model.table = preset.table;

@@ -79,12 +79,12 @@ MaybeError CheckFlags() {
 }
 
 Result<RestorationRunOptions> RunOptions() {
-  const Result<FitResult> fit = ReadFitResult(FLAGS_model);
-  if (!fit.ok()) return fit.error();
+  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
+  if (!model.ok()) return model.error();
   const Result<PostprocessOptions> postprocess = PostprocessOfFlags();
   if (!postprocess.ok()) return postprocess.error();
   RestorationRunOptions options;
-  options.fit = fit.value().options;
+  options.fit = model.value().fit.options;
   if (RodMoves(options.fit.model)) {
     return Error{"its rod moves, and bodies hang on rods of constant length; fit --rod=constant",
                  FLAGS_model};

@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "models/enum_names.h"
+
 namespace pushid {
 
 // What the balance error is measured from.
@@ -10,6 +12,9 @@ enum class Posture {
   kUpright,  // from the vertical (LDP)
   kInitial   // from the person's posture at frame 0, with the torque that holds it
 };
+constexpr EnumNames<Posture, 2> Names(Posture) {
+  return {{{"upright", Posture::kUpright}, {"initial", Posture::kInitial}}};
+}
 
 // How the gains, quoted for the reference person, carry over to another body.
 enum class GainScaling {
@@ -18,23 +23,39 @@ enum class GainScaling {
   kBody   // forces times M / 85 kg, stiffness also times l / 0.95 m, angular damping times its
           // square
 };
+constexpr EnumNames<GainScaling, 3> Names(GainScaling) {
+  return {
+      {{"none", GainScaling::kNone}, {"mass", GainScaling::kMass}, {"body", GainScaling::kBody}}};
+}
 
 enum class FrictionKind { kIsotropic, kAnisotropic };
+constexpr EnumNames<FrictionKind, 2> Names(FrictionKind) {
+  return {{{"isotropic", FrictionKind::kIsotropic}, {"anisotropic", FrictionKind::kAnisotropic}}};
+}
 
 // What happens to the other forces while a push lasts.
 enum class PushUse {
   kAsRecorded,  // what the recording's push kind says
   kAdded        // the push is added to all other forces, whatever its kind
 };
+constexpr EnumNames<PushUse, 2> Names(PushUse) {
+  return {{{"as_recorded", PushUse::kAsRecorded}, {"added", PushUse::kAdded}}};
+}
 
 // What a `net` push, which covers only its first part, does after its last published frame.
 enum class PushTail { kNone, kExponential };
+constexpr EnumNames<PushTail, 2> Names(PushTail) {
+  return {{{"none", PushTail::kNone}, {"exponential", PushTail::kExponential}}};
+}
 
 // Kd_x and Kd_y multiply the cart's acceleration: an algebraic loop, hence off by default.
 enum class CartDerivative {
   kNone,
   kBackward  // (v_t - v_{t-1}) / dt, as LDP's code does
 };
+constexpr EnumNames<CartDerivative, 2> Names(CartDerivative) {
+  return {{{"none", CartDerivative::kNone}, {"backward", CartDerivative::kBackward}}};
+}
 
 // What people do to each other: pieces that add up (interaction.h).
 struct InteractionTerms {

@@ -10,11 +10,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/enum_names.h"
 #include "models/ipm.h"
 
 namespace pushid {
 
 enum class SkeletonMapping { kExact, kLdp };
+constexpr EnumNames<SkeletonMapping, 2> Names(SkeletonMapping) {
+  return {{{"exact", SkeletonMapping::kExact}, {"ldp", SkeletonMapping::kLdp}}};
+}
 
 struct MappedPose {
   Vector4<double> q;   // [x, y, theta, phi]

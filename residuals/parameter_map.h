@@ -14,12 +14,16 @@
 #include <string>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/parameters.h"
 
 namespace pushid {
 
 // What pooled parameters may differ by: the unit that a deviation belongs to.
 enum class PoolBy { kSubject, kSetting };
+constexpr EnumNames<PoolBy, 2> Names(PoolBy) {
+  return {{{"subject", PoolBy::kSubject}, {"setting", PoolBy::kSetting}}};
+}
 
 // The scale on which a parameter is fitted.
 enum class Transform {
@@ -27,6 +31,10 @@ enum class Transform {
   kLog,   // positive parameters
   kLogit  // unit interval
 };
+constexpr EnumNames<Transform, 3> Names(Transform) {
+  return {
+      {{"identity", Transform::kIdentity}, {"log", Transform::kLog}, {"logit", Transform::kLogit}}};
+}
 
 template <typename T>
 T ToNatural(Transform transform, const T& fitted) {

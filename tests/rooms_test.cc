@@ -1,5 +1,5 @@
-// Dependencies point down only: apps -> ident -> residuals -> models. datasets serves residuals,
-// ident and apps, and may use models; models includes no other room.
+// Dependencies point down only: apps -> ident -> residuals -> datasets -> models, and inside a room
+// from a subfolder to those that stand above it in the room's list.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,6 +23,27 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"ident", {"residuals", "datasets", "models"}},
     {"apps", {"ident", "residuals", "datasets", "models"}},
 };
+
+// The order of each room's subfolders; "" is the room itself.
+const std::map<std::string, std::vector<std::string>> kFloors = {
+    {"models", {"", "restoration", "generators"}},
+    {"datasets", {"files", "formats", "manifest", "sensors", "loading", "synthetic", "inspection"}},
+    {"residuals", {"kernels", "", "sensitivities", "cost_functions", "adjoint"}},
+    {"ident",
+     {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
+      "prediction", "validation", "push", "bodies", "training", "formations", "report",
+      "report/page", ""}},
+    {"apps", {"support", "flags", "batch", ""}},
+};
+
+// The floor that a file "room/folder/file.h" stands on; -1: none.
+int FloorOf(const std::string& file) {
+  const size_t slash = file.find('/'), last = file.rfind('/');
+  const auto& floors = kFloors.at(file.substr(0, slash));
+  const std::string folder = last > slash ? file.substr(slash + 1, last - slash - 1) : "";
+  const auto at = std::find(floors.begin(), floors.end(), folder);
+  return at == floors.end() ? -1 : static_cast<int>(at - floors.begin());
+}
 
 std::vector<fs::path> Sources(const fs::path& room) {
   std::vector<fs::path> files;
@@ -64,6 +85,21 @@ TEST(RoomsTest, NothingIncludesUpward) {
     }
   }
   EXPECT_GT(files, 50) << "the sources were not found";
+}
+
+TEST(RoomsTest, FloorsIncludeOnlyWhatStandsAboveThem) {
+  for (const auto& [room, floors] : kFloors) {
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      const std::string here = fs::relative(file, PUSHID_SOURCE_DIR).generic_string();
+      const int floor = FloorOf(here);
+      EXPECT_GE(floor, 0) << here << ": no folder of the room " << room;
+      ForEachInclude(file, [&, &own = room](int line, const std::string& included) {
+        if (included.substr(0, included.find('/')) != own) return;
+        EXPECT_LE(FloorOf(included), floor) << here << ":" << line << ": must not include "
+                                            << included << ", which stands on a later floor";
+      });
+    }
+  }
 }
 
 // The maths stays free of the solver, the log, JSON and files.

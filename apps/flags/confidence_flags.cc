@@ -10,10 +10,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/results/confidence.h"
-#include "ident/solver/large_network_stage.h"
 #include "ident/validation/experiment_design.h"
-
-DECLARE_uint64(seed);
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
@@ -85,22 +82,22 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
                known};
 }
 
-MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FittedModel* model) {
   ProgressLine line;
   if (!FLAGS_profile.empty()) {
     if (MaybeError error =
-            AddProfiles(recordings, ProfileNames(), NumThreads(), Show(&line, "profile"), result)) {
+            AddProfiles(recordings, ProfileNames(), NumThreads(), Show(&line, "profile"), model)) {
       return Error{"--profile: " + error->ToString()};
     }
   }
   if (FLAGS_bootstrap > 0) {
     BootstrapOptions options;
     options.replicas = FLAGS_bootstrap;
-    options.seed = FLAGS_seed;
+    options.seed = Seed();
     options.file = FLAGS_bootstrap_file;
     options.num_threads = NumThreads();
     if (MaybeError error =
-            AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), result)) {
+            AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), model)) {
       return *error;
     }
   }

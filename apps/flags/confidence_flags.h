@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
@@ -18,7 +18,7 @@ MaybeError CheckConfidenceFlags();
 MaybeError CheckConfidence(const FitOptions& options, int recordings);
 
 // Adds what the flags ask for.
-MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FitResult* result);
+MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FittedModel* model);
 
 // The table of --design, or nothing.
 Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,

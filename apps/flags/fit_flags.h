@@ -1,21 +1,22 @@
-// apps: the flags that say what to fit and how; shared by pushid-fit and pushid-crossvalidate.
+// apps: the flags that say what to fit and how: the rows of the option table
+// (ident/parameters/option_table.h) as gflags; shared by pushid-fit and pushid-crossvalidate.
 #pragma once
 
-#include <string>
-#include <vector>
+#include <cstdint>
 
 #include "datasets/files/error.h"
-#include "ident/parameters/fit_options.h"
+#include "ident/results/fit_setup.h"
 
 namespace pushid {
 
-// Flags over the preset's settings.
-Result<FitOptions> FitOptionsFromFlags();
+// Those that the command line gave, even with their defaults' values.
+GivenOptions GivenFitFlags();
 
-// The same with a space-separated list of other flags ("--self_force=linear --push_tail=none") on
-// top: a candidate for pushid-crossvalidate. The flags are put back afterwards.
-Result<FitOptions> FitOptionsWith(const std::string& extra_flags);
+// The given flags over the preset's settings. recordings: what --preset=auto looks at; null while
+// they are not known. Errors also where a given flag acts on nothing.
+Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings = nullptr);
 
 int NumThreads();
+uint64_t Seed();
 
 }  // namespace pushid

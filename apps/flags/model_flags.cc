@@ -14,9 +14,9 @@ Result<IdentifiedModel> LoadFlaggedModel() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return *missing;
   }
-  const Result<FitResult> result = ReadFitResult(FLAGS_model);
-  if (!result.ok()) return result.error();
-  IdentifiedModel model = ModelOf(result.value());
+  const Result<FittedModel> read = ReadFittedModel(FLAGS_model);
+  if (!read.ok()) return read.error();
+  IdentifiedModel model = ModelOf(read.value().fit);
   model.source = FLAGS_model;
   if (MaybeError error = SetValues(FLAGS_set, &model)) return *error;
   return model;

@@ -5,6 +5,7 @@
 
 #include "datasets/files/error.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/identified_model.h"
 
 DECLARE_string(model);
 

@@ -107,13 +107,4 @@ MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   return std::nullopt;
 }
 
-std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
-                                             SkeletonMapping mapping) {
-  std::vector<PendulumRecording> pendulums;
-  for (const Recording& recording : recordings) {
-    pendulums.push_back(MakePendulumRecording(recording, mapping));
-  }
-  return pendulums;
-}
-
 }  // namespace pushid

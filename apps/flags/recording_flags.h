@@ -31,7 +31,4 @@ Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);
 
-std::vector<PendulumRecording> MapRecordings(const std::vector<Recording>& recordings,
-                                             SkeletonMapping mapping);
-
 }  // namespace pushid

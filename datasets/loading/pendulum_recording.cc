@@ -81,4 +81,13 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   return result;
 }
 
+std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
+                                                      SkeletonMapping mapping) {
+  std::vector<PendulumRecording> pendulums;
+  for (const Recording& recording : recordings) {
+    pendulums.push_back(MakePendulumRecording(recording, mapping));
+  }
+  return pendulums;
+}
+
 }  // namespace pushid

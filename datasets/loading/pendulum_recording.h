@@ -40,5 +40,7 @@ struct PendulumRecording {
 // Rod length and cart height are those of frame 0; the start velocity is zero or estimated, as the
 // recording says (`free` starts from the estimate).
 PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping);
+std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
+                                                      SkeletonMapping mapping);
 
 }  // namespace pushid

@@ -15,6 +15,7 @@
 
 #include "ident/bodies/body_metrics.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/identified_model.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 

@@ -70,7 +70,6 @@ struct Diagnostics {
   std::vector<Whiteness> whiteness;
   Leverage leverage;
   std::vector<TracePoint> trace;  // of the best start
-  std::vector<Advice> advice;
 };
 
 // The recordings at the point where a solve starts.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ident/parameters/parameter_table.h"
+#include "models/enum_names.h"
 #include "models/skeleton_mapping.h"
 #include "residuals/frame_residual.h"
 
@@ -16,19 +17,26 @@ enum class RecordingWeight {
   kFrame,     // every frame counts the same: long recordings count more
   kRecording  // every recording counts the same, as in the recording mean of hipADE
 };
+constexpr EnumNames<RecordingWeight, 2> Names(RecordingWeight) {
+  return {{{"frame", RecordingWeight::kFrame}, {"recording", RecordingWeight::kRecording}}};
+}
 
 // Where the first start of a fit comes from.
 enum class FitStart {
   kNominal,       // the table's nominal values
   kEquationError  // equation error minimized from the nominal values
 };
+constexpr EnumNames<FitStart, 2> Names(FitStart) {
+  return {{{"nominal", FitStart::kNominal}, {"equation_error", FitStart::kEquationError}}};
+}
 
 struct FitOptions {
-  std::string preset = "tail";
+  std::string preset = "tail";  // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;
   SkeletonMapping mapping = SkeletonMapping::kExact;
   ModelOptions model;
   ParameterTable table;
+  bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
   ResidualSigmas sigmas;
   RecordingWeight recording_weight = RecordingWeight::kRecording;
@@ -41,9 +49,11 @@ struct FitOptions {
   double mode_margin = 0.2;
   // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
   double stability_weight = 0.0;
-  PoolBy pool_by = PoolBy::kSubject;  // what the parameters that --pool names may differ by
+  // Which parameters may differ by unit: names, comma-separated, "all" or "none".
+  std::string pool = "none";
+  PoolBy pool_by = PoolBy::kSubject;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
-  // a log scale is about 20 %). Acts on the parameters that --pool names.
+  // a log scale is about 20 %). Acts on pooled parameters.
   double pooling_sigma = 0.2;
 
   // The self-force network of `model` (whose weights are the start): standard deviation of the
@@ -73,6 +83,14 @@ struct FitOptions {
   double function_tolerance = 1e-10;
   double gradient_tolerance = 1e-12;
   double parameter_tolerance = 1e-9;
+
+  // Whether a fit could use them; `error` says which option has which value and what it must be.
+  bool IsValid(std::string* error) const;
 };
+
+// More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
+// recordings would hold 20,000 rows of them.
+inline constexpr int kMostGaussNewtonWeights = 2000;
+bool NeedsGradientTraining(const FitOptions& options);
 
 }  // namespace pushid

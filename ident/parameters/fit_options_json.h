@@ -12,6 +12,8 @@ namespace pushid {
 
 nlohmann::ordered_json OptionsJson(const FitOptions& options);
 nlohmann::ordered_json TableJson(const ParameterTable& table);
+// Both: everything that decides what a fit of given recordings finds.
+nlohmann::ordered_json SettingsJson(const FitOptions& options);
 
 // Throw what nlohmann's JSON throws for what is missing or of another type, and std::runtime_error
 // for unknown names. What was learned is not in them (self_network_io.h).

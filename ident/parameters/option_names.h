@@ -1,55 +1,25 @@
-// ident: names of the options, one table for flags and JSON alike.
+// ident: options by name, for flags and JSON alike. The names stand beside the enums
+// (models/enum_names.h).
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/parameters/fit_options.h"
-#include "ident/uncertainty/profile.h"
-#include "ident/uncertainty/uncertainty.h"
-#include "ident/validation/crossvalidation.h"
+#include "models/enum_names.h"
+#include "models/options.h"
 
 namespace pushid {
-
-template <typename E>
-using OptionNames = std::vector<std::pair<std::string, E>>;
-
-const OptionNames<Posture>& Names(Posture);
-const OptionNames<GainScaling>& Names(GainScaling);
-const OptionNames<FrictionKind>& Names(FrictionKind);
-const OptionNames<PushUse>& Names(PushUse);
-const OptionNames<PushTail>& Names(PushTail);
-const OptionNames<CartDerivative>& Names(CartDerivative);
-const OptionNames<SkeletonMapping>& Names(SkeletonMapping);
-const OptionNames<SelfForceKind>& Names(SelfForceKind);
-const OptionNames<RecordingWeight>& Names(RecordingWeight);
-const OptionNames<FitStart>& Names(FitStart);
-const OptionNames<PoolBy>& Names(PoolBy);
-const OptionNames<FoldScheme>& Names(FoldScheme);
-const OptionNames<Transform>& Names(Transform);
-const OptionNames<EstimateStatus>& Names(EstimateStatus);
-const OptionNames<ProfileClass>& Names(ProfileClass);
-
-template <typename E>
-std::string NameOf(E value) {
-  for (const auto& [name, option] : Names(E{})) {
-    if (option == value) return name;
-  }
-  return "";
-}
 
 // Errors: "--posture is 'flat'; it must be upright or initial".
 template <typename E>
 MaybeError ParseName(const std::string& flag, const std::string& text, E* value) {
   std::string known;
-  for (const auto& [name, option] : Names(E{})) {
-    if (name == text) {
-      *value = option;
+  for (const EnumName<E>& row : Names(E{})) {
+    if (text == row.name) {
+      *value = row.value;
       return std::nullopt;
     }
-    known += (known.empty() ? "" : ", ") + name;
+    known += (known.empty() ? "" : ", ") + std::string(row.name);
   }
   return Error{flag + " is '" + text + "'; it must be one of " + known};
 }

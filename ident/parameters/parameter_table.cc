@@ -1,4 +1,4 @@
-// ident: the parameters' facts and the two presets.
+// ident: the parameters' facts.
 #include "ident/parameters/parameter_table.h"
 
 #include <algorithm>
@@ -24,7 +24,8 @@ ParameterSpec Spec(Parameter id, const char* unit, double nominal, double lower,
   return spec;
 }
 
-// Everything fixed at a value that makes its term vanish, or at LDP's value.
+}  // namespace
+
 ParameterTable BaseTable() {
   const Transform plain = Transform::kIdentity, log = Transform::kLog;
   ParameterTable table;
@@ -71,63 +72,6 @@ ParameterTable BaseTable() {
   return table;
 }
 
-Preset TailPreset() {
-  Preset preset;
-  preset.name = "tail";
-  preset.table = BaseTable();
-  ParameterTable& table = preset.table;
-  struct Start {
-    Parameter id;
-    double value;
-  };
-  // Round numbers, not fitted ones. Each is the centre of a weak prior as wide as itself: stiffness
-  // and cross term slide along a ridge that fits no better and predicts unseen pushes worse (hipADE
-  // 0.112 against 0.096 m in cross-validation); the prior's exact centre hardly matters.
-  for (const Start& start :
-       {Start{kMu, 40}, Start{kKpTheta, 1400}, Start{kAx, -10}, Start{kTailGain, 1},
-        Start{kTailTorque, 0.5}, Start{kTailTime, 0.2}, Start{kTailExponent, 1.5}}) {
-    table[start.id].free = true;
-    table[start.id].nominal = start.value;
-    table[start.id].prior = Prior{start.value, std::abs(start.value)};
-  }
-  preset.settling_weight = 10.0;
-  return preset;
-}
-
-Preset GroupPreset() {
-  Preset preset = TailPreset();
-  preset.name = "group";
-  preset.model.interaction.spring = preset.model.interaction.damping = true;
-  preset.self_force = SelfForceKind::kLinear;
-  preset.settling_weight = 20.0;
-  preset.pool = "all";
-  preset.pool_by = PoolBy::kSetting;
-  preset.pooling_sigma = 0.3;
-  // Going on to 1e-10 takes twice as long and moves no parameter by more than 4 % of its standard
-  // error; only the contact distance moves by a third of it, 0.3 mm.
-  preset.function_tolerance = 1e-6;
-  return preset;
-}
-
-Preset LdpPreset() {
-  Preset preset;
-  preset.name = "ldp";
-  preset.table = BaseTable();
-  ParameterTable& table = preset.table;
-  table[kKpX].nominal = table[kKpY].nominal = 30;
-  // LDP's 200 per frame at 60 Hz.
-  table[kKdTheta].nominal = table[kKdPhi].nominal = 200.0 / 60.0;
-  for (Parameter id : {kMu, kMuY, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) table[id].free = true;
-  preset.model.posture = Posture::kUpright;
-  preset.model.gain_scaling = GainScaling::kMass;
-  preset.model.friction = FrictionKind::kAnisotropic;
-  preset.model.push = PushUse::kAsRecorded;
-  preset.model.push_tail = PushTail::kNone;
-  return preset;
-}
-
-}  // namespace
-
 const ParameterSpec* ParameterTable::Find(const std::string& name) const {
   for (const ParameterSpec& spec : specs) {
     if (spec.name == name) return &spec;
@@ -163,49 +107,9 @@ ParameterMap ParameterTable::Map() const {
   return map;
 }
 
-Result<Preset> MakePreset(const std::string& name) {
-  if (name == "tail") return TailPreset();
-  if (name == "ldp") return LdpPreset();
-  if (name == "group") return GroupPreset();
-  return Error{"--preset is '" + name + "'; it must be tail, ldp or group"};
-}
-
 bool AnyPooled(const ParameterTable& table) {
   return std::any_of(table.specs.begin(), table.specs.end(),
                      [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
-}
-
-void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
-  if (kind != SelfForceKind::kLinear) return;
-  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
-    ParameterSpec& spec = (*table)[id];
-    spec.free = true;
-    // As weak as the preset's own priors: without them these terms drive the person instead.
-    if (!spec.prior) spec.prior = Prior{spec.nominal, spec.scale};
-  }
-}
-
-void FreeRod(const ModelOptions& model, ParameterTable* table) {
-  if (!RodMoves(model)) return;
-  ParameterSpec& spec = (*table)[kRodLift];
-  spec.free = true;
-  if (!spec.prior) spec.prior = Prior{spec.nominal, spec.nominal};
-}
-
-void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
-  std::vector<Parameter> free;
-  if (terms.Contact()) free = {kContactDistance, kContactKappa};
-  if (terms.spring) free.push_back(kContactStiffness);
-  if (terms.damping) free.push_back(kContactDamping);
-  if (terms.potential) free.insert(free.end(), {kPotentialStrength, kPotentialLength});
-  if (terms.lean) free.insert(free.end(), {kLeanTheta, kLeanPhi});
-  if (terms.potential || terms.lean) free.push_back(kNeighbourRange);
-  if (terms.drive) free.insert(free.end(), {kDriveGain, kDriveTorque, kDriveTime});
-  for (Parameter id : free) {
-    ParameterSpec& spec = (*table)[id];
-    spec.free = true;
-    spec.prior = Prior{spec.nominal, std::abs(spec.nominal)};
-  }
 }
 
 bool Acts(Parameter id, const ModelOptions& model) {

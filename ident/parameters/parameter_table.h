@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
 #include "residuals/parameter_map.h"
@@ -37,6 +38,9 @@ enum class SelfForceKind {
   kNone,
   kLinear  // cross terms and quadratic damping
 };
+constexpr EnumNames<SelfForceKind, 2> Names(SelfForceKind) {
+  return {{{"none", SelfForceKind::kNone}, {"linear", SelfForceKind::kLinear}}};
+}
 
 struct ParameterTable {
   std::vector<ParameterSpec> specs;  // indexed by Parameter
@@ -51,40 +55,11 @@ struct ParameterTable {
   ParameterMap Map() const;             // fitted = free, in table order
 };
 
-// Settings of the models (the README has their scores).
-//   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
-//   ldp:   one person: plain PD balance and friction from upright; six free parameters
-//   group: people who touch: tail with all linear self forces and contact, every parameter
-//          partially pooled by setting; eighteen shared parameters
-struct Preset {
-  std::string name;
-  ModelOptions model;
-  ParameterTable table;
-  SelfForceKind self_force = SelfForceKind::kNone;
-  double settling_weight = 0.0;
-  std::string pool;  // as --pool
-  PoolBy pool_by = PoolBy::kSubject;
-  double pooling_sigma = 0.2;
-  double function_tolerance = 1e-10;
-};
-// Errors: no such preset.
-Result<Preset> MakePreset(const std::string& name);
+// Every parameter there is, fixed at a value that makes its term vanish, or at LDP's value.
+ParameterTable BaseTable();
 
 // Whether some parameter may differ by unit.
 bool AnyPooled(const ParameterTable& table);
-
-// Frees the terms of a self force, where the model's options let them act.
-void FreeSelfForce(SelfForceKind kind, ParameterTable* table);
-
-// Frees the cart's lift where the model has a law for the rod, with a weak prior as wide as its
-// centre: a rod that is learned while the cart stays low predicts the hip worse than a constant
-// one.
-void FreeRod(const ModelOptions& model, ParameterTable* table);
-
-// Frees the terms of the interaction, with weak priors as wide as their centres. The contact's
-// height stays fixed: heights from the ankles to the chest fit the group recordings alike. Those of
-// LDP's discrete form stay fixed too: it has no derivatives.
-void FreeInteraction(const InteractionTerms& terms, ParameterTable* table);
 
 // Whether a parameter has any effect under the options.
 bool Acts(Parameter id, const ModelOptions& model);

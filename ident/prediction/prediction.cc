@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "datasets/files/atomic_file.h"
+#include "ident/prediction/median_prediction.h"
 #include "models/self_network.h"
 #include "residuals/cost_functions/rollout_residual.h"
 

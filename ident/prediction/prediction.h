@@ -6,6 +6,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/identified_model.h"
 #include "models/rollout.h"
 
 namespace pushid {

@@ -54,9 +54,8 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
   return sets;
 }
 
-std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result,
+std::vector<ParameterSet<double>> FromBootstrap(const FitResult& result, const Bootstrap& b,
                                                 const BandOptions& options) {
-  const Bootstrap& b = *result.bootstrap;
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;
   for (int s = 0; s < options.samples; ++s) {
@@ -126,11 +125,11 @@ PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
 
 Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
                                                            const BandOptions& options) {
-  if (!options.from_bootstrap) return FromCovariance(result, options);
-  if (!result.bootstrap || result.bootstrap->values.empty()) {
-    return Error{"the model holds no bootstrap; fit it with --bootstrap=199"};
+  if (options.bootstrap == nullptr) return FromCovariance(result, options);
+  if (options.bootstrap->values.empty()) {
+    return Error{"the model's bootstrap has no replicas; fit it with --bootstrap=199"};
   }
-  return FromBootstrap(result, options);
+  return FromBootstrap(result, *options.bootstrap, options);
 }
 
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,

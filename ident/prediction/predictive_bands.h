@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "ident/prediction/prediction.h"
+#include "ident/problem/folds.h"
+#include "ident/problem/parallel.h"
 #include "ident/results/fit_result.h"
-#include "ident/validation/crossvalidation.h"
+#include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
 
@@ -35,8 +37,9 @@ struct PredictiveBands {
 struct BandOptions {
   int samples = 200;
   uint64_t seed = 1;
-  bool from_bootstrap = false;  // draw parameters from result.bootstrap's rows
-  bool model_error = true;      // add error paths of fitted recordings
+  // Parameters are drawn from its replicas; null: from the covariance.
+  const Bootstrap* bootstrap = nullptr;
+  bool model_error = true;  // add error paths of fitted recordings
 };
 
 // Parameter sets, natural units. Errors: asked for a bootstrap that the result does not hold.

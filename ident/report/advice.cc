@@ -23,7 +23,7 @@ constexpr int kReplicas = 199, kManyReplicas = 999;
 
 class Adviser {
  public:
-  explicit Adviser(const FitResult& result) : result_(result) {}
+  explicit Adviser(const FittedModel& model) : model_(model), result_(model.fit) {}
 
   std::vector<Advice> Run() {
     Solver();
@@ -40,7 +40,7 @@ class Adviser {
   void Add(const std::string& sentence, const FitCommand& command) {
     advice_.push_back({sentence, command.ToString()});
   }
-  FitCommand Same() const { return FitCommand("pushid-fit", result_); }
+  FitCommand Same() const { return FitCommand("pushid-fit", model_.provenance); }
   FitCommand Bootstrap(int replicas) const {
     return Same().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
   }
@@ -54,6 +54,7 @@ class Adviser {
   void Intervals();
   void Residuals();
 
+  const FittedModel& model_;
   const FitResult& result_;
   std::vector<Advice> advice_;
 };
@@ -162,17 +163,17 @@ void Adviser::Recordings() {
 }
 
 void Adviser::Intervals() {
-  if (result_.profiles.empty()) {
+  if (model_.profiles.empty()) {
     Add("The intervals take the cost for quadratic; profiles show its true shape.",
         Same().Set("profile", "all").Set("num_threads", "2"));
   }
   const bool several = result_.recordings.size() > 1;  // a single one is its only resample
-  if (!result_.bootstrap && several) {
+  if (!model_.bootstrap && several) {
     Add("Resampling the recordings checks the standard errors without any formula.",
         Bootstrap(kReplicas));
   }
-  const int had = result_.bootstrap ? result_.bootstrap->replicas : 0;
-  for (const Agreement& row : CompareIntervals(result_)) {
+  const int had = model_.bootstrap ? model_.bootstrap->replicas : 0;
+  for (const Agreement& row : CompareIntervals(model_)) {
     if (!several) break;
     if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
     Add("The intervals of " + row.name + " differ by a factor of " + Rounded(row.ratio, 2) +
@@ -203,6 +204,6 @@ void Adviser::Residuals() {
 
 }  // namespace
 
-std::vector<Advice> Advise(const FitResult& result) { return Adviser(result).Run(); }
+std::vector<Advice> Advise(const FittedModel& model) { return Adviser(model).Run(); }
 
 }  // namespace pushid

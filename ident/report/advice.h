@@ -1,13 +1,13 @@
-// ident: what to try next, in plain words: a pure function of a result.
+// ident: what to try next, in plain words: a pure function of a fitted model.
 #pragma once
 
 #include <vector>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
 // Most pressing first. Commands repeat the settings of the fit (fit_command.h).
-std::vector<Advice> Advise(const FitResult& result);
+std::vector<Advice> Advise(const FittedModel& model);
 
 }  // namespace pushid

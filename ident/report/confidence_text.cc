@@ -82,20 +82,20 @@ std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
 
 }  // namespace
 
-std::string DiagnosticsText(const FitResult& result) {
-  const Diagnostics& d = result.diagnostics;
+std::string DiagnosticsText(const FittedModel& model) {
+  const Diagnostics& d = model.fit.diagnostics;
   std::string text = StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
-  for (const Advice& advice : d.advice) {
+  for (const Advice& advice : model.advice) {
     text += "advice: " + advice.sentence + "\n";
     if (!advice.command.empty()) text += "  " + advice.command + "\n";
   }
   return text;
 }
 
-TextTable AgreementTable(const FitResult& result) {
+TextTable AgreementTable(const FittedModel& model) {
   TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class"},
                   {true, false, true, true, true, true, true});
-  for (const Agreement& row : CompareIntervals(result)) {
+  for (const Agreement& row : CompareIntervals(model)) {
     table.Add({row.name, Rounded(row.value, 4), IntervalText(row.clustered),
                IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
                row.classification ? NameOf(*row.classification) : ""});
@@ -103,14 +103,14 @@ TextTable AgreementTable(const FitResult& result) {
   return table;
 }
 
-std::string AgreementNote(const FitResult& result) {
-  const std::vector<Agreement> rows = CompareIntervals(result);
+std::string AgreementNote(const FittedModel& model) {
+  const std::vector<Agreement> rows = CompareIntervals(model);
   if (rows.empty()) return "";
   std::string text = Disagreements(rows);
-  if (result.bootstrap) {
-    text += "bootstrap over recordings: " + std::to_string(result.bootstrap->values.size()) +
-            " of " + std::to_string(result.bootstrap->replicas) + " replicas, seed " +
-            std::to_string(result.bootstrap->seed) + "\n";
+  if (model.bootstrap) {
+    text += "bootstrap over recordings: " + std::to_string(model.bootstrap->values.size()) +
+            " of " + std::to_string(model.bootstrap->replicas) + " replicas, seed " +
+            std::to_string(model.bootstrap->seed) + "\n";
   }
   return text;
 }

@@ -4,17 +4,17 @@
 #include <string>
 
 #include "ident/figures/text_table.h"
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
 // Clustered, profile and bootstrap intervals side by side (only a header when neither was asked
 // for), and whether they agree.
-TextTable AgreementTable(const FitResult& result);
-std::string AgreementNote(const FitResult& result);
+TextTable AgreementTable(const FittedModel& model);
+std::string AgreementNote(const FittedModel& model);
 
 // What was noted before the solve, the recordings that fit worst or move most, whether residuals
 // are white, and what to try next.
-std::string DiagnosticsText(const FitResult& result);
+std::string DiagnosticsText(const FittedModel& model);
 
 }  // namespace pushid

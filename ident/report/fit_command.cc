@@ -8,7 +8,7 @@
 namespace pushid {
 namespace {
 
-// Stands for the recordings where a result does not know their place.
+// Stands for the recordings where the provenance does not know their place.
 constexpr char kSomeManifest[] = "M/manifest.json";
 
 // gflags writes 0.2 as 0.20000000000000001.
@@ -29,20 +29,20 @@ std::string ShellQuoted(const std::string& value) {
 
 }  // namespace
 
-FitCommand::FitCommand(std::string program, const FitResult& result)
+FitCommand::FitCommand(std::string program, const Provenance& provenance)
     : program_(std::move(program)) {
-  Set("recordings", result.manifest.empty() ? kSomeManifest : result.manifest);
+  Set("recordings", provenance.manifest.empty() ? kSomeManifest : provenance.manifest);
   // The recordings and the model first, the rest by name.
   std::vector<std::string> names = {"setting", "ids", "leave_out", "preset"};
-  for (const std::string& name : result.changed_flags) {
+  for (const std::string& name : provenance.changed_flags) {
     const bool leads = std::find(names.begin(), names.begin() + 4, name) != names.begin() + 4;
     const bool tells_more = name == "profile" || name == "bootstrap" || name == "design";
     if (!leads && !tells_more) names.push_back(name);
   }
   for (const std::string& name : names) {
-    const auto& changed = result.changed_flags;
-    const auto at = result.configuration.find(name);
-    if (at == result.configuration.end()) continue;
+    const auto& changed = provenance.changed_flags;
+    const auto at = provenance.configuration.find(name);
+    if (at == provenance.configuration.end()) continue;
     if (std::find(changed.begin(), changed.end(), name) == changed.end()) continue;
     Set(name, Shortest(at->second));
   }

@@ -1,6 +1,6 @@
 // ident: a command line that repeats a fit, with some flags changed: what advice consists of.
 //
-//   FitCommand("pushid-fit", result).Set("self_force", "linear").ToString()
+//   FitCommand("pushid-fit", model.provenance).Set("self_force", "linear").ToString()
 //   -> pushid-fit --recordings=M/manifest.json --preset=ldp --self_force=linear
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/provenance.h"
 
 namespace pushid {
 
@@ -16,7 +16,7 @@ class FitCommand {
  public:
   // Every flag of the fit that was not at its default, but for those that only ask for more to be
   // told about it (profiles, bootstrap, design).
-  FitCommand(std::string program, const FitResult& result);
+  FitCommand(std::string program, const Provenance& provenance);
 
   // In place of what the fit had.
   FitCommand& Set(const std::string& flag, const std::string& value);

@@ -28,9 +28,9 @@ std::string PoolingText(const FitOptions& options) {
   return "";
 }
 
-std::string SelfFromText(const FitResult& result) {
-  const auto from = result.configuration.find("self_from");
-  if (from == result.configuration.end() || from->second.empty()) return "";
+std::string SelfFromText(const Provenance& provenance) {
+  const auto from = provenance.configuration.find("self_from");
+  if (from == provenance.configuration.end() || from->second.empty()) return "";
   return ", self parameters from " + from->second;
 }
 
@@ -70,24 +70,25 @@ std::string NetworkText(const FitResult& result) {
          " m/s^2 times the mass (root mean square)";
 }
 
-std::string ReportText(const FitResult& result) {
+std::string ReportText(const FittedModel& model) {
+  const FitResult& result = model.fit;
   const FitOptions& o = result.options;
-  std::string text = "pushid " + result.version + ", preset " + o.preset + ": " +
+  std::string text = "pushid " + model.provenance.version + ", preset " + o.preset + ": " +
                      Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
-                     result.setting + "), posture " + NameOf(o.model.posture) + ", push " +
-                     NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
+                     model.provenance.setting + "), posture " + NameOf(o.model.posture) +
+                     ", push " + NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
                      ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
                      (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") +
                      ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
-                     SelfFromText(result) + "\n\n";
+                     SelfFromText(model.provenance) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
-  const TextTable agreement = AgreementTable(result);
+  const TextTable agreement = AgreementTable(model);
   if (agreement.rows().size() > 1) {
-    text += agreement.ToString() + AgreementNote(result) + "\n";
+    text += agreement.ToString() + AgreementNote(model) + "\n";
   }
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
@@ -101,10 +102,10 @@ std::string ReportText(const FitResult& result) {
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
-  text += PreparationText(result.configuration);
+  text += PreparationText(model.provenance.configuration);
   text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
-  const std::string diagnostics = DiagnosticsText(result);
+  const std::string diagnostics = DiagnosticsText(model);
   if (!diagnostics.empty()) text += "\n" + diagnostics;
   return text;
 }

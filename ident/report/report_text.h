@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
 // The parameter table, what is derived, what the data cannot tell apart, what the fitted person
 // does after a push, warnings.
-std::string ReportText(const FitResult& result);
+std::string ReportText(const FittedModel& model);
 
 // What is learned on top of the physics, and what it acts like; no line break at the end, and empty
 // where nothing is.

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
-// result must come from Fit of these very recordings.
+// model->fit must come from Fit of these very recordings.
 MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
                        const std::vector<std::string>& names, int num_threads,
-                       const JobProgress& progress, FitResult* result);
+                       const JobProgress& progress, FittedModel* model);
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
-                        FitResult* result);
+                        FittedModel* model);
 
 }  // namespace pushid

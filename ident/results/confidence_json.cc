@@ -206,8 +206,7 @@ Bootstrap BootstrapFromJson(const Json& json) {
 }
 
 Json ToJson(const Diagnostics& d) {
-  Json recordings = Json::array(), whiteness = Json::array(), trace = Json::array(),
-       advice = Json::array();
+  Json recordings = Json::array(), whiteness = Json::array(), trace = Json::array();
   for (const RecordingDiagnostics& r : d.recordings) recordings.push_back(RecordingJson(r));
   for (const Whiteness& w : d.whiteness) whiteness.push_back(WhitenessJson(w));
   for (const TracePoint& t : d.trace) {
@@ -216,12 +215,17 @@ Json ToJson(const Diagnostics& d) {
                      {"cost", NumberJson(t.cost)},
                      {"gradient", NumberJson(t.gradient)}});
   }
-  for (const Advice& a : d.advice) {
-    advice.push_back({{"sentence", a.sentence}, {"command", a.command}});
-  }
-  return {
-      {"start", StartJson(d.start)},          {"recordings", recordings}, {"whiteness", whiteness},
-      {"leverage", LeverageJson(d.leverage)}, {"trace", trace},           {"advice", advice}};
+  return {{"start", StartJson(d.start)},
+          {"recordings", recordings},
+          {"whiteness", whiteness},
+          {"leverage", LeverageJson(d.leverage)},
+          {"trace", trace}};
+}
+
+Json AdviceJson(const std::vector<Advice>& advice) {
+  Json json = Json::array();
+  for (const Advice& a : advice) json.push_back({{"sentence", a.sentence}, {"command", a.command}});
+  return json;
 }
 
 Diagnostics DiagnosticsFromJson(const Json& json) {
@@ -234,8 +238,13 @@ Diagnostics DiagnosticsFromJson(const Json& json) {
     d.trace.push_back({t.at("horizon"), t.at("iteration"), NumberFrom(t.at("cost")),
                        NumberFrom(t.at("gradient"))});
   }
-  for (const Json& a : json.at("advice")) d.advice.push_back({a.at("sentence"), a.at("command")});
   return d;
+}
+
+std::vector<Advice> AdviceFrom(const Json& json) {
+  std::vector<Advice> advice;
+  for (const Json& a : json) advice.push_back({a.at("sentence"), a.at("command")});
+  return advice;
 }
 
 }  // namespace pushid

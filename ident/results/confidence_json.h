@@ -1,4 +1,4 @@
-// ident: profiles, bootstrap and diagnostics as JSON, without loss.
+// ident: profiles, bootstrap, diagnostics and advice as JSON, without loss.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,10 +13,12 @@ namespace pushid {
 nlohmann::ordered_json ToJson(const std::vector<Profile>& profiles);
 nlohmann::ordered_json ToJson(const Bootstrap& bootstrap);
 nlohmann::ordered_json ToJson(const Diagnostics& diagnostics);
+nlohmann::ordered_json AdviceJson(const std::vector<Advice>& advice);
 
 // These throw std::exception on damaged input, as the parts of a reader do.
 std::vector<Profile> ProfilesFromJson(const nlohmann::ordered_json& json);
 Bootstrap BootstrapFromJson(const nlohmann::ordered_json& json);
 Diagnostics DiagnosticsFromJson(const nlohmann::ordered_json& json);
+std::vector<Advice> AdviceFrom(const nlohmann::ordered_json& json);
 
 }  // namespace pushid

@@ -1,6 +1,6 @@
 // ident: ensembles: networks trained from several seeds, whose predictions are put together by
-// their median, number by number, so that one bad seed does no harm. Members that leave the
-// model's domain have no say while most of them stay in it.
+// their median (prediction/median_prediction.h), so that one bad seed does no harm. Members that
+// leave the model's domain do not count while most of them stay in it.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,6 @@ namespace pushid {
 
 struct FitOptions;
 struct PendulumRecording;
-struct Prediction;
 
 // What one seed found.
 struct EnsembleMember {
@@ -25,9 +24,5 @@ struct EnsembleMember {
 // is left out.
 std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
                                           const FitOptions& options);
-
-// Frame by frame, person by person; at least one of them, all of them whole and equally long.
-Prediction MedianPrediction(const PendulumRecording& recording,
-                            const std::vector<Prediction>& predictions);
 
 }  // namespace pushid

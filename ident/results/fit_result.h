@@ -1,5 +1,5 @@
 // ident: the result of a fit, as data. Everything a report or a prediction needs stands in it, and
-// it serialises to JSON without loss (result_json.h).
+// what a model's file holds beside it stands in fitted_model.h.
 #pragma once
 
 #include <map>
@@ -12,8 +12,6 @@
 #include "ident/problem/behaviour.h"
 #include "ident/results/ensemble.h"
 #include "ident/solver/solution.h"
-#include "ident/uncertainty/bootstrap.h"
-#include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/network_takeover.h"
 
@@ -46,8 +44,6 @@ struct FitResult {
   // Value of each pooled parameter in each setting, where settings differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
   Uncertainty uncertainty;
-  std::vector<Profile> profiles;       // empty unless asked for
-  std::optional<Bootstrap> bootstrap;  // absent unless asked for
   Diagnostics diagnostics;
   Behaviour behaviour;
   std::vector<FittedRecording> recordings;
@@ -58,46 +54,13 @@ struct FitResult {
   int best_start = -1;
   std::string message;
   std::vector<std::string> warnings;
-
-  // Provenance.
-  std::string version;
-  std::map<std::string, std::string> configuration;  // effective flags
-  std::vector<std::string> changed_flags;            // those of them that are not at their defaults
-  std::string manifest, manifest_hash, setting;
   double solve_seconds = 0.0;
 
   bool ok() const { return best_start >= 0; }
 };
 
-// The model a prediction needs: options and parameters of each subject.
-struct IdentifiedModel {
-  std::string source;  // file, for messages
-  ModelOptions options;
-  SkeletonMapping mapping = SkeletonMapping::kExact;
-  ParameterTable table;  // names, units and bounds, for --set
-  ParameterSet<double> parameters{};
-  std::vector<EnsembleMember> others;  // of an ensemble
-  PoolBy pool_by = PoolBy::kSubject;
-  std::map<std::string, ParameterSet<double>> by_unit;  // subject or setting; only where pooled
-
-  // A unit the model does not know gets the shared values.
-  const ParameterSet<double>& For(const std::string& unit) const {
-    const auto found = by_unit.find(unit);
-    return found == by_unit.end() ? parameters : found->second;
-  }
-};
-
-// Fits and judges. recordings must not be empty and the table must have a free parameter.
-FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
-              const SolveProgress& progress = nullptr);
-
-IdentifiedModel ModelOf(const FitResult& result);
-
 // Whether a rod that moves makes a person unstable at rest who settles after pushes: settling
 // cannot hold it.
 bool RodRunsAway(const FitResult& result);
-
-// A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
-MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
 
 }  // namespace pushid

@@ -33,17 +33,18 @@ double WidthRatio(const Agreement& row) {
 
 }  // namespace
 
-std::vector<Agreement> CompareIntervals(const FitResult& result) {
+std::vector<Agreement> CompareIntervals(const FittedModel& model) {
+  const FitResult& result = model.fit;
   std::vector<Agreement> rows = ClusteredRows(result);
   const double t = result.uncertainty.t_quantile;
   for (Agreement& row : rows) {
-    for (const Profile& p : result.profiles) {
+    for (const Profile& p : model.profiles) {
       if (p.name != row.name) continue;
       row.profile = Interval{(p.upper95 - p.lower95) / (2.0 * t), p.lower95, p.upper95};
       row.classification = p.classification;
     }
-    if (result.bootstrap) {
-      const Bootstrap& b = *result.bootstrap;
+    if (model.bootstrap) {
+      const Bootstrap& b = *model.bootstrap;
       for (size_t i = 0; i < b.names.size(); ++i) {
         if (b.names[i] != row.name) continue;
         row.bootstrap = Interval{b.standard_error[i], b.lower95[i], b.upper95[i]};

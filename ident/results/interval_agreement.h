@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
@@ -26,6 +26,6 @@ struct Agreement {
 };
 
 // Every free parameter and moving combination that a profile or the bootstrap speaks of.
-std::vector<Agreement> CompareIntervals(const FitResult& result);
+std::vector<Agreement> CompareIntervals(const FittedModel& model);
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: FitResult from JSON. model_json_writer.cc is the inverse.
+// ident: a fitted model from JSON. model_json_writer.cc is the inverse.
 #include <algorithm>
 
 #include "datasets/files/json_file.h"
@@ -157,7 +157,8 @@ std::string Reason(const std::exception& exception) {
 
 }  // namespace
 
-Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file) {
+Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
+                                        const std::string& file) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
       !json.contains("format_version") || !json["format_version"].is_number()) {
     return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
@@ -171,10 +172,11 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     return json.at(key);
   };
   try {
-    FitResult result;
-    const Preset known = MakePreset("tail").value();
+    FittedModel model;
+    FitResult& result = model.fit;
+    Provenance& from = model.provenance;
     result.options = OptionsFrom(at("model"));
-    result.options.table = TableFrom(at("table"), known.table);
+    result.options.table = TableFrom(at("table"), BaseTable());
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
       result.options.hold_network = true;  // what is read is not fitted on
@@ -194,7 +196,7 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
       result.options.model.interaction_network =
           InteractionNetworkFromJson(at("interaction_network"));
     }
-    result.version = at("version");
+    from.version = at("version");
     for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
     for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
     for (const Json& c : at("derived")) result.derived.push_back(CombinationFrom(c));
@@ -232,9 +234,12 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.uncertainty.estimates.insert(result.uncertainty.estimates.end(), result.nuisance.begin(),
                                         result.nuisance.end());
     // Not in every model: asked for, or written before there were any.
-    if (json.contains("profiles")) result.profiles = ProfilesFromJson(at("profiles"));
-    if (json.contains("bootstrap")) result.bootstrap = BootstrapFromJson(at("bootstrap"));
-    if (json.contains("diagnostics")) result.diagnostics = DiagnosticsFromJson(at("diagnostics"));
+    if (json.contains("profiles")) model.profiles = ProfilesFromJson(at("profiles"));
+    if (json.contains("bootstrap")) model.bootstrap = BootstrapFromJson(at("bootstrap"));
+    if (json.contains("diagnostics")) {
+      result.diagnostics = DiagnosticsFromJson(at("diagnostics"));
+      model.advice = AdviceFrom(at("diagnostics").at("advice"));
+    }
     result.warnings = at("warnings").get<std::vector<std::string>>();
     const Json& fit = at("fit");
     result.converged = fit.at("converged");
@@ -242,21 +247,21 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
     result.message = fit.at("message");
     result.best_start = fit.at("best_start");
     result.starts = StartsFrom(fit.at("starts"));
-    result.manifest_hash = at("data").at("manifest_hash");
-    result.setting = at("data").at("setting");
+    from.manifest_hash = at("data").at("manifest_hash");
+    from.setting = at("data").at("setting");
     for (const Json& r : at("data").at("recordings")) {
       result.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
                                    r.value("people", 1), NumberFrom(r.at("cost")),
                                    r.at("failure")});
     }
-    result.configuration = at("configuration").get<std::map<std::string, std::string>>();
+    from.configuration = at("configuration").get<std::map<std::string, std::string>>();
     if (json.contains("changed_flags")) {
-      result.changed_flags = at("changed_flags").get<std::vector<std::string>>();
+      from.changed_flags = at("changed_flags").get<std::vector<std::string>>();
     }
-    result.manifest = at("run").at("manifest");
+    from.manifest = at("run").at("manifest");
     result.solve_seconds = at("run").at("solve_seconds");
     CheckConsistent(result);
-    return result;
+    return model;
   } catch (const std::exception& exception) {
     return Error{"incomplete or damaged model, at '" + part + "': " + Reason(exception) +
                      "; take another copy or fit again",
@@ -264,10 +269,10 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
   }
 }
 
-Result<FitResult> ReadFitResult(const std::string& path) {
+Result<FittedModel> ReadFittedModel(const std::string& path) {
   Result<JsonDocument> document = ReadJsonDocument(path);
   if (!document.ok()) return document.error();
-  return FitResultFromJson(document.value().content, path);
+  return FittedModelFromJson(document.value().content, path);
 }
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: FitResult to JSON. model_json_reader.cc is the inverse.
+// ident: a fitted model to JSON. model_json_reader.cc is the inverse.
 #include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_names.h"
@@ -111,10 +111,6 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
           {"demonstrations", simulations}};
 }
 
-nlohmann::ordered_json SettingsJson(const FitOptions& options) {
-  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
-}
-
 namespace {
 
 Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
@@ -125,7 +121,9 @@ Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
 
 }  // namespace
 
-nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
+nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
+  const FitResult& result = model.fit;
+  const Provenance& from = model.provenance;
   Json derived = Json::array(), recordings = Json::array();
   Json subjects = Json::object(), settings = Json::object();
   const Json values = ValuesJson(result.options.table, result.parameters);
@@ -146,9 +144,11 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                           {"failure", r.failure},
                           {"content_hash", r.content_hash}});
   }
+  Json diagnostics = ToJson(result.diagnostics);
+  diagnostics["advice"] = AdviceJson(model.advice);
   Json json = {{"format", "pushid model"},
                {"format_version", kModelFormat},
-               {"version", result.version},
+               {"version", from.version},
                {"model", OptionsJson(result.options)},
                {"parameters", EstimatesJson(result.estimates)},
                {"derived", derived},
@@ -158,7 +158,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                {"values", values},
                {"behaviour", ToJson(result.behaviour)},
                {"uncertainty", UncertaintyJson(result.uncertainty)},
-               {"diagnostics", ToJson(result.diagnostics)},
+               {"diagnostics", diagnostics},
                {"warnings", result.warnings},
                {"fit",
                 {{"converged", result.converged},
@@ -168,15 +168,15 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                  {"starts", StartsJson(result)}}},
                {"table", TableJson(result.options.table)},
                {"data",
-                {{"manifest_hash", result.manifest_hash},
-                 {"setting", result.setting},
+                {{"manifest_hash", from.manifest_hash},
+                 {"setting", from.setting},
                  {"recordings", recordings}}},
-               {"configuration", result.configuration},
-               {"changed_flags", result.changed_flags},
+               {"configuration", from.configuration},
+               {"changed_flags", from.changed_flags},
                {"run",
                 {{"date", run.date},
                  {"host", run.host},
-                 {"manifest", result.manifest},
+                 {"manifest", from.manifest},
                  {"model_out", run.model_path},
                  {"solve_seconds", result.solve_seconds},
                  {"total_seconds", run.total_seconds},
@@ -197,8 +197,8 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }
-  if (!result.profiles.empty()) json["profiles"] = ToJson(result.profiles);
-  if (result.bootstrap) json["bootstrap"] = ToJson(*result.bootstrap);
+  if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
+  if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);
   return json;
 }
 

@@ -1,10 +1,10 @@
-// ident: a fit's result as JSON, without loss: every number reads back the same, infinities as the
+// ident: a fitted model as JSON, without loss: every number reads back the same, infinities as the
 // string "infinity". Reports and predictions are functions of this file alone.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
@@ -17,14 +17,12 @@ struct RunInfo {
   int num_threads = 1;
 };
 
-nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run);
-
-// The options and the table: everything that decides what a fit of given recordings finds.
-nlohmann::ordered_json SettingsJson(const FitOptions& options);
+nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run);
 
 // Errors: not a pushid model, a newer format, missing or wrong entries by name.
-Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file);
-Result<FitResult> ReadFitResult(const std::string& path);
+Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
+                                        const std::string& file);
+Result<FittedModel> ReadFittedModel(const std::string& path);
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "datasets/files/number_text.h"
-#include "ident/validation/crossvalidation.h"
+#include "ident/problem/folds.h"
 
 namespace pushid {
 namespace {

@@ -31,12 +31,6 @@ ParameterMap MapBesideNetwork(const FitOptions& options, const ParameterSet<doub
 
 }  // namespace
 
-bool NeedsGradientTraining(const FitOptions& options) {
-  const auto& network = options.model.self_network;
-  return !options.hold_network && network != nullptr &&
-         static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
-}
-
 FitOptions PhysicsAlone(FitOptions options) {
   options.model.self_network = nullptr;
   options.table[kRodLift].free = false;  // no rod moves

@@ -8,11 +8,6 @@
 
 namespace pushid {
 
-// More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
-// recordings would hold 20,000 rows of them.
-inline constexpr int kMostGaussNewtonWeights = 2000;
-bool NeedsGradientTraining(const FitOptions& options);
-
 // The fit without its network: the first of the steps.
 FitOptions PhysicsAlone(FitOptions options);
 

@@ -5,8 +5,7 @@
 #include <cmath>
 
 #include "ident/prediction/prediction.h"
-#include "ident/problem/fit_problem.h"
-#include "ident/solver/solver.h"
+#include "ident/results/fit.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {
@@ -23,21 +22,9 @@ std::vector<PendulumRecording> Chosen(const std::vector<PendulumRecording>& reco
 
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
                                      const std::vector<int>& train, const FitOptions& options) {
-  const std::vector<PendulumRecording> training = Chosen(recordings, train);
-  const FitProblem problem(training, options);
-  const Solution solution = Solve(problem);
-  if (solution.best < 0) return std::nullopt;
-  const FitPoint& best = solution.Best().to;
-  IdentifiedModel model;
-  model.options = options.model;
-  model.mapping = options.mapping;
-  model.table = options.table;
-  model.pool_by = options.pool_by;
-  model.parameters = problem.Parameters(best, "");
-  for (const auto& [unit, deviations] : best.unit) {
-    model.by_unit[unit] = problem.Parameters(best, unit);
-  }
-  return model;
+  Result<SolvedModel> solved = SolveModel(Chosen(recordings, train), options);
+  if (!solved.ok()) return std::nullopt;
+  return std::move(solved.value().model);
 }
 
 std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,

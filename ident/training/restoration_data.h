@@ -13,6 +13,7 @@
 
 #include "ident/bodies/body_recording.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/identified_model.h"
 
 namespace pushid {
 

@@ -8,8 +8,8 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/content_hash.h"
+#include "ident/parameters/fit_options_json.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/results/result_json.h"
 
 namespace pushid {
 namespace {

@@ -25,6 +25,7 @@
 #include "datasets/files/error.h"
 #include "ident/problem/parallel.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -33,6 +34,11 @@ enum class ProfileClass {
   kPracticallyNot,  // not crossed on some side: the data are too weak
   kStructurallyNot  // flat: the data say nothing, however many of them
 };
+constexpr EnumNames<ProfileClass, 3> Names(ProfileClass) {
+  return {{{"identifiable", ProfileClass::kIdentifiable},
+           {"practically_not", ProfileClass::kPracticallyNot},
+           {"structurally_not", ProfileClass::kStructurallyNot}}};
+}
 
 struct ProfilePoint {
   double value = 0.0;                    // of the parameter, natural unit

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ident/problem/fit_point.h"
+#include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
 
@@ -20,6 +21,13 @@ struct Covariance;
 class FitProblem;
 
 enum class EstimateStatus { kIdentified, kWeak, kUnidentifiable, kAtBound, kFixed };
+constexpr EnumNames<EstimateStatus, 5> Names(EstimateStatus) {
+  return {{{"identified", EstimateStatus::kIdentified},
+           {"weak", EstimateStatus::kWeak},
+           {"unidentifiable", EstimateStatus::kUnidentifiable},
+           {"at bound", EstimateStatus::kAtBound},
+           {"fixed", EstimateStatus::kFixed}}};
+}
 
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.
 struct Estimate {

@@ -6,6 +6,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/time_series.h"
+#include "ident/results/fit.h"
 
 namespace pushid {
 namespace {
@@ -88,7 +89,9 @@ std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording
         }
         without[f].resize(folds[f].held_out.size());
         with[f].resize(folds[f].held_out.size());
-        const FitResult result = Fit(training, alone);
+        FitOptions prepared = alone;
+        if (PrepareFit(training, &prepared)) return;
+        const FitResult result = Fit(training, prepared);
         if (!result.ok()) return;
         const auto samples = SampleParameters(result, bands);
         const std::vector<ErrorPath> errors = ErrorPaths(result, training);

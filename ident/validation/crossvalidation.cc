@@ -1,98 +1,10 @@
-// ident: folds, scores of folds, paired differences.
+// ident: scores of folds, paired differences.
 #include "ident/validation/crossvalidation.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-
-#include "datasets/files/random.h"
-#include "ident/parameters/option_names.h"
 
 namespace pushid {
-namespace {
-
-std::string PushedSubject(const PendulumRecording& recording) {
-  return recording.subject_ids[recording.pushed_person];
-}
-
-// Fisher and Yates's shuffle.
-void Shuffle(std::vector<int>* items, Random* random) {
-  for (size_t i = items->size(); i > 1; --i) {
-    std::swap((*items)[i - 1], (*items)[random->Fork() % i]);
-  }
-}
-
-std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordings, int num_folds,
-                                  int repeats, uint64_t seed) {
-  std::map<std::array<std::string, 3>, std::vector<int>> strata;
-  for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
-    strata[{recordings[i].setting, recordings[i].magnitude, PushedSubject(recordings[i])}]
-        .push_back(i);
-  }
-  std::vector<Fold> folds;
-  Random random(seed);
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    std::vector<Fold> round(num_folds);
-    int next = 0;  // carried over from stratum to stratum: folds stay equally large
-    for (const auto& [key, members] : strata) {
-      std::vector<int> shuffled = members;
-      Shuffle(&shuffled, &random);
-      for (int index : shuffled) round[next++ % num_folds].held_out.push_back(index);
-    }
-    for (int f = 0; f < num_folds; ++f) {
-      round[f].name = "repeat " + std::to_string(repeat + 1) + " fold " + std::to_string(f + 1);
-      std::sort(round[f].held_out.begin(), round[f].held_out.end());
-      folds.push_back(round[f]);
-    }
-  }
-  return folds;
-}
-
-std::vector<int> Others(const std::vector<int>& held_out, int total) {
-  std::vector<int> others;
-  for (int i = 0; i < total; ++i) {
-    if (!std::binary_search(held_out.begin(), held_out.end(), i)) others.push_back(i);
-  }
-  return others;
-}
-
-}  // namespace
-
-Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
-                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
-  const int total = static_cast<int>(recordings.size());
-  if (scheme == FoldScheme::kStratified) {
-    if (num_folds < 2 || num_folds > total) {
-      return Error{"--folds is " + std::to_string(num_folds) + "; it must lie between 2 and the " +
-                   std::to_string(total) + " recordings"};
-    }
-    if (repeats < 1) return Error{"--repeats must be at least 1"};
-    return StratifiedFolds(recordings, num_folds, repeats, seed);
-  }
-  // One fold per subject or setting; one fold of all strong pushes.
-  std::map<std::string, Fold> by_name;
-  for (int i = 0; i < total; ++i) {
-    const PendulumRecording& recording = recordings[i];
-    std::string key = PushedSubject(recording);
-    if (scheme == FoldScheme::kSetting) key = recording.setting;
-    if (scheme == FoldScheme::kStrong) key = "strong";
-    if (scheme == FoldScheme::kStrong && recording.magnitude != "strong") continue;
-    by_name[key].name = "without " + key;
-    by_name[key].held_out.push_back(i);
-  }
-  std::vector<Fold> folds;
-  for (auto& [name, fold] : by_name) {
-    if (static_cast<int>(fold.held_out.size()) < total) folds.push_back(fold);
-  }
-  if (folds.empty()) {
-    return Error{"--scheme=" + NameOf(scheme) +
-                 " leaves nothing to fit: it needs recordings of at least two pushed subjects "
-                 "(subject), of two settings (setting), or recordings of magnitude 'strong' and "
-                 "others (strong)"};
-  }
-  return folds;
-}
 
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,

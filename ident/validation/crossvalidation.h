@@ -1,9 +1,7 @@
 // ident: how well a configuration predicts recordings it has not seen.
 //
-// Folds: stratified by setting, strength and subject, so that every fold holds out its share of
-// each, repeated with new shuffles; leave-one-subject-out and leave-one-setting-out; the strong
-// pushes held out together. The standard error of a mean is over recordings (each one's score
-// averaged over the repeats): recordings are the independent units here, not frames and not folds.
+// The standard error of a mean is over recordings (each one's score averaged over the repeats):
+// recordings are the independent units here, not frames and not folds.
 #pragma once
 
 #include <optional>
@@ -12,21 +10,10 @@
 
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/behaviour.h"
+#include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
-
-enum class FoldScheme { kStratified, kSubject, kStrong, kSetting };
-
-struct Fold {
-  std::string name;  // "repeat 2 fold 3", "without X-05", "strong"
-  std::vector<int> held_out;
-};
-
-// For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
-// Errors: fewer recordings or subjects than the scheme needs, no strong push.
-Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
-                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
 
 // What became of one fold.
 struct FoldPrediction {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/solver/large_network_stage.h"
+#include "ident/results/fit.h"
 
 namespace pushid {
 
@@ -20,37 +20,19 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
                                            const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
-  FitOptions options = options_;
-  bool usable = true;
-  if (NeedsGradientTraining(options)) {
-    const Result<FitOptions> trained = TrainLargeNetwork(training, options_, nullptr);
-    usable = trained.ok();
-    if (usable) options = trained.value();
-  }
-  const FitProblem problem(training, options);
-  const Solution solution = usable ? Solve(problem) : Solution();
+  const Result<SolvedModel> solved = SolveModel(training, options_);
   FoldPrediction prediction;
-  IdentifiedModel model;
-  model.options = options_.model;
-  model.pool_by = options_.pool_by;
-  if (solution.best >= 0) {
-    model.options = problem.ModelAt(solution.Best().to);
-    model.parameters = problem.Parameters(solution.Best().to, "");
-    prediction.behaviour = problem.BehaviourAt(solution.Best().to);
-    if (options_.ensemble > 1) model.others = FitOtherSeeds(training, options_);
-  }
+  if (solved.ok()) prediction.behaviour = solved.value().behaviour;
   for (int i : test) {
-    if (solution.best < 0) {
+    if (!solved.ok()) {
       RecordingScore failed;
       failed.id = recordings[i].id;
       failed.frames = recordings[i].num_frames();
-      failed.failure = "the fit without it found no usable optimum";
+      failed.failure = "no fit without it: " + solved.error().message;
       prediction.scores.push_back(failed);
       continue;
     }
-    for (const auto& [unit, deviations] : solution.Best().to.unit) {
-      model.by_unit[unit] = problem.Parameters(solution.Best().to, unit);
-    }
+    const IdentifiedModel& model = solved.value().model;
     prediction.scores.push_back(ScoreModel(model, recordings[i]));
     prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
   }

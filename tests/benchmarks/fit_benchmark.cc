@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
 #include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
@@ -13,15 +14,7 @@
 namespace pushid {
 namespace {
 
-FitOptions OptionsOf(const char* name) {
-  const Preset preset = MakePreset(name).value();
-  FitOptions options;
-  options.preset = preset.name;
-  options.model = preset.model;
-  options.table = preset.table;
-  options.settling_weight = preset.settling_weight;
-  return options;
-}
+FitOptions OptionsOf(const char* name) { return MakePreset(name).value(); }
 
 void Report(benchmark::State& state, const Solution& solution) {
   const BenchmarkRecordings& data = SinglePeople();
@@ -67,13 +60,11 @@ BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
 
 FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
-  FitOptions options = OptionsOf("group");
+  FitOptions options = StartPreset("group").value();  // not pooled
   options.self_force = self_force;
   options.model.interaction.drive = drive;
-  FreeSelfForce(self_force, &options.table);
-  FreeInteraction(options.model.interaction, &options.table);
-  options.function_tolerance = MakePreset("group").value().function_tolerance;
-  if (self_force == SelfForceKind::kLinear) options.mode_weight = 30.0;
+  FreeTerms(&options);
+  options.mode_weight = DefaultModeWeight(self_force);
   return options;
 }
 

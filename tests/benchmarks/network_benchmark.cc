@@ -15,9 +15,9 @@ namespace pushid {
 namespace {
 
 FitOptions OptionsOf(const char* self_force) {
-  const Preset preset = MakePreset("tail").value();
+  const FitOptions preset = MakePreset("tail").value();
   FitOptions options;
-  options.preset = preset.name;
+  options.preset = preset.preset;
   options.model = preset.model;
   options.table = preset.table;
   options.settling_weight = preset.settling_weight;

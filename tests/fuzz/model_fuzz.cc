@@ -10,11 +10,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static MemoryFile file;
   const CpuSecond limit;
   const std::string& path = file.Fill(data, size);
-  const Result<FitResult> model = ReadFitResult(path);
+  const Result<FittedModel> model = ReadFittedModel(path);
   if (model.ok()) {
     Demand(!ReportText(model.value()).empty());
     const auto written = ToJson(model.value(), RunInfo{});
-    const Result<FitResult> again = FitResultFromJson(written, "written");
+    const Result<FittedModel> again = FittedModelFromJson(written, "written");
     Demand(again.ok() && ToJson(again.value(), RunInfo{}).dump() == written.dump());
   }
   (void)ReadInteractionNetwork(path);

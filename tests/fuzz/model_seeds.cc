@@ -14,13 +14,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-FitResult OfPreset(const std::string& name) {
-  const Preset preset = MakePreset(name).value();
-  FitResult result;
-  result.options.preset = name;
-  result.options.model = preset.model;
-  result.options.table = preset.table;
-  result.options.self_force = preset.self_force;
+FittedModel OfPreset(const std::string& name) {
+  const FitOptions preset = MakePreset(name).value();
+  FittedModel model;
+  FitResult& result = model.fit;
+  result.options = preset;
   result.parameters = preset.table.Values();
   for (const ParameterSpec& spec : preset.table.specs) {
     const EstimateStatus status = spec.free ? EstimateStatus::kIdentified : EstimateStatus::kFixed;
@@ -41,29 +39,30 @@ FitResult OfPreset(const std::string& name) {
   result.starts = {start};
   result.best_start = 0;
   result.warnings = {"a warning"};
-  result.version = "0.1.0";
-  result.configuration = {{"seed", "1"}, {"preset", name}};
-  result.changed_flags = {"preset"};
-  return result;
+  model.provenance.version = "0.1.0";
+  model.provenance.configuration = {{"seed", "1"}, {"preset", name}};
+  model.provenance.changed_flags = {"preset"};
+  return model;
 }
 
-void AddConfidence(FitResult* result) {
+void AddConfidence(FittedModel* model) {
+  FitResult* const result = &model->fit;
   result->subjects["anna"].mass_kg = 62.0;
   result->subjects["anna"].pooled["mu"] = result->estimates.front();
   result->settings["single"]["mu"] = result->estimates.front();
   result->nuisance = {};
-  result->profiles = {{"mu",
-                       "N s/m",
-                       20.0,
-                       ProfileClass::kPracticallyNot,
-                       -kInfinity,
-                       30.0,
-                       1.0,
-                       0.3,
-                       "bound",
-                       "threshold",
-                       {{10.0, 1.3, {{"a_x", -0.1}}}}}};
-  result->bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  model->profiles = {{"mu",
+                      "N s/m",
+                      20.0,
+                      ProfileClass::kPracticallyNot,
+                      -kInfinity,
+                      30.0,
+                      1.0,
+                      0.3,
+                      "bound",
+                      "threshold",
+                      {{10.0, 1.3, {{"a_x", -0.1}}}}}};
+  model->bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
   Diagnostics& d = result->diagnostics;
   d.start = {kInfinity, {}, {"t_v"}, {"moved"}, {"grams"}};
   d.start.null_directions = {{{"mu", "Kp_x"}, {1.0, -1.0}, result->derived, "cannot be told"}};
@@ -72,7 +71,7 @@ void AddConfidence(FitResult* result) {
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.0, 0.0}};
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
   d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
-  d.advice = {{"free less", "pushid-fit --fix=mu"}};
+  model->advice = {{"free less", "pushid-fit --fix=mu"}};
 }
 
 void AddNetworks(FitResult* result) {
@@ -94,16 +93,16 @@ InteractionNetwork SmallInteraction() {
 }  // namespace
 
 MaybeError WriteModelSeeds(const std::string& folder) {
-  FitResult judged = OfPreset("tail"), learned = OfPreset("ldp"), group = OfPreset("group");
+  FittedModel judged = OfPreset("tail"), learned = OfPreset("ldp"), group = OfPreset("group");
   AddConfidence(&judged);
-  AddNetworks(&learned);
+  AddNetworks(&learned.fit);
   const InteractionNetwork interaction = SmallInteraction();
-  group.options.model.interaction_network = std::make_shared<InteractionNetwork>(interaction);
+  group.fit.options.model.interaction_network = std::make_shared<InteractionNetwork>(interaction);
   for (const auto& [name, result] :
        {std::pair{"tail", judged}, std::pair{"learned", learned}, std::pair{"group", group}}) {
     const std::string path = folder + "/" + name + ".json";
     if (const MaybeError failed = WriteJson(path, ToJson(result, RunInfo{}))) return failed;
-    const Result<FitResult> readable = ReadFitResult(path);
+    const Result<FittedModel> readable = ReadFittedModel(path);
     if (!readable.ok()) return readable.error();
   }
   return WriteJson(folder + "/network.json", ToJson(interaction));

@@ -49,12 +49,8 @@ inline std::vector<PendulumRecording> MakePendulums(const SyntheticOptions& opti
 
 // The tail preset as a user gets it, its fixed parameters at the truth of `study`.
 inline FitOptions DefaultFit(const SyntheticOptions& study) {
-  const Preset preset = MakePreset("tail").value();
-  FitOptions options;
-  options.preset = preset.name;
+  FitOptions options = MakePreset("tail").value();
   options.model = study.model;
-  options.table = preset.table;
-  options.settling_weight = preset.settling_weight;
   for (ParameterSpec& spec : options.table.specs) {
     if (!spec.free) spec.nominal = study.parameters[spec.id];
   }

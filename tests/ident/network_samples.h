@@ -7,6 +7,7 @@
 
 #include "ident/parameters/self_network_io.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -32,25 +32,26 @@ ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingVi
 
 }  // namespace
 
-Report BuildReport(const FitResult& result, const std::vector<Recording>& recordings,
+Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
                    const BuildReportOptions& options) {
+  const FitResult& result = model.fit;
   Report report;
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
-                 result.setting + "), preset " + result.options.preset;
+                 model.provenance.setting + "), preset " + result.options.preset;
   report.subtitle =
       "identified friction, gains and push tails, how sure they are, and what they "
       "predict; pushid " +
-      result.version;
+      model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);
-  report.sections = {SummarySection(result),   ParameterSection(result),
-                     UnitSection(result),      IdentifiabilitySection(result),
-                     ProfileSection(result),   BootstrapSection(result),
-                     BehaviourSection(result), FigureSection(views),
-                     MotionSection(views),     RecordingSection(result),
-                     LeverageSection(result),  ResidualSection(result),
-                     SolveSection(result),     DesignSection(DesignOf(result, views)),
-                     ProvenanceSection(result)};
+  report.sections = {SummarySection(model),   ParameterSection(model),
+                     UnitSection(model),      IdentifiabilitySection(model),
+                     ProfileSection(model),   BootstrapSection(model),
+                     BehaviourSection(model), FigureSection(views),
+                     MotionSection(views),    RecordingSection(model),
+                     LeverageSection(model),  ResidualSection(model),
+                     SolveSection(model),     DesignSection(DesignOf(result, views)),
+                     ProvenanceSection(model)};
   return report;
 }
 

@@ -9,7 +9,7 @@
 #include "datasets/manifest/recording.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/page/document.h"
-#include "ident/results/fit_result.h"
+#include "ident/results/fitted_model.h"
 
 namespace pushid {
 
@@ -20,7 +20,7 @@ struct BuildReportOptions {
 
 // recordings: those to draw; none leaves out motion, figure and the next push to record. With all
 // joints read, the figure shows skeletons too.
-Report BuildReport(const FitResult& result, const std::vector<Recording>& recordings,
+Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
                    const BuildReportOptions& options);
 
 }  // namespace pushid

@@ -43,10 +43,11 @@ ReportFigure CorrelationFigure(const FitResult& result) {
 }
 
 // A multiple of one parameter draws that parameter's curve again.
-bool IsAlias(const FitResult& result, const Profile& p) {
+bool IsAlias(const FittedModel& model, const Profile& p) {
+  const FitResult& result = model.fit;
   const bool parameter = result.options.table.Find(p.name) != nullptr;
   return !parameter &&
-         std::any_of(result.profiles.begin(), result.profiles.end(), [&](const auto& q) {
+         std::any_of(model.profiles.begin(), model.profiles.end(), [&](const auto& q) {
            return &q != &p && result.options.table.Find(q.name) != nullptr &&
                   q.points.size() == p.points.size() && q.threshold == p.threshold &&
                   q.cost == p.cost &&
@@ -98,7 +99,8 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
 
 }  // namespace
 
-ReportSection IdentifiabilitySection(const FitResult& result) {
+ReportSection IdentifiabilitySection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"identifiability", "What the data can tell apart", {}, {}, {}, {}, {}, ""};
   const Diagnostics& d = result.diagnostics;
   section.paragraphs.push_back(
@@ -117,25 +119,26 @@ ReportSection IdentifiabilitySection(const FitResult& result) {
   return section;
 }
 
-ReportSection ProfileSection(const FitResult& result) {
+ReportSection ProfileSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"profiles", "Profile likelihood", {}, {}, {}, {}, {}, ""};
-  if (result.profiles.empty()) return section;
+  if (model.profiles.empty()) return section;
   section.paragraphs = {
       "Each parameter is moved away from its estimate and everything else refitted. Where the "
       "curve "
       "crosses the dashed line the 95 % interval ends; a flat curve means that the data do not "
       "know."};
-  section.paragraphs.push_back(AgreementNote(result));
-  section.tables.push_back({"three kinds of intervals", AgreementTable(result)});
+  section.paragraphs.push_back(AgreementNote(model));
+  section.tables.push_back({"three kinds of intervals", AgreementTable(model)});
   std::vector<Chart> charts;
   TextTable ends({"profile of", "why it ended below", "above"}, std::vector<bool>(3, true));
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"},
                     std::vector<bool>(5, true));
-  for (const Profile& p : result.profiles) {
+  for (const Profile& p : model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
-    if (p.points.size() > 1 && !IsAlias(result, p)) charts.push_back(ProfileChart(p));
+    if (p.points.size() > 1 && !IsAlias(model, p)) charts.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
       numbers.Add({p.name, p.unit, DoubleText(point.value), DoubleText(point.cost - p.cost),
                    DoubleText(p.threshold)});
@@ -149,16 +152,17 @@ ReportSection ProfileSection(const FitResult& result) {
   return section;
 }
 
-ReportSection BootstrapSection(const FitResult& result) {
+ReportSection BootstrapSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"bootstrap", "Bootstrap over recordings", {}, {}, {}, {}, {}, ""};
-  if (!result.bootstrap || result.bootstrap->values.empty()) return section;
-  const Bootstrap& b = *result.bootstrap;
+  if (!model.bootstrap || model.bootstrap->values.empty()) return section;
+  const Bootstrap& b = *model.bootstrap;
   section.paragraphs = {std::to_string(b.values.size()) + " of " + std::to_string(b.replicas) +
                         " replicas (seed " + std::to_string(b.seed) +
                         "): the fit repeated on recordings drawn with replacement."};
-  if (result.profiles.empty()) {
-    section.paragraphs.push_back(AgreementNote(result));
-    section.tables.push_back({"two kinds of intervals", AgreementTable(result)});
+  if (model.profiles.empty()) {
+    section.paragraphs.push_back(AgreementNote(model));
+    section.tables.push_back({"two kinds of intervals", AgreementTable(model)});
   }
   std::vector<Chart> charts;
   std::vector<std::string> header;

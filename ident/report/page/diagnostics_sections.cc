@@ -114,7 +114,8 @@ Chart Correlogram(const std::string& title, const std::vector<double>& values,
 
 }  // namespace
 
-ReportSection RecordingSection(const FitResult& result) {
+ReportSection RecordingSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"recordings", "Recording by recording", {}, {}, {}, {}, {}, ""};
   const Diagnostics& d = result.diagnostics;
   if (d.recordings.empty()) return section;
@@ -144,7 +145,8 @@ ReportSection RecordingSection(const FitResult& result) {
   return section;
 }
 
-ReportSection LeverageSection(const FitResult& result) {
+ReportSection LeverageSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"leverage", "Which recording moves what", {}, {}, {}, {}, {}, ""};
   const Leverage& l = result.diagnostics.leverage;
   if (l.recordings.empty()) return section;
@@ -179,7 +181,8 @@ ReportSection LeverageSection(const FitResult& result) {
   return section;
 }
 
-ReportSection ResidualSection(const FitResult& result) {
+ReportSection ResidualSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"residuals", "What is left over", {}, {}, {}, {}, {}, ""};
   const std::vector<Whiteness>& channels = result.diagnostics.whiteness;
   if (channels.empty()) return section;
@@ -218,7 +221,8 @@ ReportSection ResidualSection(const FitResult& result) {
   return section;
 }
 
-ReportSection SolveSection(const FitResult& result) {
+ReportSection SolveSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"solve", "How the solver got there", {}, {}, {}, {}, {}, ""};
   std::vector<const SolveStart*> ranked;
   for (const SolveStart& start : result.starts) ranked.push_back(&start);

@@ -102,12 +102,13 @@ const Agreement* Find(const std::vector<Agreement>& rows, const std::string& nam
 
 }  // namespace
 
-ReportSection ParameterSection(const FitResult& result) {
+ReportSection ParameterSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"parameters", "Parameters", {}, {}, {}, {}, {}, ""};
   section.paragraphs = {HowSure(result), ConventionText(result)};
   section.tables.push_back({"identified and held", EstimateTable(result)});
   section.tables.push_back({"derived", DerivedTable(result)});
-  const std::vector<Agreement> agreements = CompareIntervals(result);
+  const std::vector<Agreement> agreements = CompareIntervals(model);
   std::vector<ForestRow> rows;
   TextTable numbers(
       {"parameter", "unit", "value", "nominal", "clustered_lower95", "clustered_upper95",
@@ -135,8 +136,8 @@ ReportSection ParameterSection(const FitResult& result) {
     numbers.Add(cells);
   }
   std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
-  if (!result.profiles.empty()) legend.push_back({"profile", kProfileLook});
-  if (result.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
+  if (!model.profiles.empty()) legend.push_back({"profile", kProfileLook});
+  if (model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});
   section.figures.push_back(
       {"forest",
@@ -146,7 +147,8 @@ ReportSection ParameterSection(const FitResult& result) {
   return section;
 }
 
-ReportSection UnitSection(const FitResult& result) {
+ReportSection UnitSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   const bool by_setting = !result.settings.empty();
   ReportSection section{"units", by_setting ? "By setting" : "By subject", {}, {}, {}, {}, {}, ""};
   const TextTable pooled = PooledTable(result);

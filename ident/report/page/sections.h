@@ -6,24 +6,25 @@
 
 #include "ident/report/page/document.h"
 #include "ident/report/page/recording_view.h"
+#include "ident/results/fitted_model.h"
 #include "ident/validation/experiment_design.h"
 
 namespace pushid {
 
-ReportSection SummarySection(const FitResult& result);
-ReportSection ParameterSection(const FitResult& result);
-ReportSection UnitSection(const FitResult& result);  // subjects or settings that differ
-ReportSection IdentifiabilitySection(const FitResult& result);
-ReportSection ProfileSection(const FitResult& result);
-ReportSection BootstrapSection(const FitResult& result);
-ReportSection BehaviourSection(const FitResult& result);
-ReportSection RecordingSection(const FitResult& result);
-ReportSection LeverageSection(const FitResult& result);
-ReportSection ResidualSection(const FitResult& result);
-ReportSection SolveSection(const FitResult& result);
+ReportSection SummarySection(const FittedModel& model);
+ReportSection ParameterSection(const FittedModel& model);
+ReportSection UnitSection(const FittedModel& model);  // subjects or settings that differ
+ReportSection IdentifiabilitySection(const FittedModel& model);
+ReportSection ProfileSection(const FittedModel& model);
+ReportSection BootstrapSection(const FittedModel& model);
+ReportSection BehaviourSection(const FittedModel& model);
+ReportSection RecordingSection(const FittedModel& model);
+ReportSection LeverageSection(const FittedModel& model);
+ReportSection ResidualSection(const FittedModel& model);
+ReportSection SolveSection(const FittedModel& model);
 ReportSection MotionSection(const std::vector<RecordingView>& views);
 ReportSection FigureSection(const std::vector<RecordingView>& views);
 ReportSection DesignSection(const ExperimentDesign& design);
-ReportSection ProvenanceSection(const FitResult& result);
+ReportSection ProvenanceSection(const FittedModel& model);
 
 }  // namespace pushid

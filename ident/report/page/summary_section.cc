@@ -37,12 +37,14 @@ double MeanExplained(const FitResult& result) {
 
 }  // namespace
 
-ReportSection SummarySection(const FitResult& result) {
+ReportSection SummarySection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"summary", "Summary", {}, {}, {}, {}, {}, ""};
   section.paragraphs.push_back(Verdict(result));
   const FitOptions& o = result.options;
   TextTable facts({"what", "value"}, {true, true});
-  facts.Add({"recordings", std::to_string(result.recordings.size()) + " (" + result.setting + ")"});
+  facts.Add({"recordings",
+             std::to_string(result.recordings.size()) + " (" + model.provenance.setting + ")"});
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
@@ -58,7 +60,7 @@ ReportSection SummarySection(const FitResult& result) {
   if (const std::string network = NetworkText(result); !network.empty()) {
     section.paragraphs.push_back("Learned on top: " + network + ".");
   }
-  const std::string prepared = PreparationText(result.configuration);
+  const std::string prepared = PreparationText(model.provenance.configuration);
   if (!prepared.empty()) section.paragraphs.push_back(prepared);
   for (const std::string& warning : result.warnings) {
     section.paragraphs.push_back("Warning: " + warning);
@@ -66,25 +68,28 @@ ReportSection SummarySection(const FitResult& result) {
   for (const std::string& warning : result.diagnostics.start.unit_warnings) {
     section.paragraphs.push_back("Units? " + warning);
   }
-  for (const Advice& advice : result.diagnostics.advice) {
+  for (const Advice& advice : model.advice) {
     section.advice.emplace_back(advice.sentence, advice.command);
   }
   return section;
 }
 
-ReportSection BehaviourSection(const FitResult& result) {
+ReportSection BehaviourSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"behaviour", "After a push", {}, {}, {}, {}, {}, ""};
   section.paragraphs = {BehaviourText(result)};
   section.tables.push_back({"demonstrations: pushed and left alone", BehaviourTable(result)});
   return section;
 }
 
-ReportSection ProvenanceSection(const FitResult& result) {
+ReportSection ProvenanceSection(const FittedModel& model) {
+  const FitResult& result = model.fit;
   ReportSection section{"provenance", "Where this comes from", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {"pushid " + result.version + ", manifest " + result.manifest + " (hash " +
-                        result.manifest_hash + ")"};
+  section.paragraphs = {"pushid " + model.provenance.version + ", manifest " +
+                        model.provenance.manifest + " (hash " + model.provenance.manifest_hash +
+                        ")"};
   TextTable flags({"flag", "value"}, {true, true});
-  for (const auto& [name, value] : result.configuration) flags.Add({"--" + name, value});
+  for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
   section.tables.push_back({"flags of the fit (what is empty or negative is the preset's)", flags});
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
   for (const FittedRecording& r : result.recordings) {

@@ -9,6 +9,7 @@
 #include "ident/report/advice.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/fit_command.h"
+#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -175,37 +176,38 @@ TEST(Leverage, IsWhatRefitsFind) {
 }
 
 TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
-  FitResult result = *result_;
-  result.configuration = {{"setting", "single"}, {"preset", "tail"}, {"fix", "mu_y=10"}};
-  result.changed_flags = {"fix", "setting"};
-  result.diagnostics.leverage.in_errors[5][0] = 1.7;
-  const std::vector<Advice> advice = Advise(result);
+  FittedModel model{*result_, {}, {}, {}, {}};
+  model.provenance.configuration = {{"setting", "single"}, {"preset", "tail"}, {"fix", "mu_y=10"}};
+  model.provenance.changed_flags = {"fix", "setting"};
+  model.fit.diagnostics.leverage.in_errors[5][0] = 1.7;
+  const std::vector<Advice> advice = Advise(model);
   const auto about = std::find_if(advice.begin(), advice.end(), [](const Advice& a) {
     return a.command.find("--leave_out") != std::string::npos;
   });
   ASSERT_NE(about, advice.end());
   EXPECT_TRUE(Contains(about->sentence, recordings_->at(5).id));
   EXPECT_TRUE(Contains(about->command, "--setting=single --fix=mu_y=10 --leave_out="));
-  result.diagnostics.advice = advice;
-  EXPECT_TRUE(Contains(DiagnosticsText(result), about->command));
+  model.advice = advice;
+  EXPECT_TRUE(Contains(DiagnosticsText(model), about->command));
 }
 
 std::string AllAdvice(const FitResult& result) {
   std::string all;
-  for (const Advice& advice : Advise(result)) all += advice.sentence + "\n" + advice.command + "\n";
+  for (const Advice& advice : Advise({result, {}, {}, {}, {}}))
+    all += advice.sentence + "\n" + advice.command + "\n";
   return all;
 }
 
 TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
-  FitResult result;
-  result.manifest = "my data/manifest.json";
-  result.configuration = {
+  Provenance from;
+  from.manifest = "my data/manifest.json";
+  from.configuration = {
       {"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
       {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
       {"preset_priors", "false"}, {"profile", "all"}, {"pooling_sigma", "0.14999999999999999"}};
-  result.changed_flags = {"fix",           "interaction", "leave_out",     "pool",
-                          "pooling_sigma", "preset",      "preset_priors", "profile"};
-  const FitCommand same("pushid-fit", result);
+  from.changed_flags = {"fix",           "interaction", "leave_out",     "pool",
+                        "pooling_sigma", "preset",      "preset_priors", "profile"};
+  const FitCommand same("pushid-fit", from);
   EXPECT_EQ(same.ToString(),
             "pushid-fit --recordings='my data/manifest.json' --leave_out=a,b --preset=group "
             "--fix=mu=3 --interaction=none --pool=none --pooling_sigma=0.15 --preset_priors=false");
@@ -250,7 +252,7 @@ TEST(Advice, OfNullDirectionsHoldsOneOfThem) {
   const SyntheticOptions study = TinyStudy();
   FitOptions options = UnbiasedFit(study);
   ASSERT_FALSE(EditTable({"", "Kp_x,Kp_y", "", "", ""}, &options.table));
-  const std::vector<Advice> advice = Advise(Fit(MakePendulums(study), options));
+  const std::vector<Advice> advice = Advise({Fit(MakePendulums(study), options), {}, {}, {}, {}});
   ASSERT_FALSE(advice.empty());
   EXPECT_TRUE(Contains(advice.front().sentence, "cannot be told apart"));
   EXPECT_TRUE(Contains(advice.front().command, "--fix=Kp_"));

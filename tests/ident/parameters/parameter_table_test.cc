@@ -20,7 +20,7 @@ std::set<std::string> FreeNames(const ParameterTable& table) {
 }
 
 TEST(Presets, FreeWhatTheyPromise) {
-  const Preset tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
+  const FitOptions tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
   EXPECT_EQ(FreeNames(tail.table),
             (std::set<std::string>{"mu", "Kp_theta", "a_x", "tail_gain", "tail_torque", "tail_time",
                                    "tail_exponent"}));
@@ -30,10 +30,10 @@ TEST(Presets, FreeWhatTheyPromise) {
   EXPECT_EQ(ldp.model.push_tail, PushTail::kNone);
   EXPECT_EQ(ldp.table[kKpX].nominal, 30.0);
   EXPECT_GT(tail.settling_weight, 0.0);
-  const Result<Preset> wrong = MakePreset("tial");
+  const Result<FitOptions> wrong = MakePreset("tial");
   ASSERT_FALSE(wrong.ok());
-  EXPECT_TRUE(
-      Contains(wrong.error().ToString(), "--preset is 'tial'; it must be tail, ldp or group"));
+  EXPECT_TRUE(Contains(wrong.error().ToString(),
+                       "--preset is 'tial'; it must be auto, tail, ldp or group"));
 }
 
 TEST(Presets, EveryRowIsSound) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/results/confidence.h"
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -29,18 +30,19 @@ TEST(PredictiveBands, SamplesHaveTheStatedSpread) {
     EXPECT_EQ(set[kKpX], result.parameters[kKpX]);
   }
   EXPECT_NEAR(inside / 4000.0, 0.95, 0.015);
-  options.from_bootstrap = true;
+  const Bootstrap empty;
+  options.bootstrap = &empty;
   EXPECT_FALSE(SampleParameters(result, options).ok());
 }
 
 TEST(PredictiveBands, BootstrapRowsAreParameterSets) {
   const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  FitResult result = Fit(recordings, UnbiasedFit(TinyStudy()));
-  ASSERT_FALSE(AddBootstrap(recordings, {8, 1, "", 2}, nullptr, &result));
+  FittedModel model{Fit(recordings, UnbiasedFit(TinyStudy())), {}, {}, {}, {}};
+  ASSERT_FALSE(AddBootstrap(recordings, {8, 1, "", 2}, nullptr, &model));
   BandOptions options;
-  options.from_bootstrap = true;
-  for (const ParameterSet<double>& set : SampleParameters(result, options).value()) {
-    const auto& rows = result.bootstrap->values;
+  options.bootstrap = &*model.bootstrap;
+  for (const ParameterSet<double>& set : SampleParameters(model.fit, options).value()) {
+    const auto& rows = model.bootstrap->values;
     EXPECT_TRUE(std::any_of(rows.begin(), rows.end(),
                             [&set](const std::vector<double>& row) { return row[0] == set[kMu]; }));
   }

@@ -9,6 +9,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/report/report_tables.h"
+#include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
 #include "models/modal_stability.h"
 #include "tests/ident/fit_samples.h"
@@ -236,7 +237,7 @@ TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
   load.setting = "single";
   const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const Preset preset = MakePreset("ldp").value();
+  const FitOptions preset = MakePreset("ldp").value();
   FitOptions options;
   options.model = preset.model;
   options.table = preset.table;

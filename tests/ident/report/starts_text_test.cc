@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/report/report_text.h"
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -26,7 +27,7 @@ TEST(AcrossStarts, CountsTheGoodOnesAndTheirSpread) {
   const std::string text = AcrossStartsText(result);
   EXPECT_NE(text.find("2 of 3 starts"), std::string::npos) << text;
   EXPECT_EQ(text.find("1e+06"), std::string::npos) << text;
-  EXPECT_NE(ReportText(result).find(text), std::string::npos);
+  EXPECT_NE(ReportText({result, {}, {}, {}, {}}).find(text), std::string::npos);
 }
 
 }  // namespace

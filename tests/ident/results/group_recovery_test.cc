@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
@@ -33,7 +34,7 @@ SyntheticOptions RowStudy(const InteractionTerms& terms) {
 
 FitOptions RowFit(const SyntheticOptions& study, bool exact) {
   FitOptions options = exact ? ExactFit(study) : UnbiasedFit(study);
-  FreeInteraction(study.model.interaction, &options.table);
+  FreeTerms(&options);
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   return options;
 }

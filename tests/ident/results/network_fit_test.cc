@@ -5,6 +5,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/report/report_text.h"
 #include "ident/results/confidence.h"
+#include "ident/results/fit.h"
 #include "ident/results/result_json.h"
 #include "ident/solver/early_stopping.h"
 #include "tests/ident/network_samples.h"
@@ -125,21 +126,21 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kGru, 2}), 0.002);
   study.options.ensemble = 3;
   study.options.network_prior = 1.0;
-  FitResult result = FitWith(study, {NetworkKind::kGru, 2});
+  const FittedModel model{FitWith(study, {NetworkKind::kGru, 2}), {}, {}, {}, {}};
+  const FitResult& result = model.fit;
   ASSERT_EQ(result.others.size(), 2u);
-  result.setting = "single";
-  const nlohmann::ordered_json json = ToJson(result, RunInfo{});
-  const Result<FitResult> read = FitResultFromJson(json, "model.json");
+  const nlohmann::ordered_json json = ToJson(model, RunInfo{});
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
-  EXPECT_EQ(read.value().options.model.self_network->weights,
+  EXPECT_EQ(read.value().fit.options.model.self_network->weights,
             result.options.model.self_network->weights);
-  EXPECT_EQ(read.value().options.ensemble, 3);
-  EXPECT_EQ(HeldOutAde(study, read.value()), HeldOutAde(study, result));
+  EXPECT_EQ(read.value().fit.options.ensemble, 3);
+  EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, result));
   EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
   EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);
   // Weights are not in the table.
-  for (const Estimate& e : read.value().nuisance) {
+  for (const Estimate& e : read.value().fit.nuisance) {
     EXPECT_EQ(e.name.find("weight"), std::string::npos);
   }
 }
@@ -158,10 +159,11 @@ TEST(NetworkFit, AnEarlyStopHasTheCostOfAllRecordings) {
 TEST(NetworkFit, ProfilesAreAsWideAsTheClusteredIntervals) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.005);
   study.options.network_prior = 1.0;
-  FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
-  ASSERT_FALSE(AddProfiles(study.training, {"mu", "Kp_theta"}, 1, nullptr, &result));
-  ASSERT_EQ(result.profiles.size(), 2u);
-  for (const Profile& profile : result.profiles) {
+  FittedModel model{FitWith(study, {NetworkKind::kMlp, 2}), {}, {}, {}, {}};
+  const FitResult& result = model.fit;
+  ASSERT_FALSE(AddProfiles(study.training, {"mu", "Kp_theta"}, 1, nullptr, &model));
+  ASSERT_EQ(model.profiles.size(), 2u);
+  for (const Profile& profile : model.profiles) {
     const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
                                        [&](const Estimate& e) { return e.name == profile.name; });
     ASSERT_NE(estimate, result.estimates.end());
@@ -174,9 +176,10 @@ TEST(NetworkFit, ProfilesAreAsWideAsTheClusteredIntervals) {
 TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   study.options.ensemble = 2;
-  const nlohmann::ordered_json good = ToJson(FitWith(study, {NetworkKind::kMlp, 2}), RunInfo{});
+  const nlohmann::ordered_json good =
+      ToJson({FitWith(study, {NetworkKind::kMlp, 2}), {}, {}, {}, {}}, RunInfo{});
   const auto complaint = [](const nlohmann::ordered_json& json) {
-    const Result<FitResult> read = FitResultFromJson(json, "model.json");
+    const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
     return read.ok() ? "" : read.error().ToString();
   };
   EXPECT_EQ(complaint(good), "");

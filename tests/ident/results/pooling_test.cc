@@ -3,6 +3,7 @@
 
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 
@@ -74,7 +75,7 @@ TEST(Pooling, SettingsKeepTheirOwnContact) {
     }
   }
   FitOptions options = UnbiasedFit(study);
-  FreeInteraction(study.model.interaction, &options.table);
+  FreeTerms(&options);
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   options.pool_by = PoolBy::kSetting;
   options.table[kContactDistance].pooled = true;

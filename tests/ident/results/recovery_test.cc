@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
@@ -63,7 +64,7 @@ TEST(Recovery, NoiseFreeWithLateralGains) {
 
 // LDP's model: pushes that are the whole force while they last, no tail, upright.
 TEST(Recovery, NoiseFreeLdpPreset) {
-  const Preset preset = MakePreset("ldp").value();
+  const FitOptions preset = MakePreset("ldp").value();
   SyntheticOptions study = SmallStudy();
   study.model = preset.model;
   study.push_kind = PushKind::kExternal;

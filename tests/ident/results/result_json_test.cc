@@ -8,6 +8,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/report/report_text.h"
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -16,26 +17,23 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-FitResult SampleResult(const TableEdits& edits = {}, int num_threads = 1) {
+FittedModel SampleModel(const TableEdits& edits = {}, int num_threads = 1) {
   const SyntheticOptions study = TinyStudy();
   FitOptions options = DefaultFit(study);
   options.num_starts = 2;
   options.num_threads = num_threads;
   EXPECT_FALSE(EditTable(edits, &options.table));
-  FitResult result = Fit(MakePendulums(study), options);
-  result.version = "0.1.0";
-  result.configuration = {{"seed", "1"}, {"preset", "tail"}};
-  result.changed_flags = {"preset"};
-  result.manifest = "m.json";
-  result.manifest_hash = "abc";
-  result.setting = "single";
-  return result;
+  FittedModel model;
+  model.fit = Fit(MakePendulums(study), options);
+  model.provenance = {"0.1.0", {{"seed", "1"}, {"preset", "tail"}}, {"preset"}, "m.json", "abc",
+                      "single"};
+  return model;
 }
 
 const RunInfo kRun = {"2024-01-01", "here", "model.json", 1.5, 1};
 
 Json RoundTrip(const Json& json) {
-  const Result<FitResult> read = FitResultFromJson(json, "model.json");
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   EXPECT_TRUE(read.ok()) << read.error().ToString();
   return ToJson(read.value(), kRun);
 }
@@ -44,7 +42,7 @@ TEST(ResultJson, RoundTripIsExact) {
   // Plain; with null directions (infinite errors); with pooled subjects.
   for (const TableEdits& edits : {TableEdits{}, TableEdits{"", "Kp_x", "", "", ""},
                                   TableEdits{"", "", "", "", "mu,Kp_theta"}}) {
-    const Json json = ToJson(SampleResult(edits), kRun);
+    const Json json = ToJson(SampleModel(edits), kRun);
     EXPECT_EQ(RoundTrip(json).dump(), json.dump());
     // Through text too, as a file has it.
     EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
@@ -52,34 +50,34 @@ TEST(ResultJson, RoundTripIsExact) {
 }
 
 // Numbers that do not end in binary, an open side, a bootstrap and every diagnostic.
-FitResult JudgedResult() {
-  FitResult result = SampleResult();
+FittedModel JudgedModel() {
+  FittedModel model = SampleModel();
   const double infinity = std::numeric_limits<double>::infinity();
-  result.profiles = {{"mu",
-                      "N s/m",
-                      20.1,
-                      ProfileClass::kPracticallyNot,
-                      -infinity,
-                      30.7,
-                      1.1,
-                      0.3,
-                      "bound",
-                      "threshold",
-                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
-  result.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
-  Diagnostics& d = result.diagnostics;
+  model.profiles = {{"mu",
+                     "N s/m",
+                     20.1,
+                     ProfileClass::kPracticallyNot,
+                     -infinity,
+                     30.7,
+                     1.1,
+                     0.3,
+                     "bound",
+                     "threshold",
+                     {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
+  model.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  Diagnostics& d = model.fit.diagnostics;
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
   d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
   d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
   d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
-  d.advice = {{"free less", "pushid-fit --fix=mu"}};
-  return result;
+  model.advice = {{"free less", "pushid-fit --fix=mu"}};
+  return model;
 }
 
 TEST(ResultJson, ConfidenceRoundTripIsExact) {
-  const Json json = ToJson(JudgedResult(), kRun);
+  const Json json = ToJson(JudgedModel(), kRun);
   for (const char* key : {"profiles", "bootstrap", "diagnostics"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
@@ -89,28 +87,29 @@ TEST(ResultJson, ConfidenceRoundTripIsExact) {
 }
 
 TEST(ResultJson, InfinitiesStayInfinite) {
-  const FitResult result = SampleResult({"", "Kp_x", "", "", ""});
-  const Json json = ToJson(result, kRun);
+  const FittedModel model = SampleModel({"", "Kp_x", "", "", ""});
+  const Json json = ToJson(model, kRun);
   EXPECT_TRUE(Contains(json.dump(), "\"infinity\""));
   EXPECT_FALSE(Contains(json.dump(), "null,"));
-  const FitResult read = FitResultFromJson(json, "").value();
-  const Estimate& e = *FindEstimate(read.estimates, "Kp_x");
+  const FittedModel read = FittedModelFromJson(json, "").value();
+  const Estimate& e = *FindEstimate(read.fit.estimates, "Kp_x");
   EXPECT_EQ(e.status, EstimateStatus::kUnidentifiable);
   EXPECT_EQ(e.standard_error, std::numeric_limits<double>::infinity());
   EXPECT_EQ(e.lower95, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(ReportText(read), ReportText(result));
+  EXPECT_EQ(ReportText(read), ReportText(model));
 }
 
 // Five recordings that the data of two parameters run away on: what is derived has no bounds then,
 // and a constant error has no autocorrelation. A null in their places is a model that cannot be
 // read.
 TEST(ResultJson, NumbersThatAreNoneComeBack) {
-  FitResult result = JudgedResult();
+  FittedModel model = JudgedModel();
+  FitResult& result = model.fit;
   const double infinity = std::numeric_limits<double>::infinity(), none = std::nan("");
   result.derived = {{"c_x", "N s/m", -infinity, infinity, -infinity, infinity}};
   result.estimates[0].value = infinity;
-  result.profiles[0].points[0] = {infinity, infinity, {{"a_x", none}}};
-  result.profiles[0].estimate = result.profiles[0].cost = infinity;
+  model.profiles[0].points[0] = {infinity, infinity, {{"a_x", none}}};
+  model.profiles[0].estimate = model.profiles[0].cost = infinity;
   Diagnostics& d = result.diagnostics;
   d.start.null_directions[0].coefficients[0] = none;
   d.start.null_directions[0].identified = result.derived;
@@ -125,23 +124,23 @@ TEST(ResultJson, NumbersThatAreNoneComeBack) {
   SolveStart& start = result.starts.front();
   start.cost = start.stages.front().initial_cost = start.stages.front().final_cost = infinity;
   start.from.shared = start.to.shared = {infinity, none};
-  const Json json = ToJson(result, kRun);
+  const Json json = ToJson(model, kRun);
   EXPECT_FALSE(Contains(json.dump(), "null,") || Contains(json.dump(), "null]") ||
                Contains(json.dump(), "null}"));
   EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
 }
 
 TEST(ResultJson, PredictionsNeedTheJsonAlone) {
-  const FitResult result = SampleResult({"", "", "", "", "mu"});
-  const FitResult read = FitResultFromJson(ToJson(result, kRun), "").value();
-  const IdentifiedModel a = ModelOf(result), b = ModelOf(read);
+  const FittedModel model = SampleModel({"", "", "", "", "mu"});
+  const FittedModel read = FittedModelFromJson(ToJson(model, kRun), "").value();
+  const IdentifiedModel a = ModelOf(model.fit), b = ModelOf(read.fit);
   EXPECT_EQ(a.parameters, b.parameters);
   EXPECT_EQ(a.by_unit, b.by_unit);
   EXPECT_EQ(a.by_unit.size(), 2u);
 }
 
 TEST(ResultJson, SameSeedSameBytes) {
-  Json a = ToJson(SampleResult(), kRun), b = ToJson(SampleResult(), kRun);
+  Json a = ToJson(SampleModel(), kRun), b = ToJson(SampleModel(), kRun);
   a.erase("run");
   b.erase("run");
   EXPECT_EQ(a.dump(), b.dump());
@@ -163,7 +162,7 @@ void ExpectClose(const Json& a, const Json& b, const std::string& where) {
 }
 
 TEST(ResultJson, ThreadsDoNotMatter) {
-  const Json a = ToJson(SampleResult({}, 1), kRun), b = ToJson(SampleResult({}, 2), kRun);
+  const Json a = ToJson(SampleModel({}, 1), kRun), b = ToJson(SampleModel({}, 2), kRun);
   for (const char* part : {"parameters", "derived", "values", "behaviour"}) {
     ExpectClose(a.at(part), b.at(part), part);
   }
@@ -171,9 +170,9 @@ TEST(ResultJson, ThreadsDoNotMatter) {
 }
 
 TEST(ResultJson, DamageIsNamed) {
-  const Json good = ToJson(SampleResult(), kRun);
+  const Json good = ToJson(SampleModel(), kRun);
   const auto message = [](const Json& json) {
-    const Result<FitResult> read = FitResultFromJson(json, "some.json");
+    const Result<FittedModel> read = FittedModelFromJson(json, "some.json");
     EXPECT_FALSE(read.ok());
     return read.ok() ? std::string() : read.error().ToString();
   };
@@ -211,19 +210,19 @@ TEST(ResultJson, DamageIsNamed) {
 using ResultFile = TempDirTest;
 
 TEST_F(ResultFile, ReadsWhatWasWritten) {
-  const Json json = ToJson(SampleResult(), kRun);
+  const Json json = ToJson(SampleModel(), kRun);
   ASSERT_FALSE(WriteJson(Path("model.json"), json));
-  const Result<FitResult> read = ReadFitResult(Path("model.json"));
+  const Result<FittedModel> read = ReadFittedModel(Path("model.json"));
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), kRun).dump(), json.dump());
 }
 
 TEST_F(ResultFile, BadFilesAreNamed) {
   const std::string cut = WriteText("cut.json", "{\"format\": \"pushid model\",\n \"values\": {");
-  const Result<FitResult> read = ReadFitResult(cut);
+  const Result<FittedModel> read = ReadFittedModel(cut);
   ASSERT_FALSE(read.ok());
   EXPECT_TRUE(Contains(read.error().ToString(), "cut.json:2"));
-  const Result<FitResult> missing = ReadFitResult(Path("missing.json"));
+  const Result<FittedModel> missing = ReadFittedModel(Path("missing.json"));
   ASSERT_FALSE(missing.ok());
   EXPECT_TRUE(Contains(missing.error().ToString(), "missing.json"));
 }

@@ -6,6 +6,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"
+#include "ident/results/fit.h"
 #include "ident/results/result_json.h"
 #include "ident/solver/large_network_stage.h"
 #include "tests/ident/network_samples.h"
@@ -28,7 +29,7 @@ FitResult FitRod(const Study& study, const RodShape& rod, int ensemble = 1) {
   options.ensemble = ensemble;
   options.model.self_network = InitialNetwork({}, 1, rod);
   options.table[kRodLift].nominal = 1.0;
-  FreeRod(options.model, &options.table);
+  FreeTerms(&options);
   options.table[kRodLift].prior.reset();
   return Fit(study.training, options);
 }
@@ -47,15 +48,14 @@ TEST(RodFit, PlantedLawsPredictUnseenPushes) {
 TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedRod(), 0.002, kPlantedLift);
   study.options.network_prior = 1.0;
-  FitResult result = FitRod(study, {RodKind::kMlp, {2}}, 2);
-  result.setting = "single";
-  ASSERT_EQ(result.others.size(), 1u);
-  EXPECT_FALSE(result.takeover.has_value());
-  const nlohmann::ordered_json json = ToJson(result, RunInfo{});
-  const Result<FitResult> read = FitResultFromJson(json, "model.json");
+  const FittedModel model{FitRod(study, {RodKind::kMlp, {2}}, 2), {}, {}, {}, {}};
+  ASSERT_EQ(model.fit.others.size(), 1u);
+  EXPECT_FALSE(model.fit.takeover.has_value());
+  const nlohmann::ordered_json json = ToJson(model, RunInfo{});
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
-  EXPECT_EQ(HeldOutAde(study, read.value()), HeldOutAde(study, result));
+  EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, model.fit));
   const std::string text = ReportText(read.value());
   EXPECT_NE(text.find("self force none"), std::string::npos);
   EXPECT_NE(text.find("rod mlp:2 (26 weights, prior 1), the first of 2 seeds"), std::string::npos);
@@ -81,7 +81,7 @@ TEST(RodFit, TheLiftHasAnEffectThoughTheLawBeginsAtZero) {
   const Study study = PlantedStudy(PlantedRod(), 0.002, kPlantedLift);
   FitOptions options = study.options;
   options.model.self_network = InitialNetwork({}, 1, {RodKind::kMlp, {2}});
-  FreeRod(options.model, &options.table);
+  FreeTerms(&options);
   EXPECT_FALSE(CheckEffects(FitProblem(study.training, options)));
 }
 

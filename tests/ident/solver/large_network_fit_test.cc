@@ -3,6 +3,7 @@
 #include "ident/solver/large_network_fit.h"
 
 #include "ident/parameters/self_network_io.h"
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

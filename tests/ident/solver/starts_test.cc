@@ -6,6 +6,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
@@ -56,7 +57,7 @@ TEST(Starts, RealRecordingsOneOptimum) {
   const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   const std::vector<PendulumRecording> recordings = AsPendulums(loaded.value());
-  const Preset preset = MakePreset("tail").value();
+  const FitOptions preset = MakePreset("tail").value();
   FitOptions options;
   options.model = preset.model;
   options.table = preset.table;

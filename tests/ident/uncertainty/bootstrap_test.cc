@@ -9,6 +9,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/results/confidence.h"
+#include "ident/results/fit.h"
 #include "ident/results/interval_agreement.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
@@ -131,18 +132,18 @@ TEST_F(BootstrapRun, NeedsTwoRecordings) {
 
 TEST(Agreement, HasOneRowPerNumberAndFindsDisagreement) {
   const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  FitResult result = Fit(recordings, UnbiasedFit(TinyStudy()));
-  EXPECT_TRUE(CompareIntervals(result).empty());
-  ASSERT_FALSE(AddProfiles(recordings, {"mu"}, 1, nullptr, &result));
-  ASSERT_FALSE(AddBootstrap(recordings, {20, 1, "", 2}, nullptr, &result));
-  const std::vector<Agreement> rows = CompareIntervals(result);
+  FittedModel model{Fit(recordings, UnbiasedFit(TinyStudy())), {}, {}, {}, {}};
+  EXPECT_TRUE(CompareIntervals(model).empty());
+  ASSERT_FALSE(AddProfiles(recordings, {"mu"}, 1, nullptr, &model));
+  ASSERT_FALSE(AddBootstrap(recordings, {20, 1, "", 2}, nullptr, &model));
+  const std::vector<Agreement> rows = CompareIntervals(model);
   ASSERT_EQ(rows.front().name, "mu");
   ASSERT_TRUE(rows.front().profile && rows.front().bootstrap);
   EXPECT_EQ(rows.front().classification, ProfileClass::kIdentifiable);
   EXPECT_FALSE(rows[1].profile);
   EXPECT_TRUE(rows[1].bootstrap);
-  result.profiles[0].upper95 = 1e9;
-  EXPECT_GT(CompareIntervals(result).front().ratio, 100.0);
+  model.profiles[0].upper95 = 1e9;
+  EXPECT_GT(CompareIntervals(model).front().ratio, 100.0);
 }
 
 }  // namespace

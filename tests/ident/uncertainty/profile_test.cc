@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "tests/ident/fit_samples.h"

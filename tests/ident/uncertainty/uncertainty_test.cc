@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 
 #include "ident/problem/jacobian_blocks.h"
+#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
 #include "tests/ident/fit_samples.h"

@@ -3,9 +3,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
-#include "ident/results/fit_result.h"
+#include "ident/fit.h"
 
 int main() {
   pushid::SyntheticOptions study;
@@ -16,16 +15,19 @@ int main() {
     std::fprintf(stderr, "%s\n", made.error().ToString().c_str());
     return 1;
   }
-  std::vector<pushid::PendulumRecording> recordings;
-  for (const pushid::Recording& recording : pushid::Recordings(made.value())) {
-    recordings.push_back(pushid::MakePendulumRecording(recording, pushid::SkeletonMapping::kExact));
-  }
-  pushid::FitOptions options;
+  const std::vector<pushid::PendulumRecording> recordings = pushid::MakePendulumRecordings(
+      pushid::Recordings(made.value()), pushid::SkeletonMapping::kExact);
+  pushid::FitOptions options = pushid::MakePreset("tail").value();
   options.model = study.model;
-  options.table = pushid::MakePreset("tail").value().table;
+  options.settling_weight = 0.0;
+  options.preset_priors = false;
+  pushid::FreeTerms(&options);
   for (pushid::ParameterSpec& spec : options.table.specs) {
-    spec.prior.reset();
     if (!spec.free) spec.nominal = study.parameters[spec.id];
+  }
+  if (const auto error = pushid::PrepareFit(recordings, &options)) {
+    std::fprintf(stderr, "%s\n", error->ToString().c_str());
+    return 1;
   }
   const pushid::FitResult result = pushid::Fit(recordings, options);
   const double found = pushid::ModelOf(result).parameters[pushid::kMu],

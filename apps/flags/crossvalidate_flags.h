@@ -1,0 +1,26 @@
+// apps: the flags of pushid-crossvalidate alone.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/problem/folds.h"
+#include "ident/results/fit_setup.h"
+
+namespace pushid {
+
+struct CrossvalidateFlags {
+  FoldScheme scheme = FoldScheme::kStratified;
+  int folds = 4, repeats = 5;  // of the stratified scheme
+  // Names of further candidates, with the options that they have over the given ones.
+  std::vector<std::pair<std::string, GivenOptions>> candidates;
+  bool baselines = true;
+  std::string frontier_out, json_out;  // empty: not written
+  bool bands = false;
+};
+
+Result<CrossvalidateFlags> CrossvalidateFlagsFromCommandLine();
+
+}  // namespace pushid

@@ -1,0 +1,20 @@
+// apps: the flags of pushid-fit alone.
+#include "apps/flags/fit_program_flags.h"
+
+#include <gflags/gflags.h>
+
+DEFINE_string(model_out, "", "write the identified model here (JSON)");
+DEFINE_int32(
+    resample, 0,
+    "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
+    "k; 0: the recordings as they are");
+DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
+
+namespace pushid {
+
+Result<FitProgramFlags> FitProgramFlagsFromCommandLine() {
+  if (FLAGS_resample < 0) return Error{"--resample must not be negative"};
+  return FitProgramFlags{FLAGS_model_out, FLAGS_resample, FLAGS_check};
+}
+
+}  // namespace pushid

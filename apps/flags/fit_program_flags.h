@@ -1,0 +1,18 @@
+// apps: the flags of pushid-fit alone.
+#pragma once
+
+#include <string>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+struct FitProgramFlags {
+  std::string model_out;  // empty: the model is not kept
+  int resample = 0;       // replica of a bootstrap; 0: the recordings as they are
+  bool check = false;     // only check the flags
+};
+
+Result<FitProgramFlags> FitProgramFlagsFromCommandLine();
+
+}  // namespace pushid

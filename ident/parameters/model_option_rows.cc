@@ -1,0 +1,158 @@
+// ident: rows of the options that say what the model is.
+#include <memory>
+
+#include "ident/parameters/network_json.h"
+#include "ident/parameters/option_row_makers.h"
+#include "ident/parameters/presets.h"
+#include "ident/parameters/self_network_io.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = FitOptionRow;
+
+Row PresetRow() {
+  Row row = WordsRow(
+      "preset", OptionStage::kPreset,
+      "the model: auto (tail for recordings of one person, group where there are more), tail (push "
+      "tail, posture-relative recovery), ldp (plain PD and friction from upright), or group (tail "
+      "with linear self forces and contact, pooled by setting)",
+      nullptr);
+  row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
+  row.json = "/preset";
+  row.write = [](const FitOptions& o) { return Json(o.preset); };
+  row.read = [](const Json& json, FitOptions* o) { o->preset = json; };
+  return row;
+}
+
+// What is learned so far; its weights are drawn once all of it is known (fit_setup.h).
+SelfNetwork Learned(const FitOptions& o) {
+  return o.model.self_network != nullptr ? *o.model.self_network : SelfNetwork{};
+}
+void SetLearned(const SelfNetwork& network, FitOptions* o) {
+  const bool any = network.shape.any() || network.shape.rod_input || network.rod.moves();
+  o->model.self_network = any ? std::make_shared<const SelfNetwork>(network) : nullptr;
+}
+
+Row SelfForceRow() {
+  Row row = Decided(WordsRow(
+      "self_force", OptionStage::kModel,
+      "what is fitted on top: none, linear (cross terms, quadratic), a network by kind and hidden "
+      "size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a network, "
+      "comma-separated",
+      [](const std::string& text, FitOptions* o) -> MaybeError {
+        const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", text);
+        if (!choice.ok()) return choice.error();
+        o->self_force = choice.value().kind;
+        o->mode_weight = DefaultModeWeight(o->self_force);
+        SelfNetwork network = Learned(*o);
+        network.shape = choice.value().network;
+        SetLearned(network, o);
+        return std::nullopt;
+      }));
+  row.json = "/self_force";
+  row.write = [](const FitOptions& o) {
+    return Json(SelfForceText(o.self_force, o.model.self_network.get()));
+  };
+  row.read = [](const Json& json, FitOptions* o) {
+    const auto self = ParseSelfForce("self_force", json.get<std::string>());
+    if (!self.ok()) throw std::runtime_error(self.error().ToString());
+    o->self_force = self.value().kind;
+  };
+  return row;
+}
+
+Row RodRow() {
+  Row row = WordsRow("rod", OptionStage::kModel,
+                     "the rod's length: constant, or a state that a learned law changes, together "
+                     "with the cart's height: linear, mlp:4, mlp:256-128-256 (hidden sizes)",
+                     [](const std::string& text, FitOptions* o) -> MaybeError {
+                       const Result<RodShape> rod = ParseRod("--rod", text);
+                       if (!rod.ok()) return rod.error();
+                       SelfNetwork network = Learned(*o);
+                       network.rod = rod.value();
+                       SetLearned(network, o);
+                       return std::nullopt;
+                     });
+  row.text = [](const FitOptions& o) { return RodName(Learned(o).rod); };
+  return row;
+}
+
+Row RodInputRow() {
+  return BoolRow(
+      "rod_input", "let the self force's network see how far the rod has moved",
+      [](const FitOptions& o) { return Learned(o).shape.rod_input; },
+      [](bool value, FitOptions* o) {
+        SelfNetwork network = Learned(*o);
+        network.shape.rod_input = value;
+        SetLearned(network, o);
+      });
+}
+
+Row PresetPriorsRow() {
+  return BoolRow(
+      "preset_priors", "keep the preset's weak priors",
+      [](const FitOptions& o) { return o.preset_priors; },
+      [](bool value, FitOptions* o) { o->preset_priors = value; });
+}
+
+Row InteractionNetworkRow() {
+  return WordsRow(
+      "interaction_network", OptionStage::kModel,
+      "JSON file of the network that --interaction=network evaluates "
+      "(ident/parameters/network_json.h)",
+      [](const std::string& text, FitOptions* o) -> MaybeError {
+        if (!o->model.interaction.network) {
+          return Error{"--interaction_network is given, but --interaction does not name network"};
+        }
+        const auto network = ReadInteractionNetwork(text);
+        if (!network.ok()) return network.error();
+        o->model.interaction_network = network.value();
+        return std::nullopt;
+      });
+}
+
+}  // namespace
+
+std::vector<Row> ModelOptionRows() {
+  using O = FitOptions;
+  return {
+      PresetRow(),
+      SelfForceRow(),
+      RodRow(),
+      RodInputRow(),
+      NameRow<SkeletonMapping>(
+          "mapping", "/mapping", [](O & o) -> auto& { return o.mapping; },
+          "skeleton to pendulum: exact, or ldp for comparison"),
+      Decided(NameRow<Posture>(
+          "posture", "/posture", [](O & o) -> auto& { return o.model.posture; },
+          "balance error measured from: upright or initial")),
+      Decided(NameRow<GainScaling>(
+          "gain_scaling", "/gain_scaling", [](O & o) -> auto& { return o.model.gain_scaling; },
+          "gains of other bodies: none, mass, or body (mass and rod length)")),
+      Decided(NameRow<FrictionKind>(
+          "friction", "/friction", [](O & o) -> auto& { return o.model.friction; },
+          "isotropic or anisotropic")),
+      Decided(NameRow<PushUse>(
+          "push", "/push", [](O & o) -> auto& { return o.model.push; },
+          "as_recorded (honour push_kind) or added")),
+      Decided(NameRow<PushTail>(
+          "push_tail", "/push_tail", [](O & o) -> auto& { return o.model.push_tail; },
+          "none or exponential")),
+      NameRow<CartDerivative>(
+          "cart_derivative", "/cart_derivative",
+          [](O & o) -> auto& { return o.model.cart_derivative; },
+          "none or backward: lets Kd_x and Kd_y act"),
+      Decided(NameRow<InteractionTerms>(
+          "interaction", "/interaction", [](O & o) -> auto& { return o.model.interaction; },
+          "what people do to each other: none, or some of these, comma-separated: contact (smooth "
+          "and mutual: spring,damping), spring, damping, ldp (smoothed: potential,lean), "
+          "potential, lean, ldp_discrete (LDP's exact form, to evaluate), network (of "
+          "--interaction_network), drive (who was pushed by others steps on)")),
+      InteractionNetworkRow(),
+      PresetPriorsRow(),
+  };
+}
+
+}  // namespace pushid

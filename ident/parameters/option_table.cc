@@ -1,0 +1,214 @@
+// ident: the rows of weights, solver and table.
+#include "ident/parameters/option_table.h"
+
+#include <sstream>
+
+#include "datasets/files/number_text.h"
+#include "ident/parameters/option_row_makers.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Row = FitOptionRow;
+
+constexpr std::int64_t kLongestHorizon = 1000000;  // frames
+
+MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
+  o->horizons.clear();
+  std::stringstream list(text);
+  for (std::string part; std::getline(list, part, ',');) {
+    std::int64_t frames = 0;
+    if (!ParseInteger(part, &frames) || frames < 2 || frames > kLongestHorizon) {
+      return Error{"--horizons: '" + part + "' is no number of frames of at least 2"};
+    }
+    o->horizons.push_back(static_cast<int>(frames));
+  }
+  o->horizons.push_back(0);
+  return std::nullopt;
+}
+
+Row HorizonsRow() {
+  Row row = WordsRow("horizons", OptionStage::kModel,
+                     "frames of the stages before all frames, comma-separated", ReadHorizons);
+  row.text = [](const FitOptions& o) {
+    std::string text;
+    for (int frames : o.horizons) {
+      if (frames > 0) text += (text.empty() ? "" : ",") + std::to_string(frames);
+    }
+    return text;
+  };
+  row.json = "/horizons";
+  row.write = [](const FitOptions& o) { return Json(o.horizons); };
+  row.read = [](const Json& json, FitOptions* o) { o->horizons = json.get<std::vector<int>>(); };
+  return row;
+}
+
+Row SeedRow() {
+  Row row = WordsRow("seed", OptionStage::kModel, "seed of everything random",
+                     [](const std::string& text, FitOptions* o) -> MaybeError {
+                       std::int64_t value = 0;
+                       if (!ParseInteger(text, &value) || value < 0) {
+                         return BadOption("seed", text, "must be a whole number of at least 0");
+                       }
+                       o->seed = static_cast<uint64_t>(value);
+                       return std::nullopt;
+                     });
+  row.text = [](const FitOptions& o) { return std::to_string(o.seed); };
+  row.json = "/seed";
+  row.write = [](const FitOptions& o) { return Json(o.seed); };
+  row.read = [](const Json& json, FitOptions* o) { o->seed = json; };
+  return row;
+}
+
+Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
+  return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
+    TableEdits edits;
+    edits.*list = text;
+    return EditTable(edits, &o->table);
+  });
+}
+
+// How the recordings, the priors and the demands on the person weigh.
+std::vector<Row> WeightRows() {
+  using O = FitOptions;
+  return {
+      NumberRow(
+          "sigma_hip", "/sigmas/hip_m", [](O & o) -> auto& { return o.sigmas.hip; }, kPositive,
+          "standard deviation of the hip's position, m"),
+      NumberRow(
+          "sigma_velocity", "/sigmas/velocity_m_s",
+          [](O & o) -> auto& { return o.sigmas.velocity; }, kPositive,
+          "standard deviation of the cart's velocity, m/s"),
+      NumberRow(
+          "sigma_angle", "/sigmas/angle_rad", [](O & o) -> auto& { return o.sigmas.angle; },
+          kPositive, "standard deviation of the angles, rad"),
+      NumberRow(
+          "sigma_rate", "/sigmas/rate_rad_s", [](O & o) -> auto& { return o.sigmas.rate; },
+          kPositive, "standard deviation of the angular rates, rad/s"),
+      NumberRow(
+          "robust", "/sigmas/robust", [](O & o) -> auto& { return o.sigmas.robust; }, kNotNegative,
+          "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
+      NameRow<RecordingWeight>(
+          "recording_weight", "/recording_weight",
+          [](O & o) -> auto& { return o.recording_weight; },
+          "what counts the same: every recording, or every frame"),
+      Decided(NumberRow(
+          "settling_weight", "/settling_weight", [](O & o) -> auto& { return o.settling_weight; },
+          kNotNegative,
+          "weight of the settling simulations, after which a pushed person must have settled; 0: "
+          "off")),
+      Decided(NumberRow(
+          "mode_weight", "/mode_weight", [](O & o) -> auto& { return o.mode_weight; }, kNotNegative,
+          "weight of the hinge that makes a person's free modes at rest decay (it sees no "
+          "network); 0: off; 30 with a linear self force, else 0")),
+      NumberRow(
+          "mode_margin", "/mode_margin_per_s", [](O & o) -> auto& { return o.mode_margin; },
+          kNumber, "slowest decay the hinge allows, 1/s"),
+      NumberRow(
+          "stability_weight", "/stability_weight",
+          [](O & o) -> auto& { return o.stability_weight; }, kNotNegative,
+          "weight of the rollouts continued past the data, with the push and 1.4 times it"),
+      Decided(NameRow<PoolBy>(
+          "pool_by", "/pool_by", [](O & o) -> auto& { return o.pool_by; },
+          "the unit that pooled parameters may differ by: subject or setting")),
+      Decided(NumberRow(
+          "pooling_sigma", "/pooling_sigma", [](O & o) -> auto& { return o.pooling_sigma; },
+          kPositive,
+          "how far a unit may deviate from the shared value (standard deviation on the fitted "
+          "scale; 0.2 is about 20 % for a positive parameter)")),
+      MayBeAbsent(NumberRow(
+          "network_prior", "/network_prior", [](O & o) -> auto& { return o.network_prior; },
+          kNotNegative,
+          "standard deviation of the prior that ties a network's weights to zero; 0: none")),
+      MayBeAbsent(NumberRow(
+          "early_stopping", "/early_stopping", [](O & o) -> auto& { return o.early_stopping; },
+          {0.0, 0.5, false, "must lie between 0 and 0.5"},
+          "share of the recordings held out to stop a network's training in time; 0: none")),
+      MayBeAbsent(NumberRow(
+          "takeover_weight", "/takeover_weight", [](O & o) -> auto& { return o.takeover_weight; },
+          kNotNegative,
+          "weight of the penalty on what a network takes over from friction and balance")),
+      MayBeAbsent(CountRow(
+          "ensemble", "/ensemble", [](O & o) -> auto& { return o.ensemble; },
+          "networks trained from so many seeds; the model predicts the median of them")),
+  };
+}
+
+// Where the solve starts and ends.
+std::vector<Row> SolverRows() {
+  using O = FitOptions;
+  return {
+      HorizonsRow(),
+      NameRow<FitStart>(
+          "start", "/start", [](O & o) -> auto& { return o.start; },
+          "first start: equation_error or nominal"),
+      CountRow(
+          "starts", "/num_starts", [](O & o) -> auto& { return o.num_starts; },
+          "how many starts; the best one is taken"),
+      NumberRow(
+          "start_spread", "/start_spread", [](O & o) -> auto& { return o.start_spread; },
+          {1.0, 1000.0, false, "must lie between 1 and 1000"},
+          "random starts multiply every gain by up to this, either way"),
+      SeedRow(),
+      CountRow(
+          "num_threads", "", [](O & o) -> auto& { return o.num_threads; }, "threads"),
+      CountRow(
+          "max_iterations", "/max_iterations", [](O & o) -> auto& { return o.max_iterations; },
+          "iterations of each stage"),
+      Decided(NumberRow(
+          "function_tolerance", "/function_tolerance",
+          [](O & o) -> auto& { return o.function_tolerance; }, kNotNegative,
+          "relative change of the cost that ends a stage")),
+      NumberRow(
+          "gradient_tolerance", "/gradient_tolerance",
+          [](O & o) -> auto& { return o.gradient_tolerance; }, kNotNegative,
+          "gradient that ends a stage"),
+      NumberRow(
+          "parameter_tolerance", "/parameter_tolerance",
+          [](O & o) -> auto& { return o.parameter_tolerance; }, kNotNegative,
+          "relative step that ends a stage"),
+  };
+}
+
+// Which parameters are fitted.
+std::vector<Row> TableRows() {
+  return {
+      WordsRow("self_from", OptionStage::kOtherModel,
+               "a model whose self parameters (all but those between people) are taken over and "
+               "held, as of single people",
+               nullptr),
+      EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
+      EditRow("fix", &TableEdits::fix, "parameters held: name or name=value, comma-separated"),
+      EditRow("prior", &TableEdits::prior,
+              "priors: name:mean:sigma in the parameter's unit, comma-separated"),
+      Decided(WordsRow("pool", OptionStage::kModel,
+                       "parameters that may differ by unit, comma-separated, or all, or none",
+                       [](const std::string& text, FitOptions* o) -> MaybeError {
+                         o->pool = text;
+                         return std::nullopt;
+                       })),
+  };
+}
+
+}  // namespace
+
+const std::vector<FitOptionRow>& FitOptionRows() {
+  static const std::vector<FitOptionRow> rows = [] {
+    std::vector<FitOptionRow> all;
+    for (auto part : {ModelOptionRows, WeightRows, SolverRows, TableRows}) {
+      for (FitOptionRow& row : part()) all.push_back(std::move(row));
+    }
+    return all;
+  }();
+  return rows;
+}
+
+const FitOptionRow* FindFitOption(const std::string& name) {
+  for (const FitOptionRow& row : FitOptionRows()) {
+    if (row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+}  // namespace pushid

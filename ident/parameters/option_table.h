@@ -1,0 +1,52 @@
+// ident: the options of a fit, one row each: the flag, its check, and its entry in a model's JSON
+// are made from the row.
+//
+//   {"settling_weight", "weight of ...", "/settling_weight", ...}
+//   -> --settling_weight=10, FitOptions::IsValid, {"settling_weight": 10.0}
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/parameters/fit_options.h"
+
+namespace pushid {
+
+// When a row is applied (results/fit_setup.h).
+enum class OptionStage {
+  kPreset,      // first, and before anything else is known
+  kModel,       // before the parameters of the chosen terms are freed
+  kOtherModel,  // after that: takes parameters from a model's file
+  kTable        // last: edits single parameters
+};
+
+struct FitOptionRow {
+  std::string name;  // of the flag, without its dashes
+  std::string help;
+  OptionStage stage = OptionStage::kModel;
+  bool is_bool = false;         // --name, --noname; the others take --name=value
+  bool preset_decides = false;  // without it the preset's value holds
+  // Its value in words: the default of the flag when asked of FitOptions(). Null where there is no
+  // such value (an edit of the table, a file).
+  std::function<std::string(const FitOptions&)> text;
+  // Errors name the flag and the value. Null for kPreset and kOtherModel.
+  std::function<MaybeError(const std::string&, FitOptions*)> apply;
+  // What the value violates, as in "must be positive"; empty: nothing. Null: any value will do.
+  std::function<std::string(const FitOptions&)> violation;
+
+  std::string json;            // where it stands in a model's "model"; empty: nowhere
+  bool may_be_absent = false;  // in files older than the option
+  std::function<nlohmann::ordered_json(const FitOptions&)> write;
+  // Throws what nlohmann's JSON throws, and std::runtime_error for unknown names.
+  std::function<void(const nlohmann::ordered_json&, FitOptions*)> read;
+};
+
+// In the order in which they are applied and written.
+const std::vector<FitOptionRow>& FitOptionRows();
+// nullptr when there is none of that name.
+const FitOptionRow* FindFitOption(const std::string& name);
+
+}  // namespace pushid

@@ -1,0 +1,46 @@
+// ident: settings of the models, and what follows from a model: which parameters are fitted.
+//
+//   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
+//   ldp:   one person: plain PD balance and friction from upright; six free parameters
+//   group: people who touch: tail with all linear self forces and contact, every parameter
+//          partially pooled by setting; eighteen shared parameters
+//   auto:  tail where every recording is of one person, otherwise group
+//
+//   FitOptions options = MakePreset("tail").value();
+//   options.model.friction = FrictionKind::kAnisotropic;
+//   FreeTerms(&options);  // the terms have changed
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/fit_options.h"
+
+namespace pushid {
+
+inline constexpr char kAutoPreset[] = "auto";
+
+// What "auto" stands for on these recordings; other names as they are.
+std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
+
+// Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).
+Result<FitOptions> MakePreset(const std::string& name);
+
+// The same before FreeTerms and PoolParameters: only the preset's own parameters are free.
+Result<FitOptions> StartPreset(const std::string& name);
+
+// Frees the parameters of the terms that the options have, with weak priors as wide as their
+// centres (none without preset_priors), and holds those of terms that they do not have. What was
+// free before and acts stays free.
+void FreeTerms(FitOptions* options);
+
+// Marks what options->pool names as pooled. Errors: unknown, fixed, or shared by two people.
+MaybeError PoolParameters(FitOptions* options);
+
+// Of the hinge on the free modes: a linear self force can feed a mode that the settling simulations
+// do not excite.
+double DefaultModeWeight(SelfForceKind self_force);
+
+}  // namespace pushid

@@ -1,0 +1,39 @@
+// ident: which recordings are held out together.
+//
+// Stratified by setting, strength and subject, so that every fold holds out its share of each,
+// repeated with new shuffles; leave-one-subject-out and leave-one-setting-out; the strong pushes
+// held out together.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "models/enum_names.h"
+
+namespace pushid {
+
+enum class FoldScheme { kStratified, kSubject, kStrong, kSetting };
+constexpr EnumNames<FoldScheme, 4> Names(FoldScheme) {
+  return {{{"stratified", FoldScheme::kStratified},
+           {"subject", FoldScheme::kSubject},
+           {"strong", FoldScheme::kStrong},
+           {"setting", FoldScheme::kSetting}}};
+}
+
+struct Fold {
+  std::string name;  // "repeat 2 fold 3", "without X-05", "strong"
+  std::vector<int> held_out;
+};
+
+// For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
+// Errors: fewer recordings or subjects than the scheme needs, no strong push.
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed);
+
+// The indices below `total` that are not held out, ascending.
+std::vector<int> Others(const std::vector<int>& held_out, int total);
+
+}  // namespace pushid

@@ -1,0 +1,156 @@
+// ident: named options put together.
+#include "ident/results/fit_setup.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "ident/parameters/option_table.h"
+#include "ident/parameters/presets.h"
+#include "ident/parameters/self_network_io.h"
+#include "ident/results/result_json.h"
+
+namespace pushid {
+namespace {
+
+// The value of an option, or null.
+const std::string* Find(const GivenOptions& given, const std::string& name) {
+  for (const auto& [known, value] : given) {
+    if (known == name) return &value;
+  }
+  return nullptr;
+}
+
+// Takes over what a person does alone; the terms between people stay as they are.
+MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
+  const Result<FittedModel> read = ReadFittedModel(path);
+  if (!read.ok()) return read.error();
+  const FitResult& source = read.value().fit;
+  if (const auto& network = source.options.model.self_network) {
+    return Error{"has learned " + LearnedName(*network) +
+                     ", which --self_from cannot take over; fit one without",
+                 path};
+  }
+  for (ParameterSpec& spec : table->specs) {
+    if (spec.id >= kFirstPairParameter) continue;
+    spec.nominal = source.parameters[spec.id];
+    spec.free = false;
+  }
+  return std::nullopt;
+}
+
+// The rows' own rules see one option; these see several.
+MaybeError FinishModel(FitOptions* o) {
+  if (const auto network = o->model.self_network) {
+    const bool sees_rod = network->shape.any() && network->rod.moves();
+    if (network->shape.rod_input && !sees_rod) {
+      return Error{
+          "--rod_input is for a network beside a rod that moves, as in --self_force=mlp:4 "
+          "--rod=linear"};
+    }
+    o->model.self_network = InitialNetwork(network->shape, o->seed, network->rod);
+  }
+  if (o->model.interaction.network && o->model.interaction_network == nullptr) {
+    return Error{"--interaction names network: --interaction_network must name its JSON file"};
+  }
+  return std::nullopt;
+}
+
+MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* options) {
+  for (const FitOptionRow& row : FitOptionRows()) {
+    const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
+    if (value == nullptr) continue;
+    if (stage == OptionStage::kOtherModel) {
+      if (MaybeError error = TakeSelfFrom(*value, &options->table)) return error;
+    } else if (MaybeError error = row.apply(*value, options)) {
+      return error;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
+  for (const auto& option : more) {
+    const auto same = std::find_if(given.begin(), given.end(),
+                                   [&](const auto& one) { return one.first == option.first; });
+    if (same == given.end()) {
+      given.push_back(option);
+    } else {
+      same->second = option.second;
+    }
+  }
+  return given;
+}
+
+Result<GivenOptions> ParseOptionWords(const std::string& words) {
+  GivenOptions given;
+  std::stringstream list(words);
+  for (std::string word; list >> word;) {
+    const size_t equals = word.find('=');
+    if (word.rfind("--", 0) != 0 || equals == std::string::npos ||
+        FindFitOption(word.substr(2, equals - 2)) == nullptr) {
+      return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
+    }
+    given.emplace_back(word.substr(2, equals - 2), word.substr(equals + 1));
+  }
+  return given;
+}
+
+Result<FitOptions> MakeFitOptions(const GivenOptions& given,
+                                  const std::vector<PendulumRecording>* recordings) {
+  const std::string* named = Find(given, "preset");
+  const std::string preset = named != nullptr ? *named : kAutoPreset;
+  const std::vector<PendulumRecording> none;
+  Result<FitOptions> made = StartPreset(PresetFor(preset, recordings ? *recordings : none));
+  if (!made.ok()) return made.error();
+  FitOptions o = std::move(made.value());
+  if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
+  if (MaybeError error = FinishModel(&o)) return *error;
+  FreeTerms(&o);
+  for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
+    if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
+  }
+  if (MaybeError error = PoolParameters(&o)) return *error;
+  std::string invalid;
+  if (!o.IsValid(&invalid)) return Error{invalid};
+  return o;
+}
+
+MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
+  const auto& network = options.model.self_network;
+  for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+    if (network != nullptr || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
+    return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
+  }
+  for (const char* name : {"pool_by", "pooling_sigma"}) {
+    if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " says how parameters differ, but none does; name some with --pool"};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {
+  std::vector<std::string> warnings;
+  const std::string* fixed = Find(given, "fix");
+  std::stringstream list(fixed != nullptr ? *fixed : "");
+  for (std::string item; std::getline(list, item, ',');) {
+    const ParameterSpec* spec = options.table.Find(item.substr(0, item.find('=')));
+    if (spec == nullptr || Acts(spec->id, options.model)) continue;
+    warnings.push_back("--fix=" + item + " does nothing: " + spec->name +
+                       " does not act under this model");
+  }
+  if (options.model.interaction.ldp_discrete) {
+    warnings.push_back(
+        "--interaction=ldp_discrete has switches, which a fit cannot see: it is there to evaluate; "
+        "fit ldp (potential,lean), its smooth form");
+  }
+  return warnings;
+}
+
+}  // namespace pushid

@@ -1,0 +1,37 @@
+// ident: from named options, as flags or keywords give them, to what a fit is asked to do.
+//
+//   MakeFitOptions({{"preset", "tail"}, {"self_force", "linear"}, {"fix", "mu=40"}})
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/fit_options.h"
+
+namespace pushid {
+
+// Names of rows of the option table with their values in words.
+using GivenOptions = std::vector<std::pair<std::string, std::string>>;
+
+// `more` over `given`: what both name has the value of `more`.
+GivenOptions Merged(GivenOptions given, const GivenOptions& more);
+
+// "--self_force=linear --push_tail=none". Errors: a word that is no option of a fit.
+Result<GivenOptions> ParseOptionWords(const std::string& words);
+
+// The preset, the given options over it, the parameters that the model's terms free, and the edits
+// of the table. recordings: what `auto` looks at; null: none are known yet, and it means tail.
+// Errors name the option, its value and what it must be.
+Result<FitOptions> MakeFitOptions(const GivenOptions& given,
+                                  const std::vector<PendulumRecording>* recordings = nullptr);
+
+// Options that were given but act on nothing in `options`: an error that says what is missing.
+MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options);
+
+// Options that are taken but do nothing, or not what they seem to.
+std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options);
+
+}  // namespace pushid

@@ -1,0 +1,24 @@
+// ident: a fit with everything that was found out about it: what a model's file holds
+// (result_json.h), and what reports are a function of.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/results/fit_result.h"
+#include "ident/results/provenance.h"
+#include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/profile.h"
+
+namespace pushid {
+
+struct FittedModel {
+  FitResult fit;
+  std::vector<Profile> profiles;       // empty unless asked for (confidence.h)
+  std::optional<Bootstrap> bootstrap;  // absent unless asked for
+  std::vector<Advice> advice;          // report/advice.h
+  Provenance provenance;
+};
+
+}  // namespace pushid

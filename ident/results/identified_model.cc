@@ -1,0 +1,39 @@
+// ident: from a fit to a model that predicts.
+#include "ident/results/identified_model.h"
+
+namespace pushid {
+
+IdentifiedModel ModelOf(const FitResult& result) {
+  IdentifiedModel model;
+  model.options = result.options.model;
+  model.mapping = result.options.mapping;
+  model.table = result.options.table;
+  model.parameters = result.parameters;
+  model.others = result.others;
+  model.pool_by = result.options.pool_by;
+  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
+    if (pooled.empty()) return;
+    ParameterSet<double>& own = model.by_unit[unit] = result.parameters;
+    for (const auto& [name, estimate] : pooled) own[model.table.Find(name)->id] = estimate.value;
+  };
+  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) add(setting, pooled);
+  return model;
+}
+
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
+  const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
+  if (!values.ok()) return values.error();
+  TableEdits edits;
+  edits.set = assignments;
+  if (MaybeError error = EditTable(edits, &model->table)) return error;
+  for (const NamedValue& named : values.value()) {
+    const Parameter id = model->table.Find(named.name)->id;
+    model->parameters[id] = named.value;
+    for (auto& [unit, own] : model->by_unit) own[id] = named.value;
+    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,36 @@
+// ident: a fit as folds need it.
+#include "ident/problem/fit_problem.h"
+#include "ident/results/fit.h"
+#include "ident/solver/large_network_stage.h"
+
+namespace pushid {
+
+Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
+                               FitOptions options) {
+  if (MaybeError error = PrepareFit(recordings, &options)) return *error;
+  const FitOptions prepared = options;
+  if (NeedsGradientTraining(options)) {
+    const Result<FitOptions> trained = TrainLargeNetwork(recordings, prepared, nullptr);
+    if (!trained.ok()) return trained.error();
+    options = trained.value();
+  }
+  const FitProblem problem(recordings, options);
+  const Solution solution = Solve(problem);
+  if (solution.best < 0) return Error{"no usable optimum was found"};
+  const FitPoint& best = solution.Best().to;
+  SolvedModel solved;
+  IdentifiedModel& model = solved.model;
+  model.options = problem.ModelAt(best);
+  model.mapping = options.mapping;
+  model.table = options.table;
+  model.parameters = problem.Parameters(best, "");
+  model.pool_by = options.pool_by;
+  for (const auto& [unit, deviations] : best.unit) {
+    model.by_unit[unit] = problem.Parameters(best, unit);
+  }
+  if (options.ensemble > 1) model.others = FitOtherSeeds(recordings, prepared);
+  solved.behaviour = problem.BehaviourAt(best);
+  return solved;
+}
+
+}  // namespace pushid
