@@ -157,7 +157,8 @@ std::string Reason(const std::exception& exception) {
 
 }  // namespace
 
-Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file) {
+Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file,
+                                    const ForceLaws& laws) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
       !json.contains("format_version") || !json["format_version"].is_number()) {
     return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
@@ -172,8 +173,15 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
   };
   try {
     FitResult result;
-    const Preset known = MakePreset("tail").value();
+    Preset known = MakePreset("tail").value();
     result.options = OptionsFrom(at("model"));
+    if (json.contains("force_laws")) {
+      const auto names = at("force_laws").get<std::vector<std::string>>();
+      if (auto error = AddNamedLaws(names, laws, &result.options.model, &known.table)) {
+        error->file = file;
+        return *error;
+      }
+    }
     result.options.table = TableFrom(at("table"), known.table);
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
@@ -264,10 +272,10 @@ Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const st
   }
 }
 
-Result<FitResult> ReadFitResult(const std::string& path) {
+Result<FitResult> ReadFitResult(const std::string& path, const ForceLaws& laws) {
   Result<JsonDocument> document = ReadJsonDocument(path);
   if (!document.ok()) return document.error();
-  return FitResultFromJson(document.value().content, path);
+  return FitResultFromJson(document.value().content, path, laws);
 }
 
 }  // namespace pushid

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/parameters/own_laws.h"
 #include "ident/results/fit_result.h"
 
 namespace pushid {
@@ -23,8 +24,11 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run);
 nlohmann::ordered_json SettingsJson(const FitOptions& options);
 
 // Errors: not a pushid model, a newer format, missing or wrong entries by name.
-Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file);
-Result<FitResult> ReadFitResult(const std::string& path);
+// laws: those of the caller's own that the model may have been fitted with; one that the file names
+// and that is not here is an error.
+Result<FitResult> FitResultFromJson(const nlohmann::ordered_json& json, const std::string& file,
+                                    const ForceLaws& laws = {});
+Result<FitResult> ReadFitResult(const std::string& path, const ForceLaws& laws = {});
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
 

@@ -39,8 +39,8 @@ TEST(Presets, FreeWhatTheyPromise) {
 TEST(Presets, EveryRowIsSound) {
   for (const char* name : {"tail", "ldp"}) {
     const ParameterTable table = MakePreset(name).value().table;
-    ASSERT_EQ(table.specs.size(), static_cast<size_t>(kNumParameters));
-    for (int i = 0; i < kNumParameters; ++i) {
+    ASSERT_EQ(table.specs.size(), static_cast<size_t>(kFirstOwnParameter));
+    for (int i = 0; i < kFirstOwnParameter; ++i) {
       const ParameterSpec& spec = table.specs[i];
       EXPECT_EQ(spec.id, i);
       EXPECT_EQ(spec.name, kParameterNames[i]);
