@@ -19,8 +19,8 @@ struct ParameterFacts {
   double lower = 0.0, upper = 0.0;
   double scale = 1.0;  // a typical size, for scaling null directions and judging "weak"
   Transform transform = Transform::kIdentity;
-  std::string_view meaning;       // one line for people
-  std::string_view when_to_free;  // another
+  std::string_view meaning = {};       // one line for people
+  std::string_view when_to_free = {};  // another
 };
 
 // In the order of Parameter.
