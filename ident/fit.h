@@ -16,6 +16,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/own_laws.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
@@ -26,3 +27,4 @@
 #include "ident/results/fitted_model.h"
 #include "ident/results/identified_model.h"
 #include "ident/results/result_json.h"
+#include "residuals/autodiff_force_law.h"

@@ -1,23 +1,54 @@
 // models: the free modes of a person at rest: does a small deviation die out?
 //
-// Linearized about the upright rest posture the two planes (x, theta) and (y, phi) decouple. With
-// e the angle's deviation, v the cart's velocity, w = e', masses M and m, rod l (all sources as in
-// self_force.h and ipm.h)
-//   (M + K) v' + m l w' = f_v v + f_e e + f_w w
-//   m l v' + m l^2 w' = t_v v + t_e e + t_w w
-// in the plane (x, theta), and alike in (y, phi) mirrored (phi turns towards -y). t_e is gravity
-// less the balance, m g l - Kp; K = Kd of the cart, scaled, acts like a mass (only with a backward
-// difference of the cart's velocity, here in the limit of short steps). So d/dt [e, v, w] = A [e,
-// v, w]; the cart's own place is a free mode of rate zero and left out, and so are learned terms:
-// of a rod that moves (rod_law.h) the length alone has no part in the first order, upright.
+// The forces of the rollout (self_force.h) and gravity (ipm.h) are linearized about rest by dual
+// numbers; nothing of them is written again here. About the upright posture the two planes
+// (x, theta) and (y, phi) decouple. With e the angle's deviation, v the cart's velocity, w = e',
+//   (m_xx + K) v' + m_xe w' = f_v v + f_e e + f_w w
+//   m_xe v' + m_ee w' = t_v v + t_e e + t_w w
+// where m_.. are elements of the mass matrix, f and t the derivatives of the forces less gravity,
+// and K = -d F / d v', which only a backward difference of the cart's velocity has, here in the
+// limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
+// rate zero and left out, and so are learned terms: of a rod that moves (rod_law.h) the length
+// alone has no part in the first order, upright. A user's own law (force_law.h) that couples the
+// planes does so in behaviour.h, not here.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 
+#include "models/dual.h"
 #include "models/self_force.h"
 
 namespace pushid {
+
+// First derivatives, at rest in the reference posture, of the self force less gravity.
+template <typename T>
+struct RestJacobian {
+  Eigen::Matrix<T, 4, 6> by_state;     // over [theta, phi, qd]
+  Eigen::Matrix<T, 2, 1> by_previous;  // diagonal: cart rows by the cart's velocity a step before
+};
+
+template <typename T>
+RestJacobian<T> LinearizeAtRest(const SelfForce& self, const ParameterSet<T>& p) {
+  using RestDual = Dual<T, 8>;
+  ParameterSet<RestDual> parameters;
+  for (int i = 0; i < kNumParameters; ++i) parameters[i] = RestDual::Constant(p[i]);
+  PendulumState<RestDual> state;
+  Vector4<RestDual> previous;
+  for (int i = 0; i < 4; ++i) state.qd[i] = RestDual::Input(T(0.0), 2 + i);
+  for (int i = 0; i < 2; ++i) {
+    state.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
+    previous[i] = RestDual::Input(T(0.0), 6 + i);
+  }
+  const Vector4<RestDual> force =
+      self.Total(parameters, state, previous) - Gravity<RestDual>(self.body, state.q);
+  RestJacobian<T> jacobian;
+  for (int row = 0; row < 4; ++row) {
+    jacobian.by_state.row(row) = force[row].v.template head<6>().transpose();
+  }
+  for (int i = 0; i < 2; ++i) jacobian.by_previous[i] = force[i].v[6 + i];
+  return jacobian;
+}
 
 // The characteristic polynomial lambda^3 + c2 lambda^2 + c1 lambda + c0 of one plane's A, in 1/s.
 template <typename T>
@@ -34,29 +65,29 @@ struct ModePolynomial {
   std::array<T, 3> Conditions() const { return {c2, c0, c2 * c1 - c0}; }
 };
 
-// plane: 0 for (x, theta), 1 for (y, phi). Quadratic damping vanishes at rest.
+// plane: 0 for (x, theta), 1 for (y, phi).
 template <typename T>
 ModePolynomial<T> FreeModes(const ModelOptions& options, const Body& body, const ParameterSet<T>& p,
                             int plane) {
-  const GainScale scale(options.gain_scaling, body);
-  const double mass = body.mass, m = body.point_mass(), l = body.rod_length;
-  const bool isotropic = options.friction == FrictionKind::kIsotropic;
-  const T mu = plane == 0 || isotropic ? p[kMu] : p[kMuY];
-  // The y plane mirrored (phi turns towards -y) obeys the equations of the x plane.
-  const T f_v = -scale.force * (mu + p[plane == 0 ? kKpX : kKpY]);
-  const T f_e = mass * p[plane == 0 ? kAx : kAy], f_w = mass * p[plane == 0 ? kBx : kBy];
-  const T t_v = mass * p[plane == 0 ? kTx : kTy];
-  const T t_e = m * kGravity * l - scale.stiffness * p[plane == 0 ? kKpTheta : kKpPhi];
-  const T t_w = -scale.damping * p[plane == 0 ? kKdTheta : kKdPhi];
-  T inertia = T(mass);
-  if (options.cart_derivative == CartDerivative::kBackward) {
-    inertia += scale.force * p[plane == 0 ? kKdX : kKdY];
-  }
-  const T det = inertia * (m * l * l) - m * l * m * l;
-  const auto cart = [&](const T& f, const T& t) -> T { return (m * l * l * f - m * l * t) / det; };
-  const auto angle = [&](const T& f, const T& t) -> T { return (inertia * t - m * l * f) / det; };
-  const T a_e = cart(f_e, t_e), a_v = cart(f_v, t_v), a_w = cart(f_w, t_w);
-  const T b_e = angle(f_e, t_e), b_v = angle(f_v, t_v), b_w = angle(f_w, t_w);
+  const Vector4<double> upright = Vector4<double>::Zero();
+  constexpr double kStep = 1.0;  // s; any: K does not depend on it
+  const SelfForce self(options, body, upright, kStep);
+  const RestJacobian<T> rest = LinearizeAtRest(self, p);
+  const Matrix4<double> mass = MassMatrix<double>(body, upright);
+  const int cart = plane, angle = 2 + plane;                   // rows
+  const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns
+  const T k = kStep * rest.by_previous[plane];
+  const T f_e = rest.by_state(cart, at_e), f_w = rest.by_state(cart, at_w);
+  const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane];
+  const T t_e = rest.by_state(angle, at_e), t_v = rest.by_state(angle, at_v);
+  const T t_w = rest.by_state(angle, at_w);
+  const double m_xe = mass(cart, angle), m_ee = mass(angle, angle);
+  const T m_xx = mass(cart, cart) + k;
+  const T det = m_xx * m_ee - m_xe * m_xe;
+  const auto of_cart = [&](const T& f, const T& t) -> T { return (m_ee * f - m_xe * t) / det; };
+  const auto of_angle = [&](const T& f, const T& t) -> T { return (m_xx * t - m_xe * f) / det; };
+  const T a_e = of_cart(f_e, t_e), a_v = of_cart(f_v, t_v), a_w = of_cart(f_w, t_w);
+  const T b_e = of_angle(f_e, t_e), b_v = of_angle(f_v, t_v), b_w = of_angle(f_w, t_w);
   // A = [0 0 1; a_e a_v a_w; b_e b_v b_w] over [e, v, w].
   ModePolynomial<T> polynomial;
   polynomial.c2 = -(a_v + b_w);

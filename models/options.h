@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "models/enum_names.h"
+#include "models/terms.h"
 
 namespace pushid {
 
@@ -57,22 +59,7 @@ constexpr EnumNames<CartDerivative, 2> Names(CartDerivative) {
   return {{{"none", CartDerivative::kNone}, {"backward", CartDerivative::kBackward}}};
 }
 
-// What people do to each other: pieces that add up (interaction.h).
-struct InteractionTerms {
-  bool spring = false;        // the elastic part of a smooth reciprocal contact
-  bool damping = false;       // its damping
-  bool potential = false;     // LDP's repulsive potential, smoothed
-  bool lean = false;          // LDP's torques against leaning on each other, smoothed
-  bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
-  bool network = false;       // a learned force (network_interaction.h)
-  bool drive = false;         // a person pushed by others steps on for a while (drive.h)
-
-  bool Contact() const { return spring || damping; }
-  bool Any() const { return Contact() || AtCarts(); }
-  // Those that ask how far the carts are apart.
-  bool AtCarts() const { return potential || lean || ldp_discrete || network; }
-};
-
+class ForceLaw;
 struct InteractionNetwork;
 struct SelfNetwork;
 
@@ -87,6 +74,9 @@ struct ModelOptions {
   std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term
   // A learned self force, a learned rod, or both (self_network.h); null: none.
   std::shared_ptr<const SelfNetwork> self_network;
+  // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
+  // this order. AddForceLaw (ident/parameters/own_laws.h) adds one with its rows.
+  std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};
 };
 
 }  // namespace pushid

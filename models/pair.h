@@ -5,11 +5,14 @@
 //                                         const PendulumState<T>& n, const PendulumState<T>& j,
 //                                         PairForce<T>*);
 // that adds the generalized forces [N, N, N m, N m] it exerts on both. interaction.h sums the
-// terms that a model asks for.
+// terms that a model asks for; a term whose force shall be a part of its own in reports has a
+//   static constexpr ForcePart kPart
+// from kFirstPairPart on (terms.h).
 #pragma once
 
 #include <cmath>
 
+#include "models/dual.h"
 #include "models/ipm.h"
 #include "models/parameters.h"
 
@@ -28,12 +31,5 @@ struct PairForce {
   Vector4<T> on_n = Vector4<T>::Zero(), on_j = Vector4<T>::Zero();
   bool acts = false;
 };
-
-// Real part, whatever the scalar.
-inline double RealPart(double value) { return value; }
-template <typename Jet>
-double RealPart(const Jet& value) {
-  return value.a;
-}
 
 }  // namespace pushid

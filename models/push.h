@@ -64,7 +64,8 @@ Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame,
   return {gain * push.mean[0], gain * push.mean[1], torque * push.mean[2], torque * push.mean[3]};
 }
 
-// Adds the derivatives of TailForce to a 4 x kNumParameters matrix.
+// Adds the derivatives of TailForce to a 4 x kNumParameters matrix; written out: 2.5 times as fast
+// as Jets (tests/benchmarks, Jacobian_OfTail).
 void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
                      Eigen::Matrix<double, 4, kNumParameters>* by_parameter);
 

@@ -22,6 +22,12 @@ Vector4<double> PushForceAt(const Scene& scene, int person, int frame) {
   return sum;
 }
 
+std::vector<ForcePart> ReportedParts(const ModelOptions& options) {
+  std::vector<ForcePart> parts(kForceParts.begin(), kForceParts.end());
+  if (options.own_laws.empty()) parts.pop_back();
+  return parts;
+}
+
 std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options) {
   std::vector<SelfForce> self;
   self.reserve(scene.people.size());

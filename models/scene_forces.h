@@ -1,12 +1,13 @@
 // models: the net force on everybody in a scene, frame by frame.
 //
-//   F_net = self force + network + push + tail + interaction + drive, where by push kind (push.h)
+//   F_net = the sum of the parts of terms.h, where by push kind (push.h)
 //   and PushUse (options.h) a `net` push may replace all other forces, and a `net_without_friction`
 //   push all but the friction, while it lasts.
 //
 // Templated, so that the same lines serve doubles and automatic differentiation.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "models/drive.h"
@@ -29,27 +30,37 @@ ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame);
 // The force of all pushes on a person in one step, without tails. Constant in the parameters.
 Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
 
-// The parts of F_net on one person in one step.
+// The parts of F_net on one person in one step (terms.h).
 template <typename T>
 struct NetForce {
-  Vector4<T> friction = Vector4<T>::Zero();
-  Vector4<T> balance = Vector4<T>::Zero();
-  Vector4<T> linear = Vector4<T>::Zero();
-  Vector4<T> push = Vector4<T>::Zero();
-  Vector4<T> tail = Vector4<T>::Zero();
-  Vector4<T> interaction = Vector4<T>::Zero();
-  Vector4<T> drive = Vector4<T>::Zero();
-  Vector4<T> network = Vector4<T>::Zero();
+  std::array<Vector4<T>, kNumForceParts> parts;
+
+  NetForce() { parts.fill(Vector4<T>::Zero()); }
+  Vector4<T>& operator[](ForcePart part) { return parts[static_cast<int>(part)]; }
+  const Vector4<T>& operator[](ForcePart part) const { return parts[static_cast<int>(part)]; }
 
   Vector4<T> Total() const {
-    return friction + balance + linear + push + tail + interaction + drive + network;
+    Vector4<T> sum = parts[0];
+    for (int i = 1; i < kNumForceParts; ++i) sum += parts[i];
+    return sum;
   }
 };
 
-// What a person gets from others: now, and lately (drive.h).
+// The parts that reports list: all, but for a user's own laws where the model has none.
+std::vector<ForcePart> ReportedParts(const ModelOptions& options);
+
+// What a person gets from others: now, by part, and lately (drive.h).
 template <typename T>
 struct Received {
-  Vector4<T> now = Vector4<T>::Zero(), lately = Vector4<T>::Zero();
+  std::array<Vector4<T>, kNumPairParts> part;
+  Vector4<T> lately = Vector4<T>::Zero();
+
+  Received() { part.fill(Vector4<T>::Zero()); }
+  Vector4<T> Now() const {
+    Vector4<T> sum = part[0];
+    for (int i = 1; i < kNumPairParts; ++i) sum += part[i];
+    return sum;
+  }
 };
 
 template <typename T>
@@ -59,22 +70,25 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
                        const Received<T>& received = {},
                        const Vector4<T>& network = Vector4<T>::Zero()) {
   NetForce<T> force;
-  force.push = PushForceAt(scene, person, frame).template cast<T>();
+  force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (active == ActiveForces::kPushOnly) return force;
-  force.friction = self.Friction(p, state.qd);
+  force[ForcePart::kFriction] = self.Friction(p, state.qd);
   if (active == ActiveForces::kPushAndFriction) return force;
   // Only here: a push that is the whole force includes the tail of an earlier one.
   if (options.push_tail == PushTail::kExponential) {
     for (const ScenePush& push : scene.pushes) {
-      if (push.person == person) force.tail += TailForce(push, p, frame, scene.dt);
+      if (push.person == person) force[ForcePart::kTail] += TailForce(push, p, frame, scene.dt);
     }
   }
-  force.balance = self.Balance(p, state, qd_previous);
-  force.linear = self.Linear(p, state);
-  force.interaction = received.now;
-  if (options.interaction.drive) force.drive = DriveForce(p, received.lately);
-  force.network = network;
+  force[ForcePart::kBalance] = self.Balance(p, state, qd_previous);
+  force[ForcePart::kLinear] = self.Linear(p, state);
+  if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);
+  for (int i = 0; i < kNumPairParts; ++i) {
+    force.parts[static_cast<int>(kFirstPairPart) + i] = received.part[i];
+  }
+  if (options.interaction.drive) force[ForcePart::kDrive] = DriveForce(p, received.lately);
+  force[ForcePart::kNetwork] = network;
   return force;
 }
 
@@ -106,7 +120,7 @@ class SceneForces {
     if (options_->interaction.drive && started_) {
       for (size_t n = 0; n < received_.size(); ++n) {
         received_[n].lately = NextReceived(Parameters(static_cast<int>(n)), received_[n].lately,
-                                           received_[n].now, scene_->dt);
+                                           received_[n].Now(), scene_->dt);
       }
     }
     started_ = true;
@@ -118,14 +132,16 @@ class SceneForces {
   // person adds up in canonical order (neighbours.h).
   void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
-    Vector4<T> sum = Vector4<T>::Zero();
+    auto& sum = received_[person].part;
+    sum.fill(Vector4<T>::Zero());
     for (int other : *scratch) {
       const bool first = finder_.Rank(person) < finder_.Rank(other);
       const int n = first ? person : other, j = first ? other : person;
-      const PairForce<T> force = Between(n, j);
-      if (force.acts) sum += first ? force.on_n : force.on_j;
+      const PairForces<T> forces = Between(n, j);
+      for (int i = 0; i < kNumPairParts; ++i) {
+        if (forces.part[i].acts) sum[i] += first ? forces.part[i].on_n : forces.part[i].on_j;
+      }
     }
-    received_[person].now = sum;
     if (networks_.empty()) return;
     const PendulumState<T>& state = states_[person];
     const SelfForce& self = self_[person];
@@ -135,9 +151,9 @@ class SceneForces {
                                           self.body.mass, &networks_[person].state);
   }
 
-  PairForce<T> Between(int n, int j) const {
-    return InteractionBetween(options_->interaction, options_->interaction_network.get(),
-                              PairOf(*scene_, n, j), Parameters(0), states_[n], states_[j]);
+  PairForces<T> Between(int n, int j) const {
+    return PairForcesBetween(options_->interaction, options_->interaction_network.get(),
+                             PairOf(*scene_, n, j), Parameters(0), states_[n], states_[j]);
   }
 
   // The parts of the net force; qd_previous: the velocity one frame earlier.

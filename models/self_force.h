@@ -8,7 +8,8 @@
 //             F_theta = hold_theta - Kp_theta e_theta - Kd_theta thd
 //   linear    F_x = M (a_x e_theta + b_x thd - c_q |v| xd)
 //             F_theta = M t_x xd - m l^2 d_q |thd| thd
-// and the same for y and phi, where a, b and t change sign, because phi turns towards -y.
+// and the same for y and phi, where a, b and t change sign, because phi turns towards -y;
+//   own       what the laws that a user brings say (force_law.h).
 // hold is the torque that holds the reference posture against gravity: zero for an upright one.
 // Source: Yue et al., CVPR 2024 (PD balance, friction); the linear terms stand for its network.
 #pragma once
@@ -16,6 +17,8 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "models/cart_damping.h"
+#include "models/force_law.h"
 #include "models/ipm.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -45,9 +48,10 @@ struct SelfForce {
   GainScale scale;
   FrictionKind friction;
   bool cart_derivative;
-  Eigen::Vector2d posture;  // reference (theta, phi), rad
-  Eigen::Vector2d hold;     // N m
-  double dt;                // s, for the backward difference
+  Eigen::Vector2d posture;                            // reference (theta, phi), rad
+  Eigen::Vector2d hold;                               // N m
+  double dt;                                          // s, for the backward difference
+  std::vector<std::shared_ptr<const ForceLaw>> laws;  // the user's own
 
   // q0: the pose at frame 0.
   SelfForce(const ModelOptions& options, const Body& person, const Vector4<double>& q0, double step)
@@ -57,7 +61,8 @@ struct SelfForce {
         cart_derivative(options.cart_derivative == CartDerivative::kBackward),
         posture(Eigen::Vector2d::Zero()),
         hold(Eigen::Vector2d::Zero()),
-        dt(step) {
+        dt(step),
+        laws(options.own_laws) {
     if (options.posture == Posture::kInitial) {
       posture = q0.tail<2>();
       hold = Gravity(person, q0).tail<2>();
@@ -66,7 +71,8 @@ struct SelfForce {
 
   template <typename T>
   Vector4<T> Friction(const ParameterSet<T>& p, const Vector4<T>& qd) const {
-    return {-scale.force * p[kMu] * qd[0], -scale.force * MuY(p) * qd[1], T(0.0), T(0.0)};
+    return {-scale.force * p[kMu] * qd[0], -scale.force * p[FrictionAlongY(friction)] * qd[1],
+            T(0.0), T(0.0)};
   }
 
   // qd_previous: the velocity one frame earlier, for the backward difference of the cart's
@@ -99,13 +105,31 @@ struct SelfForce {
             -mass * p[kTy] * qd[1] - ml2 * p[kDq] * SmoothNorm(qd[3], T(0.0)) * qd[3]};
   }
 
+  // The laws that a user brings.
+  template <typename T>
+  Vector4<T> Own(const ParameterSet<T>& p, const PendulumState<T>& state) const {
+    Vector4<T> force;
+    force.setConstant(T(0.0));
+    const T* own = p.data() + kFirstOwnParameter;
+    for (const auto& law : laws) {
+      force += law->Chain({body, posture}, state, own);
+      own += law->parameters().size();
+    }
+    return force;
+  }
+
   template <typename T>
   Vector4<T> Total(const ParameterSet<T>& p, const PendulumState<T>& state,
                    const Vector4<T>& qd_previous) const {
-    return Friction(p, state.qd) + Balance(p, state, qd_previous) + Linear(p, state);
+    Vector4<T> force = Friction(p, state.qd) + Balance(p, state, qd_previous) + Linear(p, state);
+    if (!laws.empty()) force += Own(p, state);
+    return force;
   }
 
-  // Derivatives of Friction, and of Total, by hand: the analytic twins of the above.
+  // Derivatives of Friction, and of Total. Friction's come from dual numbers over its own few
+  // inputs, so that a law of friction is its formula and its rows; those of balance and the linear
+  // terms are written out, which makes them some 30 times as fast (tests/benchmarks,
+  // Jacobian_OfSelfForce), and tests hold them against automatic ones.
   // by_state: 4 x 8 over [q, qd]; by_previous: diagonal of the (x, y) derivatives by qd_previous;
   // by_parameter: 4 x kNumParameters. All are overwritten.
   struct Jacobian {
@@ -119,10 +143,12 @@ struct SelfForce {
                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
 
  private:
-  template <typename T>
-  const T& MuY(const ParameterSet<T>& p) const {
-    return friction == FrictionKind::kIsotropic ? p[kMu] : p[kMuY];
-  }
+  void AddBalanceJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                          const Vector4<double>& qd_previous, Jacobian* jacobian) const;
+  void AddLinearJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                         Jacobian* jacobian) const;
+  void AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                      Jacobian* jacobian) const;
   double PointInertia() const { return body.point_mass() * body.rod_length * body.rod_length; }
   // |v| whose derivative exists at rest; 1e-3 (m/s or rad/s) is far below any motion that matters.
   static constexpr double kRestSpeedSquared = 1e-6;

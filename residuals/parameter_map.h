@@ -10,12 +10,12 @@
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "models/enum_names.h"
 #include "models/parameters.h"
+#include "models/transform.h"
 
 namespace pushid {
 
@@ -23,44 +23,6 @@ namespace pushid {
 enum class PoolBy { kSubject, kSetting };
 constexpr EnumNames<PoolBy, 2> Names(PoolBy) {
   return {{{"subject", PoolBy::kSubject}, {"setting", PoolBy::kSetting}}};
-}
-
-// The scale on which a parameter is fitted.
-enum class Transform {
-  kIdentity,
-  kLog,   // positive parameters
-  kLogit  // unit interval
-};
-constexpr EnumNames<Transform, 3> Names(Transform) {
-  return {
-      {{"identity", Transform::kIdentity}, {"log", Transform::kLog}, {"logit", Transform::kLogit}}};
-}
-
-template <typename T>
-T ToNatural(Transform transform, const T& fitted) {
-  using std::exp;
-  switch (transform) {
-    case Transform::kLog:
-      return exp(fitted);
-    case Transform::kLogit:
-      return 1.0 / (1.0 + exp(-fitted));
-    case Transform::kIdentity:
-      break;
-  }
-  return fitted;
-}
-
-inline double ToFitted(Transform transform, double natural) {
-  if (transform == Transform::kLog) return std::log(natural);
-  if (transform == Transform::kLogit) return std::log(natural / (1.0 - natural));
-  return natural;
-}
-
-// d natural / d fitted, at a natural value.
-inline double TransformSlope(Transform transform, double natural) {
-  if (transform == Transform::kLog) return natural;
-  if (transform == Transform::kLogit) return natural * (1.0 - natural);
-  return 1.0;
 }
 
 struct FittedParameter {

@@ -19,10 +19,9 @@ struct Subject {
 };
 
 ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Random* random) {
-  for (int i = 0; i < kNumParameters; ++i) {
-    // Not spread: one more draw would change every recording of a known seed.
-    if (i != kRodLift) parameters[i] *= std::exp(sigma * random->Normal());
-  }
+  // The rod's lift and a user's own are not spread: more draws would change every recording of a
+  // known seed.
+  for (int i = 0; i < kRodLift; ++i) parameters[i] *= std::exp(sigma * random->Normal());
   return parameters;
 }
 
@@ -68,7 +67,7 @@ RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecord
   std::vector<Vector4<double>> rows;
   for (int t = push.start_frame; t < std::min(push.EndFrame(), options.frames); ++t) {
     NetForce<double> force = forces.At(t, 0);
-    if (options.push_kind == PushKind::kNetWithoutFriction) force.friction.setZero();
+    if (options.push_kind == PushKind::kNetWithoutFriction) force[ForcePart::kFriction].setZero();
     rows.push_back(force.Total());
   }
   push = MakeScenePush(0, push.start_frame, push.kind, rows);

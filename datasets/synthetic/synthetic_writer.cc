@@ -72,7 +72,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
   auto& about = manifest.json["synthetic"];
   about["seed"] = options.seed;
   about["joint_noise_m"] = options.joint_noise_m;
-  for (int i = 0; i < kNumParameters; ++i) {
+  for (int i = 0; i < kFirstOwnParameter; ++i) {
     about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
   }
   for (const SyntheticRecording& made : recordings) {

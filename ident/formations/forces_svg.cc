@@ -18,21 +18,22 @@ constexpr const char* kHeads[] = {"force along the push (N)",
 using Points = std::vector<std::pair<double, double>>;
 
 // After Okabe and Ito: told apart by the colour-blind, on light and on dark paper.
-std::string PartColour(std::string_view part) {
-  static const std::map<std::string_view, const char*> colours = {
-      {"push", "#d55e00"},
-      {"tail", "#cc79a7"},
-      {"friction", "#e69f00"},
-      {"balance", "#56b4e9"},
-      {"linear", "#009e73"},
-      {"interaction", "#9333ea"},
-      {"drive", "#b45309;stroke-dasharray:4 2"},
-      {"network", "#6b7280;stroke-dasharray:7 2"}};
+// A part without a colour of its own is grey and dotted.
+std::string PartColour(ForcePart part) {
+  static const std::map<ForcePart, const char*> colours = {
+      {ForcePart::kPush, "#d55e00"},
+      {ForcePart::kTail, "#cc79a7"},
+      {ForcePart::kFriction, "#e69f00"},
+      {ForcePart::kBalance, "#56b4e9"},
+      {ForcePart::kLinear, "#009e73"},
+      {ForcePart::kInteraction, "#9333ea"},
+      {ForcePart::kDrive, "#b45309;stroke-dasharray:4 2"},
+      {ForcePart::kNetwork, "#6b7280;stroke-dasharray:7 2"}};
   const auto found = colours.find(part);
-  return found == colours.end() ? "#999999" : found->second;
+  return found == colours.end() ? "#999999;stroke-dasharray:2 2" : found->second;
 }
 
-std::string PartLook(std::string_view part) {
+std::string PartLook(ForcePart part) {
   return "fill:none;stroke-width:1.5;stroke:" + PartColour(part);
 }
 
@@ -78,7 +79,7 @@ class ForcesPicture {
     for (int t = 0; t < run_.num_frames(); ++t) {
       const NetForce<double>& force = run_.Force(person, t);
       include(force.Total()[row]);
-      for (const ForcePart& part : parts_) include((force.*part.value)[row]);
+      for (ForcePart part : parts_) include(force[part][row]);
     }
     return {lowest, highest};
   }
@@ -91,7 +92,7 @@ class ForcesPicture {
       x += kLegendStep;
     };
     entry("net (the sum)", kNetLook);
-    for (const ForcePart& part : parts_) entry(part.name, PartLook(part.name));
+    for (ForcePart part : parts_) entry(NameOf(part), PartLook(part));
     for (int column : {0, 1}) svg_.Text(kLeft[column], kTop - 12, kHeads[column], "ink");
   }
 
@@ -131,9 +132,8 @@ class ForcesPicture {
     };
     // Thick and first, so that a part that is all of it shows on top.
     line([](const NetForce<double>& force) { return force.Total(); }, kNetLook);
-    for (const ForcePart& part : parts_) {
-      line([&part](const NetForce<double>& force) { return force.*part.value; },
-           PartLook(part.name));
+    for (ForcePart part : parts_) {
+      line([part](const NetForce<double>& force) { return force[part]; }, PartLook(part));
     }
   }
 

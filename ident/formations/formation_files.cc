@@ -95,7 +95,7 @@ MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
   for (int t = 0; t < run.num_frames(); ++t) {
     for (int n = 0; n < run.num_people(); ++n) {
       const NetForce<double>& force = run.Force(n, t);
-      for (const ForcePart& part : parts) row(t, n, part.name, force.*part.value);
+      for (ForcePart part : parts) row(t, n, NameOf(part), force[part]);
       row(t, n, "net", force.Total());
     }
   }

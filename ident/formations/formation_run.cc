@@ -85,26 +85,20 @@ std::string OutcomeLegend() {
          "the end of the run\n";
 }
 
-const std::vector<ForcePart>& ForceParts() {
-  static const std::vector<ForcePart> parts = {
-      {"push", &NetForce<double>::push},         {"tail", &NetForce<double>::tail},
-      {"friction", &NetForce<double>::friction}, {"balance", &NetForce<double>::balance},
-      {"linear", &NetForce<double>::linear},     {"interaction", &NetForce<double>::interaction},
-      {"drive", &NetForce<double>::drive},       {"network", &NetForce<double>::network}};
-  return parts;
-}
-
 std::vector<ForcePart> ActingParts(const FormationRun& run) {
   std::vector<ForcePart> acting;
-  for (const ForcePart& part : ForceParts()) {
+  for (ForcePart part : kForceParts) {
     bool acts = false;
     for (int t = 0; t < run.num_frames() && !acts; ++t) {
       for (int n = 0; n < run.num_people(); ++n) {
-        acts = acts || !(run.Force(n, t).*part.value).isZero(0.0);
+        acts = acts || !run.Force(n, t)[part].isZero(0.0);
       }
     }
     if (acts) acting.push_back(part);
   }
+  std::stable_partition(acting.begin(), acting.end(), [](ForcePart part) {
+    return part == ForcePart::kPush || part == ForcePart::kTail;
+  });
   return acting;
 }
 

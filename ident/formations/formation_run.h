@@ -48,14 +48,8 @@ struct FormationRun {
   double Seconds(int frame) const { return frame * recording.scene.dt; }
 };
 
-// The parts of the net force, in the order that files and pictures list them.
-struct ForcePart {
-  std::string_view name;
-  Vector4<double> NetForce<double>::*value;
-};
-const std::vector<ForcePart>& ForceParts();
-
-// Those that are not zero throughout.
+// The parts of the net force that are not zero throughout, in the order that files and pictures
+// list them: the push and its tail first, then what answers it.
 std::vector<ForcePart> ActingParts(const FormationRun& run);
 
 // When the prediction leaves the model's domain, the summaries stay empty.

@@ -8,6 +8,7 @@
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
 #include "models/skeleton_mapping.h"
+#include "residuals/cost_functions/rollout_autodiff.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {
@@ -77,6 +78,9 @@ struct FitOptions {
   double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way
   uint64_t seed = 1;
   int num_threads = 1;
+
+  // How the recordings' rollouts are differentiated; autodiff to check the sensitivities.
+  JacobianMethod jacobian = JacobianMethod::kSensitivities;
 
   // Ceres; the defaults reach the optimum to about 1e-9 of the cost.
   int max_iterations = 200;

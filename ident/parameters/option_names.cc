@@ -9,23 +9,11 @@ namespace pushid {
 
 namespace {
 
-using TermNames = std::vector<std::pair<const char*, bool InteractionTerms::*>>;
-const TermNames& Terms() {
-  static const TermNames names = {{"spring", &InteractionTerms::spring},
-                                  {"damping", &InteractionTerms::damping},
-                                  {"potential", &InteractionTerms::potential},
-                                  {"lean", &InteractionTerms::lean},
-                                  {"ldp_discrete", &InteractionTerms::ldp_discrete},
-                                  {"network", &InteractionTerms::network},
-                                  {"drive", &InteractionTerms::drive}};
-  return names;
-}
-
 // Empty for an unknown name.
 std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
   if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
   if (name == "ldp") return {&InteractionTerms::potential, &InteractionTerms::lean};
-  for (const auto& [known, member] : Terms()) {
+  for (const auto& [known, member] : kInteractionTerms) {
     if (name == known) return {member};
   }
   return {};
@@ -35,7 +23,7 @@ std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
 
 std::string NameOf(const InteractionTerms& terms) {
   std::string text;
-  for (const auto& [name, member] : Terms()) {
+  for (const auto& [name, member] : kInteractionTerms) {
     if (terms.*member) text += (text.empty() ? "" : ",") + std::string(name);
   }
   return text.empty() ? "none" : text;
@@ -49,10 +37,9 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
     const std::vector<bool InteractionTerms::*> members = TermsOf(part);
     if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
     if (members.empty()) {
-      return Error{flag + " names '" + part +
-                   "'; it must be none, or some of contact (spring,damping), ldp "
-                   "(potential,lean), spring, damping, potential, lean, ldp_discrete, network, "
-                   "drive"};
+      std::string known = "contact (spring,damping), ldp (potential,lean)";
+      for (const auto& term : kInteractionTerms) known += ", " + std::string(term.name);
+      return Error{flag + " names '" + part + "'; it must be none, or some of " + known};
     }
     for (bool InteractionTerms::*member : members) {
       if (terms->*member) {

@@ -1,5 +1,6 @@
-// ident: the one table of parameters: name, unit, nominal value, bounds, scale, free or fixed,
-// prior. Flags edit it; the solver, the report and the result JSON read it.
+// ident: the one table of parameters in a fit: what is known of each (models/parameter_rows.h) and
+// what the fit does with it: start, free or fixed, pooled, prior. Flags edit it; the solver, the
+// report and the result JSON read it.
 #pragma once
 
 #include <optional>
@@ -9,6 +10,7 @@
 #include "datasets/files/error.h"
 #include "models/enum_names.h"
 #include "models/options.h"
+#include "models/parameter_facts.h"
 #include "models/parameters.h"
 #include "residuals/parameter_map.h"
 
@@ -43,8 +45,10 @@ constexpr EnumNames<SelfForceKind, 2> Names(SelfForceKind) {
 }
 
 struct ParameterTable {
-  std::vector<ParameterSpec> specs;  // indexed by Parameter
+  std::vector<ParameterSpec> specs;  // indexed by Parameter, a user's own at the end
 
+  // A row for the next parameter, fixed.
+  ParameterSpec& Add(const ParameterFacts& facts);
   ParameterSpec& operator[](Parameter id) { return specs[id]; }
   const ParameterSpec& operator[](Parameter id) const { return specs[id]; }
   // nullptr when there is none of that name.
@@ -60,9 +64,6 @@ ParameterTable BaseTable();
 
 // Whether some parameter may differ by unit.
 bool AnyPooled(const ParameterTable& table);
-
-// Whether a parameter has any effect under the options.
-bool Acts(Parameter id, const ModelOptions& model);
 
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/self_network.h"
+#include "models/parameter_facts.h"
 
 namespace pushid {
 namespace {
@@ -68,36 +68,21 @@ FitOptions LdpPreset() {
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   if (kind != SelfForceKind::kLinear) return;
-  for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
-    ParameterSpec& spec = (*table)[id];
+  for (int id = kAx; id <= kDq; ++id) {
+    ParameterSpec& spec = table->specs[id];
     spec.free = true;
     // As weak as the preset's own priors: without them these terms drive the person instead.
     if (!spec.prior) spec.prior = Prior{spec.nominal, spec.scale};
   }
 }
 
-// The cart's lift: a rod that is learned while the cart stays low predicts the hip worse than a
-// constant one.
-void FreeRod(const ModelOptions& model, ParameterTable* table) {
-  if (!RodMoves(model)) return;
-  ParameterSpec& spec = (*table)[kRodLift];
-  spec.free = true;
-  if (!spec.prior) spec.prior = Prior{spec.nominal, spec.nominal};
-}
-
-// The contact's height stays fixed: heights from the ankles to the chest fit the group recordings
-// alike. So do the parameters of LDP's discrete form: it has no derivatives.
-void FreeInteraction(const InteractionTerms& terms, ParameterTable* table) {
-  std::vector<Parameter> free;
-  if (terms.Contact()) free = {kContactDistance, kContactKappa};
-  if (terms.spring) free.push_back(kContactStiffness);
-  if (terms.damping) free.push_back(kContactDamping);
-  if (terms.potential) free.insert(free.end(), {kPotentialStrength, kPotentialLength});
-  if (terms.lean) free.insert(free.end(), {kLeanTheta, kLeanPhi});
-  if (terms.potential || terms.lean) free.push_back(kNeighbourRange);
-  if (terms.drive) free.insert(free.end(), {kDriveGain, kDriveTorque, kDriveTime});
-  for (Parameter id : free) {
-    ParameterSpec& spec = (*table)[id];
+// With weak priors as wide as their centres. The contact's height stays fixed: heights from the
+// ankles to the chest fit the group recordings alike. So do the parameters of LDP's discrete form:
+// it has no derivatives. The cart's lift is freed with the rod's law: a rod that is learned while
+// the cart stays low predicts the hip worse than a constant one.
+void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
+  for (ParameterSpec& spec : table->specs) {
+    if (!FreedByItsTerm(spec.id, model)) continue;
     spec.free = true;
     spec.prior = Prior{spec.nominal, std::abs(spec.nominal)};
   }
@@ -134,8 +119,7 @@ Result<FitOptions> MakePreset(const std::string& name) {
 
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
-  FreeRod(o->model, &o->table);
-  FreeInteraction(o->model.interaction, &o->table);
+  FreeByTerm(o->model, &o->table);
   for (ParameterSpec& spec : o->table.specs) {
     if (!o->preset_priors) spec.prior.reset();
     if (!Acts(spec.id, o->model)) spec.free = spec.pooled = false;

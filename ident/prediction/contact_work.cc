@@ -13,8 +13,8 @@ ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const
     double total = 0.0;
     for (int n = 0; n < people; ++n) {
       const Vector4<double> step = path.At(t + 1, n).q - path.At(t, n).q;
-      const Vector4<double>& now = forces.At(t, n).interaction;
-      const double work = 0.5 * (now + forces.At(t + 1, n).interaction).dot(step);
+      const Vector4<double>& now = forces.At(t, n)[ForcePart::kInteraction];
+      const double work = 0.5 * (now + forces.At(t + 1, n)[ForcePart::kInteraction]).dot(step);
       balance.work[n] += work;
       balance.impulse[n] += dt * now;
       total += work;
@@ -27,7 +27,8 @@ ContactEnergyBalance BalanceContactEnergy(const RolloutPath<double>& path, const
 Vector4<double> PushImpulse(const ForceTrace& forces, int person, double dt) {
   Vector4<double> impulse = Vector4<double>::Zero();
   for (int t = 0; t + 1 < forces.num_frames(); ++t) {
-    impulse += dt * (forces.At(t, person).push + forces.At(t, person).tail);
+    const NetForce<double>& force = forces.At(t, person);
+    impulse += dt * (force[ForcePart::kPush] + force[ForcePart::kTail]);
   }
   return impulse;
 }

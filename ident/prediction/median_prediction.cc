@@ -27,12 +27,9 @@ Vector MedianVector(const std::vector<Prediction>& predictions, const Pick& vect
 
 NetForce<double> MedianForce(const std::vector<Prediction>& predictions, int frame, int person) {
   NetForce<double> median;
-  for (auto part :
-       {&NetForce<double>::friction, &NetForce<double>::balance, &NetForce<double>::linear,
-        &NetForce<double>::push, &NetForce<double>::tail, &NetForce<double>::interaction,
-        &NetForce<double>::drive, &NetForce<double>::network}) {
-    median.*part = MedianVector<Vector4<double>>(
-        predictions, [&](const Prediction& p) { return p.forces.At(frame, person).*part; });
+  for (ForcePart part : kForceParts) {
+    median[part] = MedianVector<Vector4<double>>(
+        predictions, [&](const Prediction& p) { return p.forces.At(frame, person)[part]; });
   }
   return median;
 }

@@ -24,6 +24,7 @@ Prediction PredictOne(const ModelOptions& options,
                       const std::vector<ParameterSet<double>>& parameters,
                       const PendulumRecording& recording, int frames) {
   Prediction prediction;
+  prediction.parts = ReportedParts(options);
   prediction.rod_moves = RodMoves(options);
   for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
   prediction.status =
@@ -65,10 +66,9 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
-  for (const char* part :
-       {"friction", "balance", "linear", "push", "tail", "interaction", "drive", "network"}) {
+  for (ForcePart part : prediction.parts) {
     for (const char* row : {"x_N", "y_N", "theta_Nm", "phi_Nm"}) {
-      text += std::string(",") + part + "_" + row;
+      text += "," + std::string(NameOf(part)) + "_" + row;
     }
   }
   if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
@@ -91,9 +91,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       const Vector3<double> hip = HipPosition(body, state.q);
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double>& force = prediction.forces.At(t, n);
-      for (const auto* part : {&force.friction, &force.balance, &force.linear, &force.push,
-                               &force.tail, &force.interaction, &force.drive, &force.network}) {
-        for (int i = 0; i < 4; ++i) add((*part)[i]);
+      for (ForcePart part : prediction.parts) {
+        for (int i = 0; i < 4; ++i) add(force[part][i]);
       }
       if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
       text += "\n";

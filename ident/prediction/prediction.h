@@ -15,6 +15,7 @@ struct Prediction {
   RolloutStatus status;
   RolloutPath<double> path;                       // frames before a failure are valid
   ForceTrace forces;                              // what drove it, part by part
+  std::vector<ForcePart> parts;                   // those that reports list
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
   std::vector<double> rod_lift;  // of each person, or one for everybody

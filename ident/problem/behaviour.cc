@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/cart_damping.h"
+#include "models/modal_stability.h"
 #include "models/rollout.h"
 #include "models/self_network.h"
 
@@ -97,12 +99,7 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Scene scene = SettlingScene(80.0, 0.0);
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
-  SelfForce::Jacobian jacobian;
-  self.TotalJacobian(parameters, {}, Vector4<double>::Zero(), &jacobian);
-  Eigen::Matrix<double, 4, 8> force = jacobian.by_state;
-  const double mgl = body.point_mass() * kGravity * body.rod_length;
-  force(2, 2) += mgl;  // minus the derivative of gravity at rest; none by the rod, which is upright
-  force(3, 3) += mgl;
+  const RestJacobian<double> rest = LinearizeAtRest(self, parameters);
   const Eigen::Matrix4d inverse = InverseMassMatrix<double>(body, Vector4<double>::Zero());
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
   if (options.self_network != nullptr) {
@@ -112,9 +109,9 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);
   auto velocity = step.middleRows<4>(2);
   velocity.middleCols<4>(2).setIdentity();
-  velocity.leftCols<6>() += scene.dt * inverse * force.rightCols<6>();
+  velocity.leftCols<6>() += scene.dt * inverse * rest.by_state;
   velocity.middleCols<2>(kPreviousAt) +=
-      scene.dt * inverse.leftCols<2>() * jacobian.by_previous.asDiagonal();
+      scene.dt * inverse.leftCols<2>() * rest.by_previous.asDiagonal();
   velocity += scene.dt * inverse * learned.topRows<4>();
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
@@ -170,7 +167,8 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;
-  behaviour.self_propelling = behaviour.unstable() || parameters[kMu] + parameters[kKpX] < 0.0;
+  behaviour.self_propelling =
+      behaviour.unstable() || CartDampings(options.friction)[0].Of(parameters) < 0.0;
   for (const SettlingSimulation& d : all) {
     behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;

@@ -8,6 +8,7 @@
 #include "residuals/cost_functions/network_takeover.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
+#include "residuals/cost_functions/rollout_autodiff.h"
 
 namespace pushid {
 namespace {
@@ -155,10 +156,12 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
     }
     if (Count(i) == 0) continue;
     if (frames == 1) continue;  // fails in its very first step: nothing left to compare
-    auto* residual = new RolloutResidual(MakeRolloutProblem(
-        recordings_[i], options_.model, map_, options_.sigmas, Weight(i, horizon), frames));
+    const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
+                                            Weight(i, horizon), frames);
     built.blocks.push_back(
-        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+        {built.problem->AddResidualBlock(MakeRolloutCost(rollout, options_.jacobian).release(),
+                                         nullptr, RecordingBlocks(point, i)),
+         i});
   }
   AddPriors(point, &built);
   // The settling simulations are long rollouts: they join once the horizon is as long.

@@ -7,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
+#include "models/cart_damping.h"
 
 namespace pushid {
 
@@ -117,12 +118,16 @@ TextTable DerivedTable(const FitResult& result) {
 
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
-  const std::string held = specs[kKpX].free || specs[kKpY].free
-                               ? "Here Kp is fitted too."
-                               : "Convention: Kp_x = " + Rounded(result.parameters[kKpX], 4) +
-                                     ", Kp_y = " + Rounded(result.parameters[kKpY], 4) +
-                                     " N s/m held, mu = c - Kp.";
-  return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " + held +
+  bool fitted = false;
+  std::string held;
+  for (const CartDamping& c : CartDampings(result.options.model.friction)) {
+    fitted = fitted || specs[c.gain].free;
+    held += (held.empty() ? "" : ", ") + specs[c.gain].name + " = " +
+            Rounded(result.parameters[c.gain], 4);
+  }
+  return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " +
+         (fitted ? std::string("Here Kp is fitted too.")
+                 : "Convention: " + held + " N s/m held, mu = c - Kp.") +
          "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
          NameOf(result.options.model.gain_scaling) + ").\n";
 }

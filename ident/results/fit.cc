@@ -7,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/solver/large_network_stage.h"
+#include "models/cart_damping.h"
 
 namespace pushid {
 namespace {
@@ -32,7 +33,7 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
       continue;
     }
     // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
-    const bool convention = spec.id == kKpX || spec.id == kKpY;
+    const bool convention = HeldByConvention(spec.id);
     const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
     const bool acts = Acts(spec.id, options.model) && (!zero || convention);
     if (!acts) continue;

@@ -157,8 +157,8 @@ std::string Reason(const std::exception& exception) {
 
 }  // namespace
 
-Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
-                                        const std::string& file) {
+Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
+                                        const ForceLaws& laws) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
       !json.contains("format_version") || !json["format_version"].is_number()) {
     return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
@@ -175,8 +175,16 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
     FittedModel model;
     FitResult& result = model.fit;
     Provenance& from = model.provenance;
+    ParameterTable known = BaseTable();
     result.options = OptionsFrom(at("model"));
-    result.options.table = TableFrom(at("table"), BaseTable());
+    if (json.contains("force_laws")) {
+      const auto names = at("force_laws").get<std::vector<std::string>>();
+      if (auto error = AddNamedLaws(names, laws, &result.options.model, &known)) {
+        error->file = file;
+        return *error;
+      }
+    }
+    result.options.table = TableFrom(at("table"), known);
     if (json.contains("self_network")) {
       result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
       result.options.hold_network = true;  // what is read is not fitted on
@@ -269,10 +277,10 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
   }
 }
 
-Result<FittedModel> ReadFittedModel(const std::string& path) {
+Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws) {
   Result<JsonDocument> document = ReadJsonDocument(path);
   if (!document.ok()) return document.error();
-  return FittedModelFromJson(document.value().content, path);
+  return FittedModelFromJson(document.value().content, path, laws);
 }
 
 }  // namespace pushid

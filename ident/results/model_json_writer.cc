@@ -194,6 +194,9 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                                   {"self_network", ToJson(*member.network)}});
     }
   }
+  if (!result.options.model.own_laws.empty()) {
+    json["force_laws"] = LawNames(result.options.model);
+  }
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }

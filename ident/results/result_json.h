@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/parameters/own_laws.h"
 #include "ident/results/fitted_model.h"
 
 namespace pushid {
@@ -20,9 +21,11 @@ struct RunInfo {
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run);
 
 // Errors: not a pushid model, a newer format, missing or wrong entries by name.
-Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json,
-                                        const std::string& file);
-Result<FittedModel> ReadFittedModel(const std::string& path);
+// laws: those of the caller's own that the model may have been fitted with; one that the file names
+// and that is not here is an error.
+Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
+                                        const ForceLaws& laws = {});
+Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws = {});
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
 

@@ -10,6 +10,7 @@
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/null_directions.h"
+#include "models/cart_damping.h"
 
 namespace pushid {
 namespace {
@@ -247,18 +248,23 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 }
 
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
-  const Parameter mu_y = model.friction == FrictionKind::kIsotropic ? kMu : kMuY;
   const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
   const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
   const double by_mass = 1.0 / kReferenceMass;
-  return {{"c_x", "N s/m", {{kMu, 1.0}, {kKpX, 1.0}}},
-          {"c_y", "N s/m", {{mu_y, 1.0}, {kKpY, 1.0}}},
-          {"c_x/M", "1/s", {{kMu, by_mass}, {kKpX, by_mass}}},
-          {"c_y/M", "1/s", {{mu_y, by_mass}, {kKpY, by_mass}}},
-          {"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
-          {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
-          {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
-          {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}};
+  std::vector<CombinationSpec> combinations;
+  const auto cart = [&](const char* over, const char* unit, double factor) {
+    for (const CartDamping& c : CartDampings(model.friction)) {
+      combinations.push_back(
+          {std::string(c.name) + over, unit, {{c.friction, factor}, {c.gain, factor}}});
+    }
+  };
+  cart("", "N s/m", 1.0);
+  cart("/M", "1/s", by_mass);
+  combinations.insert(combinations.end(), {{"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
+                                           {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
+                                           {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
+                                           {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}});
+  return combinations;
 }
 
 }  // namespace pushid

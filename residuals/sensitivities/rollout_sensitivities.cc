@@ -81,7 +81,7 @@ class ReceivedSensitivities {
     if (!options_.interaction.Any()) return;
     for (Columns& columns : now_) columns.setZero();
     forces->pairs().ForEachPair([&](int n, int j) {
-      if (!forces->Between(n, j).acts) return;
+      if (!forces->Between(n, j).acts()) return;
       const PairJacobian jacobian = ComputePairJacobian(
           options_.interaction, options_.interaction_network.get(), PairOf(scene_, n, j),
           forces->Parameters(0), path.At(frame, n), path.At(frame, j));
@@ -103,37 +103,63 @@ class ReceivedSensitivities {
   void AddTo(int n, const SceneForces<double>& forces, Columns* by_column) const {
     if (options_.interaction.Any()) *by_column += now_[n];
     if (!options_.interaction.drive) return;
-    const ParameterSet<double>& p = forces.Parameters(n);
-    const Vector4<double>& lately = forces.received(n).lately;
-    by_column->topRows<2>() += p[kDriveGain] * lately_[n].topRows<2>();
-    by_column->bottomRows<2>() += p[kDriveTorque] * lately_[n].bottomRows<2>();
-    for (const ColumnEntry& entry : inputs_.entries[n]) {
-      if (entry.parameter == kDriveGain) {
-        by_column->col(entry.column).head<2>() += entry.derivative * lately.head<2>();
-      } else if (entry.parameter == kDriveTorque) {
-        by_column->col(entry.column).tail<2>() += entry.derivative * lately.tail<2>();
-      }
-    }
+    using Jet = ceres::Jet<double, 4 + kDriveParameters>;  // by w, then the drive's parameters
+    const Vector4<Jet> force = DriveForce(DriveJets<Jet>(forces.Parameters(n), 4),
+                                          VectorJets<Jet>(forces.received(n).lately, 0));
+    const Matrix4<double> by_lately = Derivatives<4>(force, 0);
+    *by_column += by_lately * lately_[n];
+    AddByParameter(n, Derivatives<kDriveParameters>(force, 4), by_column);
   }
 
   // On to the next frame; forces: still at this one.
   void Advance(const SceneForces<double>& forces) {
     if (!options_.interaction.drive) return;
+    using Jet = ceres::Jet<double, 8 + kDriveParameters>;  // by w, F, then the drive's parameters
     for (int n = 0; n < scene_.num_people(); ++n) {
-      const ParameterSet<double>& p = forces.Parameters(n);
       const Received<double>& received = forces.received(n);
-      const double memory = DriveMemory(p, scene_.dt);
-      lately_[n] = memory * lately_[n] + (1.0 - memory) * now_[n];
-      const double by_time = memory * scene_.dt / (p[kDriveTime] * p[kDriveTime]);
-      for (const ColumnEntry& entry : inputs_.entries[n]) {
-        if (entry.parameter != kDriveTime) continue;
-        lately_[n].col(entry.column) +=
-            entry.derivative * by_time * (received.lately - received.now);
-      }
+      const Vector4<Jet> next =
+          NextReceived(DriveJets<Jet>(forces.Parameters(n), 8), VectorJets<Jet>(received.lately, 0),
+                       VectorJets<Jet>(Vector4<double>(received.Now()), 4), scene_.dt);
+      const Matrix4<double> by_lately = Derivatives<4>(next, 0), by_now = Derivatives<4>(next, 4);
+      lately_[n] = (by_lately * lately_[n] + by_now * now_[n]).eval();
+      AddByParameter(n, Derivatives<kDriveParameters>(next, 8), &lately_[n]);
     }
   }
 
  private:
+  static constexpr int kDriveParameters = kDriveTime - kDriveGain + 1;
+
+  template <typename Jet>
+  static ParameterSet<Jet> DriveJets(const ParameterSet<double>& p, int first) {
+    ParameterSet<Jet> jets;
+    for (int i = 0; i < kDriveParameters; ++i) {
+      jets[kDriveGain + i] = Jet(p[kDriveGain + i], first + i);
+    }
+    return jets;
+  }
+  template <typename Jet>
+  static Vector4<Jet> VectorJets(const Vector4<double>& v, int first) {
+    Vector4<Jet> jets;
+    for (int i = 0; i < 4; ++i) jets[i] = Jet(v[i], first + i);
+    return jets;
+  }
+  template <int kCount, typename Jet>
+  static Eigen::Matrix<double, 4, kCount> Derivatives(const Vector4<Jet>& jets, int first) {
+    Eigen::Matrix<double, 4, kCount> derivatives;
+    for (int row = 0; row < 4; ++row) {
+      derivatives.row(row) = jets[row].v.template segment<kCount>(first).transpose();
+    }
+    return derivatives;
+  }
+  void AddByParameter(int n, const Eigen::Matrix<double, 4, kDriveParameters>& by_parameter,
+                      Columns* columns) const {
+    for (const ColumnEntry& entry : inputs_.entries[n]) {
+      const int at = entry.parameter - kDriveGain;
+      if (at < 0 || at >= kDriveParameters) continue;
+      columns->col(entry.column) += entry.derivative * by_parameter.col(at);
+    }
+  }
+
   const Scene& scene_;
   const ModelOptions& options_;
   const SensitivityInputs& inputs_;

@@ -42,6 +42,60 @@ Eigen::VectorXcd Eigenvalues(const ModelOptions& options, const Body& body,
   return matrix.eigenvalues();
 }
 
+// A pendulum with no forces but gravity on a cart that rolls freely: the cart runs back under it,
+// m_c v' = -m g e, so w' = (g / l) (M / m_c) e, with m_c = 0.1 M: rates 0 and +-sqrt(10 g / l).
+TEST(FreeModes, ByHand) {
+  for (int plane : {0, 1}) {
+    const ModePolynomial<double> c =
+        FreeModes<double>({}, {70.0, 0.9, 0.0}, ParameterSet<double>{}, plane);
+    EXPECT_NEAR(c.c2, 0.0, 1e-12);
+    EXPECT_NEAR(c.c1, -10.0 * 9.81 / 0.9, 1e-9);
+    EXPECT_NEAR(c.c0, 0.0, 1e-12);
+  }
+}
+
+// What the equations at the head of self_force.h and ipm.h come to, worked out on paper. The y
+// plane mirrored (phi turns towards -y) obeys those of the x plane; K acts like a mass.
+ModePolynomial<double> OnPaper(const ModelOptions& options, const Body& body,
+                               const ParameterSet<double>& p, int plane) {
+  const GainScale scale(options.gain_scaling, body);
+  const auto of = [&](Parameter x, Parameter y) { return p[plane == 0 ? x : y]; };
+  const bool isotropic = options.friction == FrictionKind::kIsotropic;
+  const double mass = body.mass, m = body.point_mass(), l = body.rod_length;
+  const double f_v = -scale.force * (of(kMu, isotropic ? kMu : kMuY) + of(kKpX, kKpY));
+  const double f_e = mass * of(kAx, kAy), f_w = mass * of(kBx, kBy), t_v = mass * of(kTx, kTy);
+  const double t_e = m * kGravity * l - scale.stiffness * of(kKpTheta, kKpPhi);
+  const double t_w = -scale.damping * of(kKdTheta, kKdPhi);
+  const bool backward = options.cart_derivative == CartDerivative::kBackward;
+  const double inertia = mass + (backward ? scale.force * of(kKdX, kKdY) : 0.0);
+  const double det = inertia * m * l * l - m * l * m * l;
+  const auto cart = [&](double f, double t) { return (m * l * l * f - m * l * t) / det; };
+  const auto angle = [&](double f, double t) { return (inertia * t - m * l * f) / det; };
+  const double a_v = cart(f_v, t_v), b_v = angle(f_v, t_v), b_e = angle(f_e, t_e);
+  return {-(a_v + angle(f_w, t_w)), a_v * angle(f_w, t_w) - cart(f_w, t_w) * b_v - b_e,
+          a_v * b_e - cart(f_e, t_e) * b_v};
+}
+
+TEST(FreeModes, AreThoseOfTheEquationsOnPaper) {
+  Random random(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    ModelOptions options;
+    options.gain_scaling = static_cast<GainScaling>(trial % 3);
+    options.friction = trial % 2 == 0 ? FrictionKind::kIsotropic : FrictionKind::kAnisotropic;
+    options.cart_derivative = trial % 5 < 2 ? CartDerivative::kNone : CartDerivative::kBackward;
+    const Body body = RandomBody(&random);
+    ParameterSet<double> p = Gains(&random);
+    p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
+    for (int plane : {0, 1}) {
+      const ModePolynomial<double> actual = FreeModes<double>(options, body, p, plane);
+      const ModePolynomial<double> expected = OnPaper(options, body, p, plane);
+      EXPECT_NEAR(actual.c2, expected.c2, 1e-12 * (1.0 + std::abs(expected.c2)));
+      EXPECT_NEAR(actual.c1, expected.c1, 1e-12 * (100.0 + std::abs(expected.c1)));
+      EXPECT_NEAR(actual.c0, expected.c0, 1e-12 * (1000.0 + std::abs(expected.c0)));
+    }
+  }
+}
+
 TEST(FreeModes, RootsAreTheEigenvalues) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {

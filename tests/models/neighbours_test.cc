@@ -126,8 +126,8 @@ TEST(Contact, MomentumIsPassedOnNotMade) {
     Vector4<double> sum = Vector4<double>::Zero();
     double largest = 0.0;
     for (int n = 0; n < 6; ++n) {
-      sum += trace.At(t, n).interaction;
-      largest = std::max(largest, trace.At(t, n).interaction.head<2>().norm());
+      sum += trace.At(t, n)[ForcePart::kInteraction];
+      largest = std::max(largest, trace.At(t, n)[ForcePart::kInteraction].head<2>().norm());
     }
     EXPECT_LE(sum.head<2>().norm(), 1e-12 * std::max(1.0, largest));
   }

@@ -105,8 +105,8 @@ TEST(NetworkInteraction, LdpsSizeRunsInARollout) {
   RolloutPath<double> path;
   ForceTrace trace;
   ASSERT_TRUE(Rollout<double>(scene, options, {p}, InitialVelocities(scene), 20, &path, &trace).ok);
-  EXPECT_GT(trace.At(5, 1).interaction.norm(), 1.0);
-  EXPECT_LE(trace.At(5, 0).interaction.cwiseAbs()[0], 20.0);  // one neighbour, clamped
+  EXPECT_GT(trace.At(5, 1)[ForcePart::kInteraction].norm(), 1.0);
+  EXPECT_LE(trace.At(5, 0)[ForcePart::kInteraction].cwiseAbs()[0], 20.0);  // one neighbour, clamped
 }
 
 }  // namespace

@@ -88,19 +88,19 @@ TEST_P(PushSemantics, ForcesDuringAndAfterThePush) {
     const NetForce<double> force =
         NetForceAt(scene, options, self[1], p, 1, frame, state, state.qd);
     const bool during = frame >= 5 && frame < 9;
-    EXPECT_EQ(force.push, during ? push : none) << frame;
-    EXPECT_EQ(force.friction, during && !expected.friction ? none : friction) << frame;
-    EXPECT_EQ(force.balance, during && !expected.balance ? none : balance) << frame;
-    EXPECT_EQ(force.linear, during && !expected.balance ? none : linear) << frame;
-    EXPECT_EQ(force.tail.norm() > 0.0, frame >= 9 && expected.tail) << frame;
+    EXPECT_EQ(force[ForcePart::kPush], during ? push : none) << frame;
+    EXPECT_EQ(force[ForcePart::kFriction], during && !expected.friction ? none : friction) << frame;
+    EXPECT_EQ(force[ForcePart::kBalance], during && !expected.balance ? none : balance) << frame;
+    EXPECT_EQ(force[ForcePart::kLinear], during && !expected.balance ? none : linear) << frame;
+    EXPECT_EQ(force[ForcePart::kTail].norm() > 0.0, frame >= 9 && expected.tail) << frame;
     // The other person notices nothing.
     const NetForce<double> other =
         NetForceAt(scene, options, self[0], p, 0, frame, state, state.qd);
-    EXPECT_EQ((other.push + other.tail).norm(), 0.0);
-    EXPECT_EQ(other.friction, self[0].Friction(p, state.qd));
+    EXPECT_EQ((other[ForcePart::kPush] + other[ForcePart::kTail]).norm(), 0.0);
+    EXPECT_EQ(other[ForcePart::kFriction], self[0].Friction(p, state.qd));
   }
   options.push_tail = PushTail::kNone;
-  EXPECT_EQ(NetForceAt(scene, options, self[1], p, 1, 9, state, state.qd).tail, none);
+  EXPECT_EQ(NetForceAt(scene, options, self[1], p, 1, 9, state, state.qd)[ForcePart::kTail], none);
 }
 
 INSTANTIATE_TEST_SUITE_P(

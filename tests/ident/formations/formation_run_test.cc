@@ -40,9 +40,10 @@ TEST(FormationRun, ContactPassesMomentumOnAndMakesNone) {
   double passed = 0.0;
   for (int t = 0; t < kFrames; ++t) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-    for (int n = 0; n < run.num_people(); ++n) sum += run.Force(n, t).interaction.head<2>();
+    for (int n = 0; n < run.num_people(); ++n)
+      sum += run.Force(n, t)[ForcePart::kInteraction].head<2>();
     EXPECT_LT(sum.norm(), 1e-9);
-    passed += run.Force(4, t).interaction[0] * run.recording.scene.dt;
+    passed += run.Force(4, t)[ForcePart::kInteraction][0] * run.recording.scene.dt;
   }
   EXPECT_GT(passed, 1.0);  // N s
 }
@@ -78,8 +79,8 @@ TEST(FormationRun, SuccessivePushesActOneByOne) {
   const FormationRun run = RunFormation(ContactModel(), scene, kFrames);
   for (int t = 0; t < kFrames; ++t) {
     const bool pushed = t % 60 < 12 && t < 180;
-    EXPECT_EQ(run.Force(0, t).push[0] > 0.0, pushed) << t;
-    EXPECT_EQ(run.Force(1, t).push.norm(), 0.0);
+    EXPECT_EQ(run.Force(0, t)[ForcePart::kPush][0] > 0.0, pushed) << t;
+    EXPECT_EQ(run.Force(1, t)[ForcePart::kPush].norm(), 0.0);
   }
   EXPECT_EQ(run.summaries[0].outcome, Outcome::kSettled);
 }
@@ -101,7 +102,7 @@ TEST(FormationRun, WithoutInteractionNobodyElseMoves) {
       RunFormation(model, SampleFormation(FormationShape::kLine, 3, {0}), kFrames);
   EXPECT_EQ(run.summaries[1].onset_frame, -1);
   EXPECT_EQ(run.summaries[1].outcome, Outcome::kUnmoved);
-  for (const ForcePart& part : ActingParts(run)) EXPECT_NE(part.name, "interaction");
+  for (ForcePart part : ActingParts(run)) EXPECT_NE(part, ForcePart::kInteraction);
 }
 
 TEST(FormationPictures, ShowEverybodyEveryPushAndEveryPart) {

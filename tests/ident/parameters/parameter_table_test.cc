@@ -39,8 +39,8 @@ TEST(Presets, FreeWhatTheyPromise) {
 TEST(Presets, EveryRowIsSound) {
   for (const char* name : {"tail", "ldp"}) {
     const ParameterTable table = MakePreset(name).value().table;
-    ASSERT_EQ(table.specs.size(), static_cast<size_t>(kNumParameters));
-    for (int i = 0; i < kNumParameters; ++i) {
+    ASSERT_EQ(table.specs.size(), static_cast<size_t>(kFirstOwnParameter));
+    for (int i = 0; i < kFirstOwnParameter; ++i) {
       const ParameterSpec& spec = table.specs[i];
       EXPECT_EQ(spec.id, i);
       EXPECT_EQ(spec.name, kParameterNames[i]);
@@ -58,10 +58,12 @@ TEST(Presets, EveryRowIsSound) {
 }
 
 TEST(Presets, LinearSelfForceComesWithPriors) {
-  ParameterTable table = Tail();
-  FreeSelfForce(SelfForceKind::kNone, &table);
+  FitOptions options = MakePreset("tail").value();
+  const ParameterTable& table = options.table;
+  FreeTerms(&options);
   EXPECT_EQ(FreeNames(table), FreeNames(Tail()));
-  FreeSelfForce(SelfForceKind::kLinear, &table);
+  options.self_force = SelfForceKind::kLinear;
+  FreeTerms(&options);
   for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
     EXPECT_TRUE(table[id].free) << table[id].name;
     EXPECT_TRUE(table[id].prior.has_value()) << table[id].name;

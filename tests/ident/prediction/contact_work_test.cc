@@ -58,7 +58,7 @@ struct Bounce {
       forces.Update(path.Frame(t));
       for (int n : {0, 1}) {
         forces.Prepare(n, &scratch);
-        trace.At(t, n).interaction = forces.received(n).now;
+        trace.At(t, n)[ForcePart::kInteraction] = forces.received(n).Now();
       }
     }
     return BalanceContactEnergy(path, trace, scene.dt);

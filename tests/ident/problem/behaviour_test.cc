@@ -1,6 +1,7 @@
 // Which models settle after a push, and which walk away or fall.
 #include "ident/problem/behaviour.h"
 
+#include <ceres/jet.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -151,6 +152,50 @@ TEST(Behaviour, GrowthIsThatOfTheFreeModesWithAndWithoutTheCartsAcceleration) {
   }
   EXPECT_GT(grow, 10);
   EXPECT_LT(grow, 110);
+}
+
+// The growth of one step of the rollout itself, linearized by Jets about rest.
+double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double>& p) {
+  using Jet = ceres::Jet<double, 8>;  // theta, phi, qd, the cart's velocity a step before
+  std::vector<ParameterSet<Jet>> parameters(1);
+  for (int i = 0; i < kNumParameters; ++i) parameters[0][i] = Jet(p[i]);
+  const Scene scene = SettlingScene(80.0, 0.0);
+  constexpr int kAfterThePush = 100;
+  PendulumState<Jet> state;
+  Vector4<Jet> previous = Vector4<Jet>::Zero();
+  for (int i = 0; i < 2; ++i) state.q[2 + i] = Jet(0.0, i);
+  for (int i = 0; i < 4; ++i) state.qd[i] = Jet(0.0, 2 + i);
+  for (int i = 0; i < 2; ++i) previous[i] = Jet(0.0, 6 + i);
+  SceneForces<Jet> forces(scene, options, parameters);
+  std::vector<int> scratch;
+  forces.Update(&state);
+  forces.Prepare(0, &scratch);
+  const Vector4<Jet> force = forces.On(0, kAfterThePush, previous).Total();
+  const PendulumState<Jet> next = forces.Next(0, forces.AccelerationOf(0, force), previous);
+  Eigen::Matrix<double, 8, 8> step = Eigen::Matrix<double, 8, 8>::Zero();
+  for (int i = 0; i < 2; ++i) step.row(i) = next.q[2 + i].v.transpose();
+  for (int i = 0; i < 4; ++i) step.row(2 + i) = next.qd[i].v.transpose();
+  step(6, 2) = step(7, 3) = 1.0;
+  return std::log(step.eigenvalues().cwiseAbs().maxCoeff()) / scene.dt;
+}
+
+TEST(Behaviour, GrowthIsThatOfTheLinearizedRollout) {
+  Random random(12);
+  for (int trial = 0; trial < 40; ++trial) {
+    ModelOptions options = SyntheticOptions::TailModel();
+    options.posture = trial % 2 == 0 ? Posture::kInitial : Posture::kUpright;
+    options.gain_scaling = static_cast<GainScaling>(trial % 3);
+    ParameterSet<double> p = FirmParameters();
+    p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
+    for (Parameter id : {kAx, kAy}) p[id] = random.Uniform(-15, 2);
+    for (Parameter id : {kBx, kBy, kTx, kTy, kKdX, kKdY}) p[id] = random.Uniform(-1, 1);
+    for (Parameter id : {kCq, kDq}) p[id] = random.Uniform(0, 1);
+    for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
+      options.cart_derivative = derivative;
+      EXPECT_NEAR(ComputeBehaviour(options, p).fastest_growth, GrowthOfTheRollout(options, p),
+                  1e-9);
+    }
+  }
 }
 
 // Five in a line, the pushed one thrown back by the contact: the signed means say so.

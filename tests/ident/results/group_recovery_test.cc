@@ -20,7 +20,7 @@ SyntheticOptions RowStudy(const InteractionTerms& terms) {
   study.frames = 70;
   study.lean_sigma_rad = 0.01;
   const ParameterTable table = MakePreset("tail").value().table;
-  for (int i = kFirstPairParameter; i < kNumParameters; ++i) {
+  for (int i = kFirstPairParameter; i < kFirstOwnParameter; ++i) {
     study.parameters[i] = table.specs[i].nominal;
   }
   study.parameters[kContactStiffness] = 2800.0;

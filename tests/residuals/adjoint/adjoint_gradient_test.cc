@@ -4,6 +4,7 @@
 
 #include <ceres/problem.h>
 
+#include "residuals/autodiff_force_law.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
@@ -253,6 +254,40 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
   forty.value().Evaluate(shared.data(), weights, nullptr, weights_alone.data());
   EXPECT_EQ(shared_alone, large.shared);
   EXPECT_EQ(weights_alone, large.weights);
+}
+
+// F_x = -M b tanh(xd / 0.2 m/s): a law of a user's own.
+struct Brake {
+  template <typename T>
+  Vector4<T> operator()(const LawPerson& person, const PendulumState<T>& s, const T* own) const {
+    using std::tanh;
+    Vector4<T> force = Vector4<T>::Zero();
+    force[0] = -person.body.mass * own[0] * tanh(s.qd[0] / 0.2);
+    return force;
+  }
+};
+
+TEST(AdjointGradient, KnowsAUsersOwnLaw) {
+  Random random(65);
+  const Regime regime{"", 0.1, 100.0, 0.05, 0.5, 0.0};
+  ModelOptions options =
+      WithNetwork({NetworkKind::kGru, 2}, regime.weight, &random, {RodKind::kLinear, {}});
+  options.own_laws = {
+      MakeForceLaw("brake", {{"brake", "b", "m/s^2", 0.1, 0.0, 5.0, 0.1}}, Brake{})};
+  ParameterMap map = EveryParameterMap({});
+  map.num_weights = options.self_network->num_weights();
+  const std::vector<PendulumRecording> made = SomeRecordings(options, regime, &random);
+  const std::vector<AdjointRecording> recordings = {{&made[0]}, {&made[1]}};
+  ParameterSet<double> p = RecoveringParameters();
+  p[kFirstOwnParameter] = 0.3;
+  const std::vector<double> shared = SharedBlock(map, p), weights = options.self_network->weights;
+  const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
+  auto adjoint = AdjointGradient::Create(recordings, options, map, {});
+  ASSERT_TRUE(adjoint.ok()) << adjoint.error().ToString();
+  const Gradient actual = ByAdjoint(&adjoint.value(), shared, weights);
+  EXPECT_NE(expected.shared[kFirstOwnParameter], 0.0);
+  ExpectSameVector(actual.shared, expected.shared, 1e-10, "parameter");
+  ExpectSameVector(actual.weights, expected.weights, 1e-10, "weight");
 }
 
 TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {

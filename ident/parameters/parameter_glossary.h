@@ -1,0 +1,17 @@
+// ident: every parameter in words, from its row (models/parameter_rows.h).
+#pragma once
+
+#include <string>
+
+#include "ident/figures/text_table.h"
+
+namespace pushid {
+
+// Name, symbol (in the equation that heads the file of its term), unit, default, bounds, meaning,
+// and when to free it; a row each.
+TextTable ParameterGlossary();
+
+// The same as a table in Markdown.
+std::string ParameterGlossaryMarkdown();
+
+}  // namespace pushid

@@ -1,0 +1,173 @@
+// models: one row for each parameter, from which its identifier, name, defaults, bounds, the
+// glossary and what it acts on are made (parameters.h, parameter_facts.h). A new parameter is a new
+// row, and nothing else but the formula that uses it.
+//
+// X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when)
+//   name       on the command line and in files
+//   symbol     in the equation that heads the file of its term
+//   nominal    start of a fit, value when fixed: where its term vanishes, or LDP's
+//   lower, upper  bounds of a fit
+//   scale      a typical size, for scaling null directions and judging "weak"
+//   transform  the scale on which it is fitted (transform.h)
+//   acts       for a model m: whether the parameter has any effect
+//   freed      whether choosing its term frees it, with a weak prior
+//   meaning    what it is
+//   when       when to free it
+//
+// Gains are quoted for the reference person (85 kg, rod 0.95 m); see GainScale in self_force.h.
+// Parameters of one term stand together: friction from kMu up to kKpX, contact from
+// kContactStiffness to kContactHeight, all that two people share from there to kLeanPhi.
+#pragma once
+
+// clang-format off
+#define PUSHID_PARAMETERS(X) \
+  /* friction and balance: the cart's gains may turn negative, the data must be able to say so */ \
+  X(kMu, "mu", "mu", "N s/m", 100, -2000, 2000, 100, kIdentity, \
+    true, false, \
+    "ground friction", \
+    "always: with Kp_x and Kp_y held it is the whole drag of the stepping feet") \
+  X(kMuY, "mu_y", "mu_y", "N s/m", 100, -2000, 2000, 100, kIdentity, \
+    m.friction == FrictionKind::kAnisotropic, false, \
+    "ground friction along y", \
+    "with pushes to the side, and anisotropic friction") \
+  X(kKpX, "Kp_x", "Kp_x", "N s/m", 0, -2000, 2000, 100, kIdentity, \
+    true, false, \
+    "balance gain on the cart's velocity, x", \
+    "never together with mu: only mu + Kp_x is identifiable") \
+  X(kKpY, "Kp_y", "Kp_y", "N s/m", 0, -2000, 2000, 100, kIdentity, \
+    true, false, \
+    "balance gain on the cart's velocity, y", \
+    "never together with mu or mu_y: only the sum is identifiable") \
+  X(kKpTheta, "Kp_theta", "Kp_theta", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
+    true, false, \
+    "balance stiffness about y", \
+    "always, with pushes forwards or back") \
+  X(kKpPhi, "Kp_phi", "Kp_phi", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
+    true, false, \
+    "balance stiffness about x", \
+    "with pushes to the side") \
+  X(kKdX, "Kd_x", "Kd_x", "kg", 0, -500, 500, 10, kIdentity, \
+    m.cart_derivative == CartDerivative::kBackward, false, \
+    "balance gain on the cart's acceleration, x", \
+    "to compare with LDP's code; it is an algebraic loop") \
+  X(kKdY, "Kd_y", "Kd_y", "kg", 0, -500, 500, 10, kIdentity, \
+    m.cart_derivative == CartDerivative::kBackward, false, \
+    "balance gain on the cart's acceleration, y", \
+    "to compare with LDP's code; it is an algebraic loop") \
+  X(kKdTheta, "Kd_theta", "Kd_theta", "N m s/rad", 70, 1e-3, 1e4, 70, kLog, \
+    true, false, \
+    "balance damping about y", \
+    "where the angular rates are well measured") \
+  X(kKdPhi, "Kd_phi", "Kd_phi", "N m s/rad", 70, 1e-3, 1e4, 70, kLog, \
+    true, false, \
+    "balance damping about x", \
+    "with pushes to the side and well measured rates") \
+  /* the linear self force */ \
+  X(kAx, "a_x", "a_x", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
+    true, false, \
+    "cart force from the lean, x", \
+    "where the feet follow the lean, as they do after most pushes") \
+  X(kAy, "a_y", "a_y", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
+    true, false, \
+    "cart force from the lean, y", \
+    "with pushes to the side") \
+  X(kBx, "b_x", "b_x", "m/s/rad", 0, -50, 50, 2, kIdentity, \
+    true, false, \
+    "cart force from the lean's rate, x", \
+    "with many recordings: it is told from a_x by fast motion only") \
+  X(kBy, "b_y", "b_y", "m/s/rad", 0, -50, 50, 2, kIdentity, \
+    true, false, \
+    "cart force from the lean's rate, y", \
+    "with many pushes to the side") \
+  X(kTx, "t_x", "t_x", "m/s", 0, -50, 50, 2, kIdentity, \
+    true, false, \
+    "torque from the cart's velocity, x", \
+    "where the lean goes on while the cart runs") \
+  X(kTy, "t_y", "t_y", "m/s", 0, -50, 50, 2, kIdentity, \
+    true, false, \
+    "torque from the cart's velocity, y", \
+    "with many pushes to the side") \
+  X(kCq, "c_q", "c_q", "1/m", 0, -20, 20, 0.5, kIdentity, \
+    true, false, \
+    "quadratic damping of the cart", \
+    "with pushes of very different strength") \
+  X(kDq, "d_q", "d_q", "1/rad", 0, -50, 50, 1, kIdentity, \
+    true, false, \
+    "quadratic damping of the angles", \
+    "with pushes of very different strength") \
+  /* the push tail */ \
+  X(kTailGain, "tail_gain", "g", "1", 1, 1e-3, 50, 1, kLog, \
+    m.push_tail == PushTail::kExponential, false, \
+    "tail force over the push's mean force", \
+    "where the pushes cover only their first part") \
+  X(kTailTorque, "tail_torque", "r", "1", 0.3, -50, 50, 0.3, kIdentity, \
+    m.push_tail == PushTail::kExponential, false, \
+    "tail torque over the push's mean torque", \
+    "where the pushes cover only their first part") \
+  X(kTailTime, "tail_time", "t", "s", 0.2, 0.005, 5, 0.2, kLog, \
+    m.push_tail == PushTail::kExponential, false, \
+    "tail's decay time after a push of 0.1 s", \
+    "where the pushes cover only their first part") \
+  X(kTailExponent, "tail_exponent", "e", "1", 1, -5, 5, 1, kIdentity, \
+    m.push_tail == PushTail::kExponential, false, \
+    "growth of that time with the push's duration", \
+    "with pushes of different duration") \
+  /* between people: contact first, in one piece (residuals/sensitivities/pair_jacobian.cc) */ \
+  X(kContactStiffness, "contact_stiffness", "A", "N/m", 2000, 1, 1e5, 2000, kLog, \
+    m.interaction.spring, m.interaction.spring, \
+    "stiffness of contact between people", \
+    "where people touch") \
+  X(kContactDistance, "contact_distance", "d_contact", "m", 0.4, 0.05, 1.5, 0.4, kLog, \
+    m.interaction.Contact(), m.interaction.Contact(), \
+    "distance at which people touch", \
+    "where people touch") \
+  X(kContactKappa, "contact_kappa", "kappa", "1", 0.6, 0.01, 10, 0.6, kLog, \
+    m.interaction.Contact(), m.interaction.Contact(), \
+    "weight of the sideways distance", \
+    "where people stand side by side as well") \
+  X(kContactDamping, "contact_damping", "B", "N s/m", 100, 1e-3, 1e4, 100, kLog, \
+    m.interaction.damping, m.interaction.damping, \
+    "damping of contact", \
+    "where people touch") \
+  X(kContactHeight, "contact_height", "s", "1", 0.5, 0.01, 0.99, 0.5, kLogit, \
+    m.interaction.Contact(), false, \
+    "height of contact, fraction of the rod", \
+    "never without a measurement: heights from the ankles to the chest fit alike") \
+  X(kPotentialStrength, "potential_strength", "u", "N m", 150, 0.1, 1e5, 150, kLog, \
+    m.interaction.potential || m.interaction.ldp_discrete, m.interaction.potential, \
+    "strength of LDP's potential", \
+    "to compare with LDP") \
+  X(kPotentialLength, "potential_length", "sigma", "m", 0.5, 0.02, 5, 0.5, kLog, \
+    m.interaction.potential || m.interaction.ldp_discrete, m.interaction.potential, \
+    "decay length of LDP's potential", \
+    "to compare with LDP") \
+  X(kNeighbourRange, "neighbour_range", "range", "m", 0.5, 0.1, 3, 0.5, kLog, \
+    m.interaction.AtCarts(), m.interaction.potential || m.interaction.lean, \
+    "cart distance at which LDP's terms end", \
+    "where people stand farther apart than half a metre") \
+  X(kLeanTheta, "lean_theta", "k_theta", "N m", 100, -2000, 2000, 100, kIdentity, \
+    m.interaction.lean || m.interaction.ldp_discrete, m.interaction.lean, \
+    "torque against leaning on others, y", \
+    "to compare with LDP") \
+  X(kLeanPhi, "lean_phi", "k_phi", "N m", 100, -2000, 2000, 100, kIdentity, \
+    m.interaction.lean || m.interaction.ldp_discrete, m.interaction.lean, \
+    "torque against leaning on others, x", \
+    "to compare with LDP") \
+  /* after being pushed by others; and the rod */ \
+  X(kDriveGain, "drive_gain", "g", "1", 0.5, -20, 20, 0.5, kIdentity, \
+    m.interaction.drive, m.interaction.drive, \
+    "cart force over the contact lately felt", \
+    "where people step on after others have let go") \
+  X(kDriveTorque, "drive_torque", "r", "1", 0.2, -20, 20, 0.2, kIdentity, \
+    m.interaction.drive, m.interaction.drive, \
+    "torque over the contact lately felt", \
+    "where people step on after others have let go") \
+  X(kDriveTime, "drive_time", "tau", "s", 0.3, 0.01, 5, 0.3, kLog, \
+    m.interaction.drive, m.interaction.drive, \
+    "how long contact is felt", \
+    "where people step on after others have let go") \
+  X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
+    RodMoves(m), RodMoves(m), \
+    "rise of the cart over the rod's shortening", \
+    "with a learned rod, always")
+// clang-format on

@@ -1,0 +1,82 @@
+// models: what people may do to each other, and the parts that the net force is made of. Every list
+// of them - flags, CSV headers, pictures, totals - is made from the two tables here.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace pushid {
+
+// What people do to each other: terms that add up (interaction.h).
+struct InteractionTerms {
+  bool spring = false;        // the elastic part of a smooth reciprocal contact
+  bool damping = false;       // its damping
+  bool potential = false;     // LDP's repulsive potential, smoothed
+  bool lean = false;          // LDP's torques against leaning on each other, smoothed
+  bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
+  bool network = false;       // a learned force (network_interaction.h)
+  bool drive = false;         // a person pushed by others steps on for a while (drive.h)
+
+  bool Contact() const { return spring || damping; }
+  bool Any() const { return Contact() || AtCarts(); }
+  // Those that ask how far the carts are apart.
+  bool AtCarts() const { return potential || lean || ldp_discrete || network; }
+};
+
+struct InteractionTermName {
+  std::string_view name;
+  bool InteractionTerms::*member;
+};
+inline constexpr InteractionTermName kInteractionTerms[] = {
+    {"spring", &InteractionTerms::spring},
+    {"damping", &InteractionTerms::damping},
+    {"potential", &InteractionTerms::potential},
+    {"lean", &InteractionTerms::lean},
+    {"ldp_discrete", &InteractionTerms::ldp_discrete},
+    {"network", &InteractionTerms::network},
+    {"drive", &InteractionTerms::drive}};
+
+// The parts of the net force, in the order of the CSV's columns. Those that pairs of people make
+// stand together, from kFirstPairPart on; a pair term that names another than kInteraction
+// (pair.h) is summed there. kOwn stays the last: it is told of only where a model has laws of its
+// user's own (force_law.h).
+#define PUSHID_FORCE_PARTS(X)                             \
+  X(kFriction, "friction")       /* of the ground */      \
+  X(kBalance, "balance")         /* PD control */         \
+  X(kLinear, "linear")           /* cross terms */        \
+  X(kPush, "push")               /* as recorded */        \
+  X(kTail, "tail")               /* of a net push */      \
+  X(kInteraction, "interaction") /* with others */        \
+  X(kDrive, "drive")             /* after being pushed */ \
+  X(kNetwork, "network")         /* learned self force */ \
+  X(kOwn, "own")                 /* laws of the user's */
+
+enum class ForcePart : int {
+#define PUSHID_FORCE_PART(id, name) id,
+  PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
+#undef PUSHID_FORCE_PART
+};
+
+inline constexpr std::string_view kForcePartNames[] = {
+#define PUSHID_FORCE_PART(id, name) name,
+    PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
+#undef PUSHID_FORCE_PART
+};
+inline constexpr int kNumForceParts = sizeof(kForcePartNames) / sizeof(kForcePartNames[0]);
+
+inline constexpr ForcePart kFirstPairPart = ForcePart::kInteraction;
+inline constexpr int kNumPairParts =
+    static_cast<int>(ForcePart::kDrive) - static_cast<int>(kFirstPairPart);
+
+// For loops over the parts.
+inline constexpr auto kForceParts = [] {
+  std::array<ForcePart, kNumForceParts> parts{};
+  for (int i = 0; i < kNumForceParts; ++i) parts[i] = static_cast<ForcePart>(i);
+  return parts;
+}();
+
+constexpr std::string_view NameOf(ForcePart part) {
+  return kForcePartNames[static_cast<int>(part)];
+}
+
+}  // namespace pushid

@@ -1,0 +1,152 @@
+// The derivatives of force terms that are written out or chained by hand, against what a formula
+// gives by itself: dual numbers or Jets over the term's own inputs. A hand-written one stays where
+// this shows that it pays; the headers of the terms quote the factors.
+//   pushid-benchmarks --benchmark_filter='Jacobian_'
+#include <benchmark/benchmark.h>
+#include <ceres/jet.h>
+
+#include "datasets/files/random.h"
+#include "models/interaction.h"
+#include "models/push.h"
+#include "models/self_force.h"
+#include "residuals/sensitivities/pair_jacobian.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kSelfParameters = kTailGain;  // friction, balance and linear terms come first
+constexpr double kDt = 1.0 / 60.0;
+
+struct Walker {
+  ParameterSet<double> p{};
+  PendulumState<double> state;
+  Vector4<double> previous;
+
+  explicit Walker(int seed) {
+    Random random(seed);
+    for (double& value : p) value = random.Uniform(0.5, 3.0);
+    for (int i = 0; i < 4; ++i) {
+      state.q[i] = random.Uniform(-0.3, 0.3);
+      state.qd[i] = random.Uniform(-1, 1);
+      previous[i] = random.Uniform(-1, 1);
+    }
+  }
+};
+
+void Jacobian_OfSelfForce_Written(benchmark::State& state) {
+  Walker walker(1);
+  const SelfForce self({}, {80.0, 0.95, 0.0}, Vector4<double>::Zero(), kDt);
+  SelfForce::Jacobian jacobian;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(walker);
+    self.TotalJacobian(walker.p, walker.state, walker.previous, &jacobian);
+    benchmark::DoNotOptimize(jacobian);
+  }
+}
+BENCHMARK(Jacobian_OfSelfForce_Written)->Unit(benchmark::kNanosecond);
+
+// [theta, phi, qd, the cart's velocity before, parameters].
+void Jacobian_OfSelfForce_ByDuals(benchmark::State& state) {
+  Walker walker(1);
+  const SelfForce self({}, {80.0, 0.95, 0.0}, Vector4<double>::Zero(), kDt);
+  using D = Dual<double, 8 + kSelfParameters>;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(walker);
+    ParameterSet<D> p;
+    PendulumState<D> at;
+    Vector4<D> previous;
+    for (int i = 0; i < 2; ++i) at.q[2 + i] = D::Input(walker.state.q[2 + i], i);
+    for (int i = 0; i < 4; ++i) at.qd[i] = D::Input(walker.state.qd[i], 2 + i);
+    for (int i = 0; i < 2; ++i) previous[i] = D::Input(walker.previous[i], 6 + i);
+    for (int i = 0; i < kSelfParameters; ++i) p[i] = D::Input(walker.p[i], 8 + i);
+    benchmark::DoNotOptimize(self.Total(p, at, previous));
+  }
+}
+BENCHMARK(Jacobian_OfSelfForce_ByDuals)->Unit(benchmark::kNanosecond);
+
+ScenePush NetPush() {
+  return MakeScenePush(0, 0, PushKind::kNet,
+                       std::vector<Vector4<double>>(6, Vector4<double>(90.0, 10.0, 60.0, -5.0)));
+}
+
+void Jacobian_OfTail_Written(benchmark::State& state) {
+  Walker walker(2);
+  const ScenePush push = NetPush();
+  Eigen::Matrix<double, 4, kNumParameters> jacobian;
+  jacobian.setZero();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(walker);
+    AddTailJacobian(push, walker.p, 12, kDt, &jacobian);
+    benchmark::DoNotOptimize(jacobian);
+  }
+}
+BENCHMARK(Jacobian_OfTail_Written)->Unit(benchmark::kNanosecond);
+
+void Jacobian_OfTail_ByJets(benchmark::State& state) {
+  Walker walker(2);
+  const ScenePush push = NetPush();
+  constexpr int kTail = kTailExponent - kTailGain + 1;
+  using Jet = ceres::Jet<double, kTail>;
+  Eigen::Matrix<double, 4, kNumParameters> jacobian;
+  jacobian.setZero();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(walker);
+    ParameterSet<Jet> p;
+    for (int i = 0; i < kTail; ++i) p[kTailGain + i] = Jet(walker.p[kTailGain + i], i);
+    const Vector4<Jet> force = TailForce(push, p, 12, kDt);
+    for (int row = 0; row < 4; ++row) {
+      jacobian.row(row).segment<kTail>(kTailGain) += force[row].v.transpose();
+    }
+    benchmark::DoNotOptimize(jacobian);
+  }
+}
+BENCHMARK(Jacobian_OfTail_ByJets)->Unit(benchmark::kNanosecond);
+
+struct Touching {
+  Pair pair{{80.0, 0.95, 0.0}, {70.0, 0.9, 0.0}, Vector4<double>::Zero(), {0.45, 0.05, 0.0, 0.0}};
+  PendulumState<double> n, j;
+  ParameterSet<double> p{};
+  InteractionTerms terms;
+
+  Touching() {
+    n.q = {0.05, 0.0, 0.1, 0.02}, n.qd = {0.5, 0.0, 0.3, 0.0};
+    j.q = {0.45, 0.05, 0.02, 0.0}, j.qd = {0.1, 0.0, 0.1, 0.0};
+    p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.6, p[kContactKappa] = 0.6;
+    p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
+    terms.spring = terms.damping = true;
+  }
+};
+
+void Jacobian_OfContact_Chained(benchmark::State& state) {
+  Touching touching;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(touching);
+    benchmark::DoNotOptimize(ComputePairJacobian(touching.terms, nullptr, touching.pair, touching.p,
+                                                 touching.n, touching.j));
+  }
+}
+BENCHMARK(Jacobian_OfContact_Chained)->Unit(benchmark::kNanosecond);
+
+// Over both states and contact's own five parameters.
+void Jacobian_OfContact_ByJets(benchmark::State& state) {
+  Touching touching;
+  constexpr int kContact = kContactHeight - kContactStiffness + 1;
+  using Jet = ceres::Jet<double, 16 + kContact>;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(touching);
+    PendulumState<Jet> n, j;
+    ParameterSet<Jet> p;
+    for (int i = 0; i < 4; ++i) {
+      n.q[i] = Jet(touching.n.q[i], i), n.qd[i] = Jet(touching.n.qd[i], 4 + i);
+      j.q[i] = Jet(touching.j.q[i], 8 + i), j.qd[i] = Jet(touching.j.qd[i], 12 + i);
+    }
+    for (int i = 0; i < kContact; ++i) {
+      p[kContactStiffness + i] = Jet(touching.p[kContactStiffness + i], 16 + i);
+    }
+    benchmark::DoNotOptimize(InteractionBetween(touching.terms, nullptr, touching.pair, p, n, j));
+  }
+}
+BENCHMARK(Jacobian_OfContact_ByJets)->Unit(benchmark::kNanosecond);
+
+}  // namespace
+}  // namespace pushid
