@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/fit_flag_checks.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/flags/recording_flags.h"

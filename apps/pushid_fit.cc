@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/confidence_flags.h"
 #include "apps/flags/fit_flag_checks.h"
 #include "apps/flags/fit_flags.h"

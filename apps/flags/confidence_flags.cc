@@ -6,12 +6,13 @@
 #include <cstring>
 #include <sstream>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/results/confidence.h"
 #include "ident/solver/large_network_stage.h"
-#include "ident/validation/experiment_design.h"
+#include "ident/report/design_text.h"
 
 DECLARE_uint64(seed);
 
