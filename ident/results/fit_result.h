@@ -93,10 +93,6 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 
 IdentifiedModel ModelOf(const FitResult& result);
 
-// Whether a rod that moves makes a person unstable at rest who settles after pushes: settling
-// cannot hold it.
-bool RodRunsAway(const FitResult& result);
-
 // A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
 
