@@ -44,7 +44,7 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-inspect tells what files hold (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and warns "
+      "pushid-inspect shows what files hold (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and warns "
       "of "
       "what will matter: units, axes, rate, gaps, jumps, standing height, start, onset.\n\n  "
       "pushid-inspect trial.c3d other.trc\n  pushid-inspect table.csv --mapping=mapping.json\n  "

@@ -61,7 +61,7 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(flags.person, t) > 0.0) continue;
     Warn("hip or ankles are not seen at frame " + std::to_string(t) +
-         " of the push: it leans on positions drawn as a straight line");
+         " of the push: the force there is that of interpolated positions");
     break;
   }
   return MadePush{

@@ -120,7 +120,7 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     if (record.height_m && *record.height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
                                 " lies on the floor: what it measures is the ground's force on "
-                                "the person who stands there, which is no push");
+                                "the person who stands there, not a push");
     }
     AddPush(push.value(), &result.push);
   }

@@ -116,7 +116,7 @@ int LeftDomain(const RolloutStatus& status, double dt) {
   return kFitFailed;
 }
 
-// Takes the parameters of the named setting for everybody.
+// Takes the parameters of the named setting for every person.
 MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (setting.empty()) return std::nullopt;
   const auto found = model->by_unit.find(setting);

@@ -10,9 +10,9 @@
 #include "apps/flags/fit_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "ident/report/design_text.h"
 #include "ident/results/confidence.h"
 #include "ident/solver/large_network_stage.h"
-#include "ident/report/design_text.h"
 
 DECLARE_uint64(seed);
 

@@ -13,7 +13,7 @@ struct FormationFlags {
   std::string title;  // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
   Scene scene;        // people and pushes
   int frames = 0;
-  std::string as_setting;  // whose parameters everybody has; empty: the shared ones
+  std::string as_setting;  // whose parameters all people have; empty: the shared ones
 };
 // Errors name the flag.
 Result<FormationFlags> FormationFlagsFromCommandLine();

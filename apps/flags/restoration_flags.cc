@@ -25,7 +25,7 @@ Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFla
                                                             bool rod_moves) {
   if (rod_moves) {
     return Error{
-        "the model's rod moves, and bodies hang on rods of constant length; fit one with "
+        "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
         "--rod=constant for --restoration"};
   }
   return LoadRestoration(flags.name);

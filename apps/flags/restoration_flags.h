@@ -20,7 +20,7 @@ struct RestorationFlags {
 // Without --restoration, `otherwise` is taken.
 Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
-// For a model whose rod moves or does not: bodies hang on rods of constant length.
+// For a model whose rod moves or does not: bodies are carried by rods of constant length.
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
                                                             bool rod_moves);
 

@@ -78,8 +78,9 @@ Result<RestorationRunOptions> RunOptions() {
   RestorationRunOptions options;
   options.fit = fit.value().options;
   if (RodMoves(options.fit.model)) {
-    return Error{"its rod moves, and bodies hang on rods of constant length; fit --rod=constant",
-                 FLAGS_model};
+    return Error{
+        "its rod moves, and bodies are carried by rods of constant length; fit --rod=constant",
+        FLAGS_model};
   }
   options.fit.num_threads = FLAGS_num_threads;
   options.postprocess = postprocess.value();

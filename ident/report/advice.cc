@@ -74,21 +74,21 @@ void Adviser::Solver() {
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
     if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-      Add("The law of the rod moves no rod; leave it out.", Same().Set("rod", "constant"));
+      Add("The law of the rod has no effect; leave it out.", Same().Set("rod", "constant"));
       continue;
     }
-    Add("The data cannot say: " + n.sentence + ". Hold one of them.",
+    Add("Not identifiable: " + n.sentence + ". Hold one of them.",
         Same().Append("fix", n.parameters.back()));
   }
   for (const Estimate& e : result_.estimates) {
     if (e.status == EstimateStatus::kAtBound) {
       Add(e.name +
-              " stands at its bound, so its error is unknown; see whether the data mind its "
-              "being held there.",
+              " is at its bound, so its error is unknown; see whether the fit gets worse "
+              "when it is held there.",
           Same().Append("fix", e.name + "=" + Rounded(e.value, 4)));
     }
     if (e.status == EstimateStatus::kWeak) {
-      Add(e.name + " is only weakly known; ask which further push would tell most about it.",
+      Add(e.name + " is only weakly identified; see which further push would lower its error most.",
           Same().Set("design", e.name));
     }
   }
@@ -181,7 +181,7 @@ void Adviser::Recordings() {
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
-            " recordings the clustered errors are themselves uncertain; record more, where the "
+            " recordings the clustered errors are uncertain too; record more, where the "
             "design says it helps.",
         Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }

@@ -153,7 +153,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     warnings.push_back("a single recording: errors cannot be clustered and are too small");
   }
   for (const Estimate& e : result.estimates) {
-    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " stands at its bound");
+    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
   const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
@@ -164,8 +164,8 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   return warnings;
 }
 
-// What is known of a network's weights says nothing to anybody and fills files: from here on the
-// covariance is that of everything else, whatever the weights are.
+// The covariance of a network's weights has no meaning for a reader and fills files: from here on
+// the covariance is that of everything else, at the fitted weights.
 void ForgetWeights(Eigen::Index weights, FitResult* result) {
   if (weights == 0) return;
   Uncertainty& u = result->uncertainty;

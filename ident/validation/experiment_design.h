@@ -1,7 +1,7 @@
 // ident: which further recording would tell most: the drop of standard errors that one more push of
 // a kind would bring.
 //
-// A recording's own gains deviate from everybody's by the spread T between recordings, and are seen
+// A recording's own gains deviate from the shared ones by the spread T between recordings, and are seen
 // through noise. With V the clustered covariance of the G present recordings, V_naive the one that
 // takes all errors for noise, and I_c = J_c'J_c / sigma^2 of a candidate, whose Jacobian comes from
 // rolling the model out at the estimate (no data needed):
