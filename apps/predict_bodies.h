@@ -1,19 +1,15 @@
 // apps: pushid-predict --restoration: whole bodies from the predicted pendulums.
 #pragma once
 
-#include <string>
-
+#include "apps/flags/predict_flags.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/prediction/prediction.h"
 
 namespace pushid {
 
-// Whether --out and the flags of bodies go together.
-MaybeError CheckBodyFlags(const std::string& out);
-
-// Restores, writes what the flags name and prints; returns the exit code. compare: also say how far
-// the bodies are from the recorded ones.
-int WriteBodies(const Recording& recording, SkeletonMapping mapping, const Prediction& prediction,
-                const std::string& out, bool compare);
+// Restores, writes what the flags name and prints, for a whole recording also how far the bodies
+// are from the recorded ones; returns the exit code.
+int WriteBodies(const PredictFlags& flags, const Recording& recording, SkeletonMapping mapping,
+                const Prediction& prediction);
 
 }  // namespace pushid

@@ -1,6 +1,4 @@
 // apps: pushid-batch: many fits from one plan, each in a process of its own.
-#include <gflags/gflags.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -8,30 +6,12 @@
 #include "apps/batch/batch_run.h"
 #include "apps/batch/batch_summary.h"
 #include "apps/batch/variant_check.h"
-#include "apps/support/app_support.h"
+#include "apps/flags/batch_flags.h"
+#include "apps/flags/command_line.h"
 #include "apps/support/child_process.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/document_files.h"
-
-DEFINE_string(plan, "", "the plan (TOML); batch_plan.h and the README give its keys");
-DEFINE_bool(
-    list, false,
-    "only list the jobs (CSV): id, variant, group, replica, numbers of recordings fitted and "
-    "held out, folder");
-DEFINE_bool(dry_run, false, "only print the commands of every job that is not done yet");
-DEFINE_int32(jobs, 1, "jobs at a time");
-DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
-DEFINE_string(job, "", "only the job of this id (or the start of one)");
-DEFINE_bool(resume, true,
-            "skip jobs that are done; false does all of them again, and drops what was there");
-DEFINE_bool(keep_going, true, "go on after a job that failed");
-DEFINE_bool(summary, true,
-            "write summary.csv, summary.json and summary.html; false with shards "
-            "that run at the same time");
-DEFINE_bool(gather, false, "run nothing; only write the summary of what is there");
-DEFINE_double(time_limit, 0.0, "seconds for one job, instead of the plan's; 0: none");
-DEFINE_int32(memory_limit, 0, "MB of one job's address space, instead of the plan's; 0: none");
 
 namespace {
 
@@ -45,23 +25,15 @@ std::string BinFolder() {
   return failed ? "." : self.parent_path().string();
 }
 
-Result<std::vector<BatchJob>> ChosenJobs(const std::vector<BatchJob>& all) {
-  std::vector<BatchJob> jobs = all;
-  if (!FLAGS_shard.empty()) {
-    int i = 0, n = 0;
-    char rest = 0;
-    if (std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &i, &n, &rest) != 2 || n < 1 || i < 1 ||
-        i > n) {
-      return Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
-    }
-    jobs = Shard(jobs, i, n);
-  }
-  if (FLAGS_job.empty()) return jobs;
+Result<std::vector<BatchJob>> ChosenJobs(const BatchFlags& flags,
+                                         const std::vector<BatchJob>& all) {
+  const std::vector<BatchJob> jobs = Shard(all, flags.shard, flags.shards);
+  if (flags.job.empty()) return jobs;
   std::vector<BatchJob> named;
   for (const BatchJob& job : jobs) {
-    if (job.id.rfind(FLAGS_job, 0) == 0) named.push_back(job);
+    if (job.id.rfind(flags.job, 0) == 0) named.push_back(job);
   }
-  if (named.empty()) return Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
+  if (named.empty()) return Error{"--job: the plan has no job '" + flags.job + "' (see --list)"};
   return named;
 }
 
@@ -77,9 +49,10 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   return kDone;
 }
 
-int DryRun(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
+int PrintCommands(const BatchFlags& flags, const BatchPlan& plan,
+                  const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
-    if (FLAGS_resume && ReadResult(plan, job).done()) continue;
+    if (flags.resume && ReadResult(plan, job).done()) continue;
     const std::string folder = JobFolder(plan, job);
     std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
     for (const auto& command : JobCommands(job, plan, folder, BinFolder())) {
@@ -113,14 +86,14 @@ int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   return kDone;
 }
 
-int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
+int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<BatchJob>& all,
             const std::vector<BatchJob>& jobs) {
   BatchRunOptions options;
-  options.jobs = FLAGS_jobs;
-  options.resume = FLAGS_resume;
-  options.keep_going = FLAGS_keep_going;
-  options.time_limit_s = Given("time_limit") ? FLAGS_time_limit : plan.time_limit_s;
-  options.memory_limit_mb = Given("memory_limit") ? FLAGS_memory_limit : plan.memory_limit_mb;
+  options.jobs = flags.jobs;
+  options.resume = flags.resume;
+  options.keep_going = flags.keep_going;
+  options.time_limit_s = flags.time_limit_s.value_or(plan.time_limit_s);
+  options.memory_limit_mb = flags.memory_limit_mb.value_or(plan.memory_limit_mb);
   options.bin = BinFolder();
   ProgressLine line;
   const Result<BatchOutcome> outcome =
@@ -132,7 +105,7 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   line.Finish();
   if (!outcome.ok()) return Fail(outcome.error());
   const BatchOutcome& o = outcome.value();
-  if (FLAGS_summary) {
+  if (flags.summary) {
     if (MaybeError error = Summarize(plan, all)) return Fail(*error);
   }
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
@@ -151,32 +124,32 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
 }
 
 int Run() {
-  if (MaybeError missing = Require("plan", FLAGS_plan, "name the TOML file of the batch")) {
-    return Fail(*missing);
-  }
-  if (FLAGS_jobs < 1) return Fail("--jobs must be at least 1");
-  if (Given("time_limit") && !(FLAGS_time_limit >= 0.0)) {
-    return Fail("--time_limit must be a number of seconds, 0 for none");
-  }
-  if (Given("memory_limit") && FLAGS_memory_limit < 0) {
-    return Fail("--memory_limit must be a number of MB, 0 for none");
-  }
-  const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
+  const Result<BatchFlags> read = BatchFlagsFromCommandLine();
+  if (!read.ok()) return Fail(read.error());
+  const BatchFlags& flags = read.value();
+  const Result<BatchPlan> plan = ReadPlan(flags.plan);
   if (!plan.ok()) return Fail(plan.error());
   const Result<Manifest> manifest = ReadManifest(plan.value().manifest);
   if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
   const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
   if (!all.ok()) return Fail(all.error());
-  const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
+  const Result<std::vector<BatchJob>> jobs = ChosenJobs(flags, all.value());
   if (!jobs.ok()) return Fail(jobs.error());
-  if (!FLAGS_gather) {
+  if (flags.action != BatchAction::kGather) {
     const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), BinFolder());
     if (wrong) return Fail(*wrong);
   }
-  if (FLAGS_list) return List(plan.value(), jobs.value());
-  if (FLAGS_dry_run) return DryRun(plan.value(), jobs.value());
-  if (FLAGS_gather) return Gather(plan.value(), all.value());
-  return RunJobs(plan.value(), all.value(), jobs.value());
+  switch (flags.action) {
+    case BatchAction::kList:
+      return List(plan.value(), jobs.value());
+    case BatchAction::kPrintCommands:
+      return PrintCommands(flags, plan.value(), jobs.value());
+    case BatchAction::kGather:
+      return Gather(plan.value(), all.value());
+    case BatchAction::kRun:
+      break;
+  }
+  return RunJobs(flags, plan.value(), all.value(), jobs.value());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <memory>
 #include <set>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/crossvalidate_flags.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/flags/recording_flags.h"

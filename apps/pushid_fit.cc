@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <ctime>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/confidence_flags.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/flags/fit_program_flags.h"
@@ -48,9 +49,10 @@ Provenance FromHere() {
   // Where the data lay is no part of what was found; the hash is.
   from.configuration.erase("recordings");
   from.changed_flags = ChangedFlags();
-  from.manifest = FLAGS_recordings;
-  from.setting = FLAGS_setting;
-  const Result<std::string> hash = HashFile(FLAGS_recordings);
+  const RecordingFlags flags = RecordingFlagsFromCommandLine();
+  from.manifest = flags.manifest;
+  from.setting = flags.setting;
+  const Result<std::string> hash = HashFile(flags.manifest);
   if (hash.ok()) from.manifest_hash = hash.value();
   return from;
 }

@@ -1,49 +1,31 @@
 // apps: pushid-predict: what happens after a push, from the first frame and the push alone.
-#include <gflags/gflags.h>
-
 #include <cstdio>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/predict_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/restoration_flags.h"
 #include "apps/predict_bodies.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
 
-DEFINE_string(id, "", "the recording whose first frame and push are taken");
-DEFINE_string(out, "",
-              "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
-              "and a name that ends with .bvh, the bodies (BVH, one file a person)");
-DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
-
 namespace {
 
-constexpr int kMostFrames = 1000000;  // hours of motion
+using namespace pushid;
 
 int Run() {
-  using namespace pushid;
+  const Result<PredictFlags> read = PredictFlagsFromCommandLine();
+  if (!read.ok()) return Fail(read.error());
+  const PredictFlags& flags = read.value();
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
-  if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
-    return Fail(*missing);
-  }
-  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV or BVH file to write")) {
-    return Fail(*missing);
-  }
-  if (MaybeError error = CheckBodyFlags(FLAGS_out)) return Fail(*error);
-  if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
-    return Fail("--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames));
-  }
-  if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({FLAGS_id}, !FLAGS_restoration.empty());
+      LoadFlaggedRecordings({flags.id}, flags.restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.value().mapping);
 
-  const Prediction prediction = Predict(model.value(), recording, FLAGS_frames);
+  const Prediction prediction = Predict(model.value(), recording, flags.frames);
   if (!prediction.status.ok) {
     std::fprintf(stderr,
                  "pushid-predict: recording %s: %s of person %d leaves the model's domain at "
@@ -52,16 +34,15 @@ int Run() {
                  prediction.status.person, prediction.status.frame);
     return kFitFailed;
   }
-  if (!FLAGS_restoration.empty()) {
-    return WriteBodies(recordings.value().front(), model.value().mapping, prediction, FLAGS_out,
-                       FLAGS_frames == 0);
+  if (flags.restoration.given()) {
+    return WriteBodies(flags, recordings.value().front(), model.value().mapping, prediction);
   }
-  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording, prediction)) {
+  if (MaybeError error = WriteTrajectoryCsv(flags.out, recording, prediction)) {
     return Fail(*error);
   }
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
-              prediction.path.num_frames(), FLAGS_out.c_str());
-  if (FLAGS_frames == 0) {
+              prediction.path.num_frames(), flags.out.c_str());
+  if (flags.whole_recording()) {
     const RecordingScore score = ScoreHip(recording, prediction.hip);
     std::printf("against the recording: hipADE %s m, hipFDE %s m\n",
                 Rounded(score.hip_ade, 3).c_str(), Rounded(score.hip_fde, 3).c_str());

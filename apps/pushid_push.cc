@@ -1,29 +1,17 @@
 // apps: pushid-push: the push of a recording that has none, by inverse dynamics or from a sensor.
-#include <gflags/gflags.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/flags/command_line.h"
+#include "apps/flags/push_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/sensor_flags.h"
-#include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
+#include "apps/sensor_push.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/recording_names.h"
 #include "ident/push/push_estimation.h"
-
-DEFINE_string(id, "", "the recording");
-DEFINE_int32(person, 0, "who is pushed, counted from 0");
-DEFINE_string(out, "", "write the push here (CSV)");
-
-DEFINE_int32(first_frame, -1, "inverse dynamics: first frame of the window; -1: found by itself");
-DEFINE_int32(end_frame, -1, "inverse dynamics: frame after the window; -1: found by itself");
-DEFINE_int32(smoothing, 9,
-             "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
-             "noise then make 600 N)");
 
 namespace {
 
@@ -36,48 +24,32 @@ struct MadePush {
   std::string how;
 };
 
-// A flag of the other way would be taken and do nothing.
-MaybeError CheckFlags() {
-  for (const char* flag : {"first_frame", "end_frame", "smoothing"}) {
-    if (SensorGiven() && Given(flag)) {
-      return Error{std::string("--") + flag + " belongs to inverse dynamics, not to --sensor"};
-    }
-  }
-  if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
-    return Error{"--first_frame and --end_frame are frames, counted from 0"};
-  }
-  if (Given("resample_fps")) {
-    return Error{
-        "a push has a row for each of the recording's own frames; leave --resample_fps out"};
-  }
-  return CheckSensorFlags();
-}
-
 // As the manifest needs it: relative to its folder.
 std::string PathFromManifest(const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code failed;
-  const fs::path folder = fs::absolute(FLAGS_recordings).parent_path();
+  const fs::path folder = fs::absolute(RecordingFlagsFromCommandLine().manifest).parent_path();
   const fs::path path = fs::proximate(fs::absolute(file), folder, failed);
   return failed ? fs::absolute(file).string() : path.string();
 }
 
-Result<MadePush> FromSensor(const Recording& recorded, const PendulumRecording& recording) {
-  const Result<SensorPush> made = PushFromSensors(recorded, recording, FLAGS_person);
+Result<MadePush> FromSensor(const PushFlags& flags, const Recording& recorded,
+                            const PendulumRecording& recording) {
+  const Result<SensorPush> made = PushFromSensors(flags.sensor, recorded, recording, flags.person);
   if (!made.ok()) return made.error();
   for (const std::string& warning : made.value().warnings) Warn(warning);
   return MadePush{made.value().push, PushKind::kExternal, made.value().how};
 }
 
-Result<MadePush> ByInverseDynamics(const PendulumRecording& recording) {
+Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
   PushEstimationOptions options;
-  options.person = FLAGS_person;
-  options.smoothing_frames = FLAGS_smoothing;
-  if (FLAGS_smoothing > recording.num_frames()) {
+  options.person = flags.person;
+  options.smoothing_frames = flags.smoothing;
+  if (flags.smoothing > recording.num_frames()) {
     return Error{"--smoothing is longer than recording " + recording.id + ", which has " +
                  std::to_string(recording.num_frames()) + " frames"};
   }
-  PushWindow window{FLAGS_first_frame, FLAGS_end_frame};
+  PushWindow window = flags.window;
   if (window.start < 0 || window.end < 0) {
     const Result<PushWindow> found = DetectPushWindow(recording, options);
     if (!found.ok()) return found.error();
@@ -87,19 +59,19 @@ Result<MadePush> ByInverseDynamics(const PendulumRecording& recording) {
   const Result<EstimatedPush> push = EstimatePush(recording, window, options);
   if (!push.ok()) return push.error();
   for (int t = window.start; t < window.end; ++t) {
-    if (recording.Weight(FLAGS_person, t) > 0.0) continue;
+    if (recording.Weight(flags.person, t) > 0.0) continue;
     Warn("hip or ankles are not seen at frame " + std::to_string(t) +
-         " of the push: it leans on positions drawn as a straight line");
+         " of the push: the force there is that of interpolated positions");
     break;
   }
   return MadePush{
       push.value().push, push.value().kind,
       "by inverse dynamics, " +
-          (FLAGS_smoothing > 0 ? "smoothed over " + std::to_string(FLAGS_smoothing) + " frames"
+          (flags.smoothing > 0 ? "smoothed over " + std::to_string(flags.smoothing) + " frames"
                                : std::string("unsmoothed"))};
 }
 
-void PrintPush(const MadePush& made, double dt) {
+void PrintPush(const MadePush& made, double dt, const std::string& file) {
   Vector4<double> impulse = Vector4<double>::Zero();
   double peak = 0.0;
   for (const Eigen::Vector4d& row : made.push.force) {
@@ -114,31 +86,27 @@ void PrintPush(const MadePush& made, double dt) {
               Rounded(peak, 3).c_str());
   std::printf(
       "written to %s; in the recording's entry of the manifest put, instead of any push_csv:\n",
-      FLAGS_out.c_str());
+      file.c_str());
   std::printf("  \"push_kind\": \"%s\",\n", Name(made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
-              made.push.person, nlohmann::json(PathFromManifest(FLAGS_out)).dump().c_str(),
+              made.push.person, nlohmann::json(PathFromManifest(file)).dump().c_str(),
               made.push.start_frame);
 }
 
 int Run() {
-  if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
-    return Fail(*missing);
-  }
-  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) {
-    return Fail(*missing);
-  }
-  if (MaybeError error = CheckFlags()) return Fail(*error);
-  if (MaybeError error = CheckWritable(FLAGS_out)) return Fail(*error);
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
+  const Result<PushFlags> read = PushFlagsFromCommandLine();
+  if (!read.ok()) return Fail(read.error());
+  const PushFlags& flags = read.value();
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id});
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), SkeletonMapping::kExact);
-  const Result<MadePush> made = SensorGiven() ? FromSensor(recordings.value().front(), recording)
-                                              : ByInverseDynamics(recording);
+  const Result<MadePush> made = flags.sensor.sensors.empty()
+                                    ? ByInverseDynamics(flags, recording)
+                                    : FromSensor(flags, recordings.value().front(), recording);
   if (!made.ok()) return Fail(made.error());
-  if (MaybeError error = WritePushCsv(FLAGS_out, made.value().push.force)) return Fail(*error);
-  PrintPush(made.value(), recording.scene.dt);
+  if (MaybeError error = WritePushCsv(flags.out, made.value().push.force)) return Fail(*error);
+  PrintPush(made.value(), recording.scene.dt, flags.out);
   return kDone;
 }
 

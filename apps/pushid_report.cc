@@ -1,10 +1,9 @@
 // apps: pushid-report: an identified model in words and tables, and as a page with pictures.
-#include <gflags/gflags.h>
-
 #include <cstdio>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/app_support.h"
+#include "apps/flags/report_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document_files.h"
@@ -13,50 +12,40 @@
 #include "ident/report/truth_table.h"
 #include "ident/results/result_json.h"
 
-DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
-DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
-DEFINE_string(html_out, "", "write the whole report here: one page that opens from disk");
-DEFINE_bool(text, false, "print the whole report, not only the parameters");
-DEFINE_int32(num_threads, 1, "threads");
-DEFINE_string(csv_dir, "", "write the numbers behind every plot into this folder (CSV)");
-
 namespace {
 
 using namespace pushid;
 
 // The recordings to draw: those of the flags, or those that were fitted.
 Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
-  if (FLAGS_recordings.empty()) return std::vector<Recording>();
+  const RecordingFlags flags = RecordingFlagsFromCommandLine();
+  if (flags.manifest.empty()) return std::vector<Recording>();
   std::vector<std::string> ids;
-  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != "all";
   for (const FittedRecording& r : fit.recordings) {
-    if (!chosen) ids.push_back(r.id);
+    if (!flags.chosen) ids.push_back(r.id);
   }
   return LoadFlaggedRecordings(ids, true);
 }
 
-int WriteWhole(const FittedModel& model) {
-  if (!FLAGS_html_out.empty()) {
-    if (MaybeError error = CheckWritable(FLAGS_html_out)) return Fail(*error);
-  }
+int WriteWhole(const ReportFlags& flags, const FittedModel& model) {
   const Result<std::vector<Recording>> recordings = RecordingsOf(model.fit);
   if (!recordings.ok()) return Fail(recordings.error());
   ProgressLine line;
   BuildReportOptions options;
-  options.num_threads = FLAGS_num_threads;
+  options.num_threads = flags.num_threads;
   options.progress = [&line](int done, int total) {
     line.Show("recording " + std::to_string(done) + " of " + std::to_string(total));
   };
   const Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
-  if (FLAGS_text) std::printf("%s", ToText(report).c_str());
-  if (!FLAGS_csv_dir.empty()) {
-    if (MaybeError error = WriteNumbers(report, FLAGS_csv_dir)) return Fail(*error);
-    std::fprintf(stderr, "numbers written to %s\n", FLAGS_csv_dir.c_str());
+  if (flags.text) std::printf("%s", ToText(report).c_str());
+  if (!flags.csv_dir.empty()) {
+    if (MaybeError error = WriteNumbers(report, flags.csv_dir)) return Fail(*error);
+    std::fprintf(stderr, "numbers written to %s\n", flags.csv_dir.c_str());
   }
-  if (FLAGS_html_out.empty()) return kDone;
-  if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
-  std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
+  if (flags.html_out.empty()) return kDone;
+  if (MaybeError error = WriteFileAtomically(flags.html_out, ToPage(report))) return Fail(*error);
+  std::fprintf(stderr, "report written to %s\n", flags.html_out.c_str());
   if (recordings.value().empty()) {
     Warn("without --recordings the report shows no motion and no figure");
   }
@@ -64,21 +53,18 @@ int WriteWhole(const FittedModel& model) {
 }
 
 int Run() {
-  if (MaybeError missing =
-          Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
-    return Fail(*missing);
-  }
-  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
+  const Result<ReportFlags> read = ReportFlagsFromCommandLine();
+  if (!read.ok()) return Fail(read.error());
+  const ReportFlags& flags = read.value();
+  const Result<FittedModel> model = ReadFittedModel(flags.model);
   if (!model.ok()) return Fail(model.error());
-  if (!FLAGS_truth.empty()) {
-    const Result<std::map<std::string, double>> truth = ReadTruth(FLAGS_truth);
+  if (!flags.truth.empty()) {
+    const Result<std::map<std::string, double>> truth = ReadTruth(flags.truth);
     if (!truth.ok()) return Fail(truth.error());
     std::printf("%s", TruthTable(model.value().fit, truth.value()).c_str());
     return kDone;
   }
-  if (FLAGS_text || !FLAGS_html_out.empty() || !FLAGS_csv_dir.empty()) {
-    return WriteWhole(model.value());
-  }
+  if (flags.whole()) return WriteWhole(flags, model.value());
   std::printf("%s", ReportText(model.value()).c_str());
   return kDone;
 }

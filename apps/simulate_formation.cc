@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/flags/formation_bodies_flags.h"
+#include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
+#include "apps/flags/formation_output_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/support/app_support.h"
-#include "apps/support/output_folder.h"
+#include "apps/simulate_formation_bodies.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
@@ -17,51 +17,22 @@
 #include "ident/formations/formation_run.h"
 #include "models/self_network.h"
 
-DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");
-DEFINE_string(forces_out, "", "formation: net forces, one row a frame, person and part (CSV)");
-DEFINE_string(bvh_out, "",
-              "formation: folder for the pendulums as BVH, with manifest.json and the pushes");
-DEFINE_string(svg_out, "",
-              "formation: picture of the wave (SVG): time across, person down, colour speed");
-DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
-
-DEFINE_string(as_setting, "",
-              "formation: with the parameters of this setting, where the model has them by setting "
-              "(default: the shared ones)");
-
 namespace pushid {
 namespace {
 
-MaybeError CheckOutputs(int people) {
-  if (!FLAGS_svg_out.empty() && people > kMostPeopleInWave) {
-    return Error{"--svg_out shows at most " + std::to_string(kMostPeopleInWave) +
-                 " people; leave it out or lower --people"};
-  }
-  if (!FLAGS_forces_svg_out.empty() && people > kMostPeopleInForces) {
-    return Error{"--forces_svg_out shows at most " + std::to_string(kMostPeopleInForces) +
-                 " people; leave it out or lower --people"};
-  }
-  for (const std::string& file :
-       {FLAGS_csv_out, FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out}) {
-    if (file.empty()) continue;
-    if (MaybeError error = CheckWritable(file)) return error;
-  }
-  if (FLAGS_bvh_out.empty()) return std::nullopt;
-  return CheckOutputFolder("bvh_out", FLAGS_bvh_out);
-}
-
-MaybeError WriteOutputs(const FormationRun& run, const std::string& title) {
+MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
+                        const std::string& title) {
   MaybeError error;
-  if (!FLAGS_bvh_out.empty()) error = WriteFormationRecording(FLAGS_bvh_out, run);
-  if (!error && !FLAGS_csv_out.empty()) {
-    error = WriteTrajectoryCsv(FLAGS_csv_out, run.recording, run.prediction);
+  if (!outputs.bvh_out.empty()) error = WriteFormationRecording(outputs.bvh_out, run);
+  if (!error && !outputs.csv_out.empty()) {
+    error = WriteTrajectoryCsv(outputs.csv_out, run.recording, run.prediction);
   }
-  if (!error && !FLAGS_forces_out.empty()) error = WriteForcesCsv(FLAGS_forces_out, run);
-  if (!error && !FLAGS_svg_out.empty()) {
-    error = WriteFileAtomically(FLAGS_svg_out, WaveSvg(run, title));
+  if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
+  if (!error && !outputs.svg_out.empty()) {
+    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title));
   }
-  if (!error && !FLAGS_forces_svg_out.empty()) {
-    error = WriteFileAtomically(FLAGS_forces_svg_out, ForcesSvg(run, title));
+  if (!error && !outputs.forces_svg_out.empty()) {
+    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title));
   }
   return error;
 }
@@ -145,7 +116,7 @@ int LeftDomain(const RolloutStatus& status, double dt) {
   return kFitFailed;
 }
 
-// Takes the parameters of the named setting for everybody.
+// Takes the parameters of the named setting for every person.
 MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (setting.empty()) return std::nullopt;
   const auto found = model->by_unit.find(setting);
@@ -157,46 +128,44 @@ MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (model->pool_by == PoolBy::kSetting) {
     for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
   }
-  return Error{"--as_setting names '" + setting + "'; " + FLAGS_model + " knows " +
+  return Error{"--as_setting names '" + setting + "'; " + model->source + " knows " +
                (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 
 }  // namespace
 
 int SimulateFormation() {
-  if (MaybeError missing = Require(
-          "model", FLAGS_model, "--formation rolls out a file that pushid-fit --model_out wrote")) {
+  if (MaybeError missing =
+          RequireModel("--formation rolls out a file that pushid-fit --model_out wrote")) {
     return Fail(*missing);
   }
-  for (const char* flag : {"out", "recordings_per_person", "frames", "noise", "push_kind",
-                           "recording_spread", "subject_spread", "seed"}) {
-    if (Given(flag)) {
-      return Fail(std::string("--") + flag + " belongs to recordings of single people, not to " +
-                  "--formation");
-    }
-  }
-  Result<FormationPlan> plan = PlanOfFlags();
-  if (!plan.ok()) return Fail(plan.error());
+  Result<FormationFlags> flags = FormationFlagsFromCommandLine();
+  if (!flags.ok()) return Fail(flags.error());
+  Scene& scene = flags.value().scene;
+  const std::string& title = flags.value().title;
+  const Result<FormationOutputs> outputs = FormationOutputsFromCommandLine(scene.num_people());
+  if (!outputs.ok()) return Fail(outputs.error());
+  const Result<FormationBodyFlags> body_flags = FormationBodyFlagsFromCommandLine();
+  if (!body_flags.ok()) return Fail(body_flags.error());
+
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
-  const auto bodies = PlanBodies(RodMoves(model.value().options), &plan.value().scene);
+  const auto bodies = PlanBodies(body_flags.value(), RodMoves(model.value().options), &scene);
   if (!bodies.ok()) return Fail(bodies.error());
-  if (MaybeError error = ActAsIn(FLAGS_as_setting, &model.value())) return Fail(*error);
-  if (MaybeError error = CheckOutputs(plan.value().scene.num_people())) return Fail(*error);
-  if (!model.value().options.interaction.Any() && plan.value().scene.num_people() > 1) {
-    Warn(FLAGS_model +
+  if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);
+  if (!model.value().options.interaction.Any() && scene.num_people() > 1) {
+    Warn(model.value().source +
          " was fitted without interaction: people will not touch; fit one with "
          "pushid-fit --setting=groups --interaction=contact");
   }
-  const FormationRun run = RunFormation(model.value(), plan.value().scene, plan.value().frames);
-  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, plan.value().scene.dt);
-  if (MaybeError error = WriteOutputs(run, plan.value().title)) return Fail(*error);
-  if (bodies.value()) {
-    const MaybeError error = WriteFormationBodies(run, *bodies.value(), plan.value().title);
-    if (error) return Fail(*error);
+  const FormationRun run = RunFormation(model.value(), scene, flags.value().frames);
+  if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
+  MaybeError error = WriteOutputs(outputs.value(), run, title);
+  if (!error && bodies.value()) {
+    error = WriteFormationBodies(body_flags.value(), *bodies.value(), run, title);
   }
-  std::printf("%s; %s s\n", plan.value().title.c_str(),
-              Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
+  if (error) return Fail(*error);
+  std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);
   PrintWave(run);
   return kDone;

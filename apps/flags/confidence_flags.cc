@@ -6,11 +6,12 @@
 #include <cstring>
 #include <sstream>
 
+#include "apps/flags/command_line.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "ident/report/design_text.h"
 #include "ident/results/confidence.h"
-#include "ident/validation/experiment_design.h"
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "

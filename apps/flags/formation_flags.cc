@@ -1,11 +1,14 @@
 // apps: flags to a scene.
 #include "apps/flags/formation_flags.h"
 
+#include <gflags/gflags.h>
+
 #include <cmath>
 #include <set>
 #include <sstream>
 
-#include "apps/support/app_support.h"
+#include "apps/flags/command_line.h"
+#include "apps/flags/formation_output_flags.h"
 #include "datasets/files/number_text.h"
 
 DECLARE_int32(people);
@@ -25,11 +28,15 @@ DEFINE_string(
     push, "80",
     "formation: pushes at the hip along +x, comma-separated, N s or N s@start in s, as in "
     "80@0,80@1,112@2; every push acts on everybody of --pushed");
-DEFINE_double(push_duration, 0.2, "formation: of every push, a half-sine, s");
+DEFINE_double(push_duration, pushid::HipPush{}.duration,
+              "formation: of every push, a half-sine, s");
 DEFINE_double(mass, 80.0, "formation: of everybody, kg");
 DEFINE_double(rod_length, pushid::kReferenceRod,
               "formation: rod from ankles to hip, of everybody, m");
 DEFINE_double(duration, 0.0, "formation: how long, s; 0: until 6 s after the last push");
+DEFINE_string(as_setting, "",
+              "formation: with the parameters of this setting, where the model has them by setting "
+              "(default: the shared ones)");
 
 namespace pushid {
 namespace {
@@ -132,26 +139,53 @@ std::string Title(const std::vector<HipPush>& pushes) {
   return text.str();
 }
 
+// Flags of recordings of single people would be taken and do nothing.
+MaybeError CheckNoneOfRecordings() {
+  for (const char* flag : {"out", "recordings_per_person", "frames", "noise", "push_kind",
+                           "recording_spread", "subject_spread", "seed"}) {
+    if (!Given(flag)) continue;
+    return Error{std::string("--") + flag +
+                 " belongs to recordings of single people, not to --formation"};
+  }
+  return std::nullopt;
+}
+
+int NumFrames(const Scene& scene) {
+  const double seconds =
+      FLAGS_duration > 0.0 ? FLAGS_duration : scene.LastPushEnd() * scene.dt + kWatchSeconds;
+  return static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
+}
+
+MaybeError CheckFrames(int frames, const std::vector<HipPush>& pushes) {
+  if (frames < 3) return Error{"--duration is shorter than two frames"};
+  for (const HipPush& push : pushes) {
+    if (std::lround(push.start * FLAGS_fps) < frames - 1) continue;
+    std::ostringstream text;
+    text << "--duration ends at " << FLAGS_duration << " s, before the push of " << push.impulse
+         << " N s at " << push.start << " s; lengthen it, or leave the push out";
+    return Error{text.str()};
+  }
+  if (static_cast<double>(frames) * FLAGS_people > kMostPersonFrames) {
+    return Error{std::to_string(FLAGS_people) + " people over " + std::to_string(frames) +
+                 " frames are too many; lower --people, --duration or --fps"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+bool FormationGiven() { return !FLAGS_formation.empty(); }
 
 const char* GivenFormationFlag() {
   for (const char* flag : {"spacing", "pushed", "push", "push_duration", "mass", "rod_length",
-                           "duration", "as_setting", "csv_out", "forces_out", "bvh_out", "svg_out",
-                           "forces_svg_out", "restoration"}) {
+                           "duration", "as_setting"}) {
     if (Given(flag)) return flag;
   }
-  return nullptr;
+  return GivenFormationOutput();
 }
 
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return std::nullopt;
-  std::ostringstream text;
-  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
-       << highest;
-  return Error{text.str()};
-}
-
-Result<FormationPlan> PlanOfFlags() {
+Result<FormationFlags> FormationFlagsFromCommandLine() {
+  if (MaybeError error = CheckNoneOfRecordings()) return *error;
   const Result<FormationShape> shape = Shape();
   if (!shape.ok()) return shape.error();
   if (MaybeError error = CheckNumbers()) return *error;
@@ -160,30 +194,17 @@ Result<FormationPlan> PlanOfFlags() {
   const Result<std::vector<HipPush>> pushes = Pushes();
   if (!pushes.ok()) return pushes.error();
 
-  FormationPlan plan;
-  plan.title = Title(pushes.value());
-  plan.scene = FormationScene(FormationPositions(shape.value(), FLAGS_people, FLAGS_spacing),
-                              {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
+  FormationFlags flags;
+  flags.title = Title(pushes.value());
+  flags.as_setting = FLAGS_as_setting;
+  flags.scene = FormationScene(FormationPositions(shape.value(), FLAGS_people, FLAGS_spacing),
+                               {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
   for (const HipPush& push : pushes.value()) {
-    for (int person : pushed.value()) AddHipPush(person, push, &plan.scene);
+    for (int person : pushed.value()) AddHipPush(person, push, &flags.scene);
   }
-  const double seconds = FLAGS_duration > 0.0
-                             ? FLAGS_duration
-                             : plan.scene.LastPushEnd() * plan.scene.dt + kWatchSeconds;
-  plan.frames = static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
-  if (plan.frames < 3) return Error{"--duration is shorter than two frames"};
-  for (const HipPush& push : pushes.value()) {
-    if (std::lround(push.start * FLAGS_fps) < plan.frames - 1) continue;
-    std::ostringstream text;
-    text << "--duration ends at " << seconds << " s, before the push of " << push.impulse
-         << " N s at " << push.start << " s; lengthen it, or leave the push out";
-    return Error{text.str()};
-  }
-  if (static_cast<double>(plan.frames) * FLAGS_people > kMostPersonFrames) {
-    return Error{std::to_string(FLAGS_people) + " people over " + std::to_string(plan.frames) +
-                 " frames are too many; lower --people, --duration or --fps"};
-  }
-  return plan;
+  flags.frames = NumFrames(flags.scene);
+  if (MaybeError error = CheckFrames(flags.frames, pushes.value())) return *error;
+  return flags;
 }
 
 }  // namespace pushid

@@ -1,31 +1,27 @@
 // apps: the flags that describe a formation and the pushes on it.
 #pragma once
 
-#include <gflags/gflags.h>
-
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "models/formation.h"
 
-DECLARE_string(formation);
-
 namespace pushid {
 
-struct FormationPlan {
+struct FormationFlags {
   std::string title;  // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
-  Scene scene;
+  Scene scene;        // people and pushes
   int frames = 0;
+  std::string as_setting;  // whose parameters all people have; empty: the shared ones
 };
-
 // Errors name the flag.
-Result<FormationPlan> PlanOfFlags();
+Result<FormationFlags> FormationFlagsFromCommandLine();
+
+// Whether --formation is given.
+bool FormationGiven();
 
 // The first given flag that means nothing without --formation; nullptr when there is none.
 const char* GivenFormationFlag();
-
-// "--spacing is -1; it must lie between ...". Written so that NaN fails.
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
 
 }  // namespace pushid

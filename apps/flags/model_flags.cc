@@ -1,7 +1,9 @@
 // apps: loading what --model names.
 #include "apps/flags/model_flags.h"
 
-#include "apps/support/app_support.h"
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
 #include "ident/results/result_json.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
@@ -9,11 +11,12 @@ DEFINE_string(set, "", "what-if: parameters replaced, name=value comma-separated
 
 namespace pushid {
 
+ModelFlags ModelFlagsFromCommandLine() { return {FLAGS_model, FLAGS_set}; }
+
+MaybeError RequireModel(const std::string& why) { return Require("model", FLAGS_model, why); }
+
 Result<IdentifiedModel> LoadFlaggedModel() {
-  if (MaybeError missing =
-          Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
-    return *missing;
-  }
+  if (MaybeError missing = RequireModel()) return *missing;
   const Result<FittedModel> read = ReadFittedModel(FLAGS_model);
   if (!read.ok()) return read.error();
   IdentifiedModel model = ModelOf(read.value().fit);

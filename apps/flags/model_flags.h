@@ -1,15 +1,22 @@
 // apps: the flags by which an executable takes an identified model.
 #pragma once
 
-#include <gflags/gflags.h>
+#include <string>
 
 #include "datasets/files/error.h"
 #include "ident/results/fit_result.h"
 #include "ident/results/identified_model.h"
 
-DECLARE_string(model);
-
 namespace pushid {
+
+struct ModelFlags {
+  std::string file;  // that pushid-fit --model_out wrote
+  std::string set;   // what-if values, name=value comma-separated
+};
+ModelFlags ModelFlagsFromCommandLine();
+
+// Whether --model is given; `why` says what it must name, or what needs it.
+MaybeError RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote");
 
 // The model of --model with the values of --set.
 Result<IdentifiedModel> LoadFlaggedModel();

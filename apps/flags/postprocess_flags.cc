@@ -1,7 +1,9 @@
 // apps: --postprocess.
-#include <sstream>
+#include "apps/flags/postprocess_flags.h"
 
-#include "apps/flags/restoration_flags.h"
+#include <gflags/gflags.h>
+
+#include <sstream>
 
 DEFINE_string(postprocess, "fade,bones,feet",
               "what makes restored bodies fit: fade (begin at the first pose), bones (keep their "
@@ -9,7 +11,7 @@ DEFINE_string(postprocess, "fade,bones,feet",
 
 namespace pushid {
 
-Result<PostprocessOptions> PostprocessOfFlags() {
+Result<PostprocessOptions> PostprocessFromCommandLine() {
   PostprocessOptions options;
   options.fade_residual = options.keep_bones = options.lock_feet = false;
   if (FLAGS_postprocess == "none") return options;

@@ -3,23 +3,23 @@
 
 #include <sstream>
 
-#include "apps/support/app_support.h"
+#include "apps/flags/command_line.h"
 #include "apps/support/overwrite_check.h"
 
 DEFINE_string(recordings, "", "manifest.json of the recordings");
-DEFINE_string(setting, "all",
+DEFINE_string(setting, pushid::LoadOptions{}.setting,
               "which recordings: settings of the manifest, comma-separated; groups (more than one "
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
 DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
 DEFINE_string(length_unit, "",
               "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
-DEFINE_double(max_gap_s, 0.1,
+DEFINE_double(max_gap_s, pushid::PreparationOptions{}.max_gap_s,
               "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
-DEFINE_double(lowpass_hz, 0.0,
+DEFINE_double(lowpass_hz, pushid::PreparationOptions{}.lowpass_hz,
               "zero-phase Butterworth low-pass of all positions (second order, forwards and "
               "backwards), cut-off in Hz; 0: none");
-DEFINE_double(resample_fps, 0.0,
+DEFINE_double(resample_fps, pushid::PreparationOptions{}.resample_fps,
               "resample motion and pushes to this many frames per second; 0: as recorded");
 
 namespace pushid {
@@ -49,6 +49,11 @@ Result<LoadOptions> LoadOptionsOfFlags() {
 }
 
 }  // namespace
+
+RecordingFlags RecordingFlagsFromCommandLine() {
+  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
+  return {FLAGS_recordings, FLAGS_setting, chosen};
+}
 
 MaybeError CheckRecordingFlags() {
   const Result<LoadOptions> options = LoadOptionsOfFlags();

@@ -11,9 +11,15 @@
 
 DECLARE_string(recordings);
 DECLARE_string(setting);
-DECLARE_string(ids);
 
 namespace pushid {
+
+struct RecordingFlags {
+  std::string manifest;  // manifest.json of the recordings
+  std::string setting;   // which of them, as LoadOptions has it
+  bool chosen = false;   // by setting or id: not simply all of the manifest
+};
+RecordingFlags RecordingFlagsFromCommandLine();
 
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
 // `warnings` too. Other ids than the flags' may be asked for, and all joints instead of hip and

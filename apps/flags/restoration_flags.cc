@@ -1,6 +1,9 @@
 // apps: loading what --restoration names.
 #include "apps/flags/restoration_flags.h"
 
+#include <gflags/gflags.h>
+
+#include "apps/flags/postprocess_flags.h"
 #include "ident/bodies/restoration_files.h"
 
 DEFINE_string(restoration, "",
@@ -8,13 +11,29 @@ DEFINE_string(restoration, "",
 
 namespace pushid {
 
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(bool rod_moves) {
+Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise) {
+  RestorationFlags flags;
+  flags.name = FLAGS_restoration.empty() ? otherwise : FLAGS_restoration;
+  if (!flags.given()) return flags;
+  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
+  if (!postprocess.ok()) return postprocess.error();
+  flags.postprocess = postprocess.value();
+  return flags;
+}
+
+Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
+                                                            bool rod_moves) {
   if (rod_moves) {
     return Error{
-        "the model's rod moves, and bodies hang on rods of constant length; fit one with "
+        "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
         "--rod=constant for --restoration"};
   }
-  return LoadRestoration(FLAGS_restoration);
+  return LoadRestoration(flags.name);
+}
+
+Error NeedsRestoration(const std::string& flag) {
+  return Error{"--" + flag +
+               " needs bodies: name the folder of pushid-train-restoration by --restoration"};
 }
 
 }  // namespace pushid

@@ -1,23 +1,30 @@
 // apps: the flags by which an executable takes a restoration.
 #pragma once
 
-#include <gflags/gflags.h>
-
 #include <memory>
+#include <string>
 
 #include "datasets/files/error.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
-DECLARE_string(restoration);
-
 namespace pushid {
 
-// What --restoration names, for a model whose rod moves or does not: bodies hang on rods of
-// constant length.
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(bool rod_moves);
+struct RestorationFlags {
+  std::string name;  // folder of pushid-train-restoration, or rigid; empty: no bodies
+  PostprocessOptions postprocess;
 
-// What --postprocess lists.
-Result<PostprocessOptions> PostprocessOfFlags();
+  bool given() const { return !name.empty(); }
+};
+
+// Without --restoration, `otherwise` is taken.
+Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise = "");
+
+// For a model whose rod moves or does not: bodies are carried by rods of constant length.
+Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
+                                                            bool rod_moves);
+
+// "--joints_out needs bodies: name the folder ...".
+Error NeedsRestoration(const std::string& flag);
 
 }  // namespace pushid

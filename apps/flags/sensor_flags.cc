@@ -1,16 +1,12 @@
-// apps: pushes from force sensors.
+// apps: force sensors by flag.
 #include "apps/flags/sensor_flags.h"
 
 #include <gflags/gflags.h>
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
-#include "apps/support/app_support.h"
-#include "apps/support/overwrite_check.h"
-#include "datasets/files/number_text.h"
-#include "ident/push/sensor_offset.h"
+#include "apps/flags/command_line.h"
 
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
@@ -19,27 +15,30 @@ DEFINE_string(sensors, "", "several force sensors that push together: a JSON lis
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
-DEFINE_double(sensor_gain, 1.0, "force sensor: N per unit of the column");
+DEFINE_double(sensor_gain, pushid::SensorChoice{}.gain, "force sensor: N per unit of the column");
 DEFINE_string(
     sensor_up, "",
     "force sensor: its axis that points up, for vectors; empty: that of the motion when it "
     "is the same file, otherwise z");
-DEFINE_double(sensor_zero, 0.0,
+DEFINE_double(sensor_zero, pushid::SensorChoice{}.zero_n,
               "force sensor: what it reads at rest, in N, taken off; for sensors of one number");
 DEFINE_string(sensor_forward, "",
               "force sensor: its axis that points forward, for vectors; empty: that of the motion, "
               "or x");
 DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the person, x,y,z");
-DEFINE_double(height, 1.0, "force sensor: contact height as a fraction of the rod (1: the hip)");
+DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
+              "force sensor: contact height as a fraction of the rod (1: the hip)");
 DEFINE_double(height_m, 0.0,
               "force sensor: contact height in m above the recording's zero instead");
 DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; unless given, that of the motion when it is "
               "the same file, otherwise 0");
-DEFINE_double(idle_force, 0.0, "force sensor: forces up to this many N are idling");
-DEFINE_bool(estimate_offset, false,
+DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
+              "force sensor: forces up to this many N are idling");
+DEFINE_bool(estimate_offset, pushid::SensorFlags{}.estimate_offset,
             "force sensors: estimate how far their clocks are off from the motion");
-DEFINE_double(max_offset_s, 0.5, "how far --estimate_offset looks on either side, s");
+DEFINE_double(max_offset_s, pushid::SensorFlags{}.max_offset_s,
+              "how far --estimate_offset looks on either side, s");
 
 namespace pushid {
 namespace {
@@ -71,39 +70,6 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   return std::vector<SensorChoice>{sensor};
 }
 
-constexpr double kOddGain = 3.0;  // beyond what friction and recovery blur
-
-// Rows of several pushes on one person, added frame by frame.
-void AddPush(const Push& more, Push* sum) {
-  if (sum->force.empty()) {
-    *sum = more;
-    return;
-  }
-  const int start = std::min(sum->start_frame, more.start_frame);
-  const int end = std::max(sum->EndFrame(), more.EndFrame());
-  std::vector<Eigen::Vector4d> force(end - start, Eigen::Vector4d::Zero());
-  for (const Push* push : {static_cast<const Push*>(sum), &more}) {
-    for (std::size_t i = 0; i < push->force.size(); ++i) {
-      force[push->start_frame - start + i] += push->force[i];
-    }
-  }
-  sum->force = std::move(force);
-  sum->start_frame = start;
-}
-
-// As PushFromSensor takes it, but for the offset: vectors along the direction.
-TimedForce AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
-  TimedForce timed{record, sensor.start_s.value_or(0.0)};
-  if (record.is_vector) return timed;
-  const Eigen::Vector3d along = sensor.direction.normalized();
-  for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
-  return timed;
-}
-
-}  // namespace
-
-bool SensorGiven() { return !FLAGS_sensor.empty() || !FLAGS_sensors.empty(); }
-
 MaybeError CheckSensorFlags() {
   if (!FLAGS_sensor.empty() && !FLAGS_sensors.empty()) {
     return Error{"give --sensor or --sensors, not both"};
@@ -131,64 +97,22 @@ MaybeError CheckSensorFlags() {
   return std::nullopt;
 }
 
-Result<SensorPush> PushFromSensors(const Recording& recorded, const PendulumRecording& recording,
-                                   int person) {
-  Result<std::vector<SensorChoice>> sensors = SensorsFromFlags();
-  if (!sensors.ok()) return sensors.error();
-  SensorPush result;
-  std::vector<SensorRecord> records;
-  std::vector<TimedForce> timed;
-  for (SensorChoice& sensor : sensors.value()) {
-    if (MaybeError error = CheckNoOutput("--sensors", sensor.file)) return *error;
-    for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
-    Result<SensorRecord> record = ReadSensor(sensor);
-    if (!record.ok()) return record.error();
-    timed.push_back(AsVectors(record.value(), sensor));
-    records.push_back(std::move(record.value()));
+}  // namespace
+
+bool SensorGiven() { return !FLAGS_sensor.empty() || !FLAGS_sensors.empty(); }
+
+Result<SensorFlags> SensorFlagsFromCommandLine() {
+  if (MaybeError error = CheckSensorFlags()) return *error;
+  SensorFlags flags;
+  if (SensorGiven()) {
+    Result<std::vector<SensorChoice>> sensors = SensorsFromFlags();
+    if (!sensors.ok()) return sensors.error();
+    flags.sensors = std::move(sensors.value());
   }
-  result.how = records.size() == 1 ? "from the sensor, averaged over the frames"
-                                   : "from " + std::to_string(records.size()) +
-                                         " sensors together, averaged over the frames";
-  for (const SensorChoice& sensor : sensors.value()) {
-    if (!sensor.start_s || Given("sensor_start") || !FLAGS_sensors.empty()) continue;
-    result.how +=
-        "; recorded with the motion, its clock at frame 0 is " + Rounded(*sensor.start_s, 4) + " s";
-  }
-  double offset_s = 0.0, clock_error_s = 0.0;
-  if (FLAGS_estimate_offset) {
-    const Result<SensorOffset> offset =
-        EstimateSensorOffset(timed, recording, person, FLAGS_max_offset_s);
-    if (!offset.ok()) return offset.error();
-    offset_s = offset.value().offset_s;
-    clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
-    const double gain = offset.value().gain;
-    if (gain < 1.0 / kOddGain || gain > kOddGain) {
-      result.warnings.push_back("the motion fits " + Rounded(gain, 2) +
-                                " times the force best: check its unit and gain, and the mass");
-    }
-    result.how += "; clock at frame 0 moved by " + Rounded(offset_s, 4) + " +- " +
-                  Rounded(offset.value().standard_error_s, 2) + " s (estimated)";
-  }
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    const SensorChoice& sensor = sensors.value()[i];
-    SensorPushOptions options;
-    options.person = person;
-    options.direction = sensor.direction;
-    options.height_fraction = sensor.height_fraction;
-    options.height_m = sensor.height_m ? sensor.height_m : records[i].height_m;
-    options.clock_error_s = clock_error_s;
-    options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset_s;
-    options.idle_force = sensor.idle_force;
-    const Result<Push> push = PushFromSensor(records[i], recording, options);
-    if (!push.ok()) return push.error();
-    if (records[i].height_m && *records[i].height_m < 0.1) {
-      result.warnings.push_back(sensor.file + ": " + sensor.column +
-                                " lies on the floor: what it measures is the ground's force on "
-                                "the person who stands there, which is no push");
-    }
-    AddPush(push.value(), &result.push);
-  }
-  return result;
+  flags.start_given = Given("sensor_start") || !FLAGS_sensors.empty();
+  flags.estimate_offset = FLAGS_estimate_offset;
+  flags.max_offset_s = FLAGS_max_offset_s;
+  return flags;
 }
 
 }  // namespace pushid

@@ -27,8 +27,8 @@ struct Animation {
   int num_frames() const;
 };
 
-// Everybody's pendulum and forces of a prediction, with bodies where given (one per person, or
-// none).
+// The pendulums and forces of all people of a prediction, with bodies where given (one per person,
+// or none).
 void AddPrediction(const PendulumRecording& recording, const Prediction& prediction,
                    const std::vector<BodyMotion>& bodies, Animation* animation);
 void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,

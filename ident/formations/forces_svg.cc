@@ -1,4 +1,4 @@
-// ident: the picture of what acts on whom.
+// ident: the picture of the forces on each person.
 #include <algorithm>
 #include <cmath>
 #include <map>

@@ -14,12 +14,12 @@ namespace pushid {
 // floor.
 Pose SyntheticPose(double rod_length);
 
-// First poses of everybody in recordings, in their order.
+// First poses of all people in recordings, in their order.
 std::vector<Pose> FirstPoses(const std::vector<BodyRecording>& recordings);
 
 // Puts poses (in turn, should there be fewer than people) where the formation's people stand,
 // facing +x, and gives those people the pendulum that goes with the pose: rod length, cart height
-// and lean. Masses and pushes stay. Returns everybody's first pose.
+// and lean. Masses and pushes stay. Returns the first pose of each person.
 std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene);
 
 // Restored and post-processed, one motion per person. first_poses: as TakePoses returned them.

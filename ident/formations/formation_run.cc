@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/prediction/propagation.h"
-#include "ident/problem/behaviour.h"
+#include "ident/problem/behaviour_text.h"
 
 namespace pushid {
 namespace {
@@ -64,13 +64,13 @@ PersonSummary Summarize(const FormationRun& run, int person) {
 std::string_view Name(Outcome outcome) {
   switch (outcome) {
     case Outcome::kSettled:
-      return "settled";
+      return kSettledText;
     case Outcome::kUnmoved:
       return "unmoved";
     case Outcome::kSlow:
-      return "slow to settle";
+      return kSlowToSettleText;
     case Outcome::kFell:
-      return "fell";
+      return kFellText;
     case Outcome::kNotJudged:
       return "not judged";
   }
@@ -78,11 +78,11 @@ std::string_view Name(Outcome outcome) {
 }
 
 std::string OutcomeLegend() {
-  return "outcome: judged " + Rounded(kWaitSeconds, 4) +
-         " s after the last push, or after the onset where that is later; settled: slower than " +
-         Rounded(kSettledSpeed, 4) + " m/s\nand within " + Rounded(kSettledLean, 4) +
-         " rad of the rest posture then; slow to settle: not yet. fell: at any time. displaced: at "
-         "the end of the run\n";
+  return "outcome: judged " + WaitText() +
+         " after the last push, or after the onset where that is later; " + kSettledText +
+         ": slower than " + Rounded(kSettledSpeed, 4) + " m/s\nand within " +
+         Rounded(kSettledLean, 4) + " rad of the rest posture then; " + kSlowToSettleText +
+         ": not yet. " + kFellText + ": at any time. displaced: at the end of the run\n";
 }
 
 std::vector<ForcePart> ActingParts(const FormationRun& run) {

@@ -13,9 +13,9 @@
 
 namespace pushid {
 
-// What became of a person, judged two seconds after the last push, or after the onset where the
-// push arrives later than it ends: whom it has not reached yet has not settled. Never at the end of
-// the run: who was slow to settle may have settled by then.
+// The state of a person two seconds after the last push, or after the person's onset where that is
+// later: a person whom the push has not reached yet has not settled. It is never judged at the end
+// of the run, when a person who was slow to settle may have settled.
 enum class Outcome {
   kSettled,   // slower than 0.1 m/s and within 0.05 rad of the rest posture
   kUnmoved,   // no onset

@@ -53,10 +53,8 @@ std::string AtRest(const SensorRecord& record) {
   return ", or take off what it reads at rest, about " + Rounded(*middle, 3) + " N (--sensor_zero)";
 }
 
-}  // namespace
-
-Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
-                            const SensorPushOptions& options) {
+MaybeError CheckOptions(const SensorRecord& record, const PendulumRecording& recording,
+                        const SensorPushOptions& options) {
   if (options.person < 0 || options.person >= recording.num_people()) {
     return Wrong(recording, "there is no person " + std::to_string(options.person));
   }
@@ -69,7 +67,38 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
     return Error{"contact height and the time of frame 0 must be finite numbers"};
   }
   if (record.num_samples() < 2) return Error{"the record has no force samples", record.file};
+  return std::nullopt;
+}
 
+// A push that lies outside the recording, or is no greater than the idling. `empty`: no row holds
+// more than that.
+MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& recording,
+                           const SensorPushOptions& options, bool empty) {
+  const double zero = options.frame_zero_time_s, margin = options.clock_error_s;
+  const double end = zero + (recording.num_frames() - 1) * recording.scene.dt;
+  const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
+  const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
+  const Vector3<double> inside = Impulse(record, zero, end);
+  // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
+  const double span = record.time_s.back() - record.time_s.front();
+  const double lost = before.norm() + after.norm() - options.idle_force * span;
+  if (lost > kLostImpulse * inside.norm() || (empty && lost > 0.0)) {
+    return Error{Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
+                     Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
+                     " s of the sensor's clock; check that time" + AtRest(record),
+                 record.file};
+  }
+  if (!empty) return std::nullopt;
+  return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
+                   recording.id,
+               record.file};
+}
+
+}  // namespace
+
+Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
+                            const SensorPushOptions& options) {
+  if (MaybeError error = CheckOptions(record, recording, options)) return *error;
   // Row by row, then without the idle rows at both ends.
   const double dt = recording.scene.dt, zero = options.frame_zero_time_s;
   std::vector<Vector3<double>> rows;
@@ -79,26 +108,9 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   const auto idle = [&](const Vector3<double>& row) { return !(row.norm() > options.idle_force); };
   const auto first = std::find_if_not(rows.begin(), rows.end(), idle);
   const auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
-  const double end = zero + static_cast<double>(rows.size()) * dt;
-  const double margin = options.clock_error_s;
-  const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
-  const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
-  const Vector3<double> inside = Impulse(record, zero, end);
-  // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
-  const double span = record.time_s.back() - record.time_s.front();
-  const double lost = before.norm() + after.norm() - options.idle_force * span;
-  if (lost > kLostImpulse * inside.norm() || (first == rows.end() && lost > 0.0)) {
-    return Error{Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
-                     Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
-                     " s of the sensor's clock; check that time" + AtRest(record),
-                 record.file};
+  if (MaybeError error = CheckPushInside(record, recording, options, first == rows.end())) {
+    return *error;
   }
-  if (first == rows.end()) {
-    return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
-                     recording.id,
-                 record.file};
-  }
-
   Push push;
   push.person = options.person;
   push.start_frame = static_cast<int>(first - rows.begin());
@@ -108,6 +120,7 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   const double fraction = options.height_m
                               ? HeightFraction(body, states[push.start_frame].q, *options.height_m)
                               : options.height_fraction;
+  const double length = options.direction.norm();
   for (auto row = first; row != last; ++row) {
     const Vector4<double>& q = states[row - rows.begin()].q;
     const Vector3<double> force =

@@ -6,6 +6,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/parameters/self_network_io.h"
+#include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
 #include "ident/results/interval_agreement.h"
 
@@ -18,6 +19,7 @@ constexpr double kDisagreement = 1.5;    // of interval widths
 constexpr int kFewRecordings = 10;
 constexpr double kPushDependence = 0.15;  // mean correlation that is more than a detail
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
+constexpr double kModeWeight = 30.0;
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
@@ -46,6 +48,7 @@ class Adviser {
   }
   // More of it than the fit had.
   FitCommand SettleHarder(double weight) const;
+  FitCommand DecayingModes() const;
   void Solver();
   void Identifiability();
   void Person();
@@ -72,21 +75,21 @@ void Adviser::Solver() {
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
     if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-      Add("The law of the rod moves no rod; leave it out.", Same().Set("rod", "constant"));
+      Add("The law of the rod has no effect; leave it out.", Same().Set("rod", "constant"));
       continue;
     }
-    Add("The data cannot say: " + n.sentence + ". Hold one of them.",
+    Add("Not identifiable: " + n.sentence + ". Hold one of them.",
         Same().Append("fix", n.parameters.back()));
   }
   for (const Estimate& e : result_.estimates) {
     if (e.status == EstimateStatus::kAtBound) {
       Add(e.name +
-              " stands at its bound, so its error is unknown; see whether the data mind its "
-              "being held there.",
+              " is at its bound, so its error is unknown; see whether the fit gets worse "
+              "when it is held there.",
           Same().Append("fix", e.name + "=" + Rounded(e.value, 4)));
     }
     if (e.status == EstimateStatus::kWeak) {
-      Add(e.name + " is only weakly known; ask which further push would tell most about it.",
+      Add(e.name + " is only weakly identified; see which further push would lower its error most.",
           Same().Set("design", e.name));
     }
   }
@@ -112,20 +115,43 @@ FitCommand Adviser::SettleHarder(double weight) const {
   return Same().Set("settling_weight", Rounded(more, 6));
 }
 
-void Adviser::Person() {
-  if (RodRunsAway(result_)) {
-    Add("The rod runs away, and settling cannot hold it; see what is lost without it.",
-        Same().Set("rod", "constant"));
-  } else if (result_.behaviour.self_propelling) {
-    const bool tail = result_.options.model.push_tail == PushTail::kExponential;
-    Add(tail ? "The fitted person is self-propelling; hold the fit to people who settle."
-             : "The fitted person is self-propelling; let a push tail carry what the recorded push "
-               "leaves out.",
-        tail ? SettleHarder(kMuchSettling) : Same().Set("push_tail", "exponential"));
-  } else if (!result_.behaviour.settles) {
-    Add("The fitted person is slow to settle; see what holding it to settle costs.",
-        SettleHarder(kSomeSettling));
+FitCommand Adviser::DecayingModes() const {
+  const FitOptions& o = result_.options;
+  // The hinge on the modes sees no network.
+  if (o.model.self_network != nullptr) {
+    const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
+    return Same().Set("network_prior", Rounded(prior, 6));
   }
+  return Same().Set("mode_weight", Rounded(std::max(kModeWeight, 2.0 * o.mode_weight), 6));
+}
+
+void Adviser::Person() {
+  const FitOptions& o = result_.options;
+  const Verdict verdict = VerdictOf(result_.behaviour, o.model);
+  const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
+  const bool tail = o.model.push_tail == PushTail::kExponential;
+  switch (verdict) {
+    case Verdict::kSettles:
+      return;
+    case Verdict::kSlowToSettle:
+      return Add(sentence + "; see what holding it to settle costs.", SettleHarder(kSomeSettling));
+    case Verdict::kRodRunsAway:
+      return Add(sentence + "; see what is lost without a rod that moves.",
+                 Same().Set("rod", "constant"));
+    case Verdict::kSelfPropelling:
+      if (tail) return Add(sentence + "; hold it to settle.", SettleHarder(kMuchSettling));
+      break;
+    case Verdict::kUnstableThoughSettled:
+      if (tail) return Add(sentence + "; make the free modes decay.", DecayingModes());
+      break;
+    case Verdict::kNegativeDrag:
+      if (tail) {
+        return Add(sentence + "; see what is lost without it.", Same().Append("fix", "mu=0"));
+      }
+      break;
+  }
+  Add(sentence + "; let a push tail carry what the recorded push leaves out.",
+      Same().Set("push_tail", "exponential"));
 }
 
 void Adviser::People() {
@@ -156,7 +182,7 @@ void Adviser::Recordings() {
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
-            " recordings the clustered errors are themselves uncertain; record more, where the "
+            " recordings the clustered errors are uncertain too; record more, where the "
             "design says it helps.",
         Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }

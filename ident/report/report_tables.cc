@@ -7,40 +7,15 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
+#include "ident/problem/behaviour_text.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
-
-bool SettingsDiffer(const Behaviour& behaviour) {
-  return std::any_of(behaviour.simulations.begin(), behaviour.simulations.end(),
-                     [](const SettlingSimulation& d) { return !d.setting.empty(); });
-}
 
 namespace {
 
 std::string Interval(double lower, double upper) {
   return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
-}
-
-std::string SettlingText(const Behaviour& b) {
-  if (b.settles) {
-    const bool lines = std::any_of(b.simulations.begin(), b.simulations.end(),
-                                   [](const SettlingSimulation& d) { return d.people > 1; });
-    return std::string(
-               "after a push of 4, 25 and 80 N s, people of 60, 80 and 100 kg settle within "
-               "two seconds") +
-           (lines ? "; so do lines of five after 4, 20 and 80 N s\n" : "\n");
-  }
-  std::string text = "NOT SETTLING, two seconds after a push:\n";
-  for (const SettlingSimulation& d : b.simulations) {
-    if (d.settled) continue;
-    text += "  " + SettlingSimulationName(d, SettingsDiffer(b)) + ": " +
-            (d.fell ? "fell"
-                    : "still at " + Rounded(d.speed, 2) + " m/s, " + Rounded(d.lean, 2) +
-                          " rad from rest") +
-            "\n";
-  }
-  return text;
 }
 
 // Settings in which a harder push does not move the line on farther.
@@ -62,14 +37,6 @@ std::string NoFartherText(const Behaviour& b) {
 }
 
 }  // namespace
-
-std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ) {
-  const std::string who = d.people == 1 ? "" : std::to_string(d.people) + " people in a line, ";
-  const std::string where = !d.setting.empty() ? d.setting + ": "
-                            : settings_differ  ? "shared values: "
-                                               : "";
-  return where + who + Rounded(d.mass, 4) + " kg after " + Rounded(d.impulse, 4) + " N s";
-}
 
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
@@ -148,14 +115,12 @@ std::string CorrelationText(const FitResult& result) {
 
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
-  return SettlingText(b) + NoFartherText(b) +
-         "fastest free mode at rest: " + Rounded(b.fastest_growth, 3) + " 1/s (" +
-         (b.unstable() ? "UNSTABLE" : "stable") + ")\n";
+  return SettlingText(b) + NoFartherText(b) + FreeModeText(b);
 }
 
 TextTable LinesTable(const FitResult& result) {
-  TextTable table({"a line pushed forwards, two seconds later", "all moved on, m", "the pushed, m",
-                   "either way, m"},
+  TextTable table({"a line pushed forwards, " + WaitText() + " later", "all moved on, m",
+                   "the pushed, m", "either way, m"},
                   {true, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
@@ -167,14 +132,14 @@ TextTable LinesTable(const FitResult& result) {
 }
 
 TextTable BehaviourTable(const FitResult& result) {
-  TextTable table({"demonstration", "two seconds after the push", "m/s", "rad from rest",
+  TextTable table({"demonstration", WaitText() + " after the push", "m/s", "rad from rest",
                    "m moved on", "the pushed, m"},
                   {true, true, false, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     table.Add({SettlingSimulationName(d, differ),
-               d.fell      ? "fell"
-               : d.settled ? "stands"
+               d.fell      ? kFellText
+               : d.settled ? kSettledText
                            : "still moving",
                Rounded(d.speed, 2), Rounded(d.lean, 2), Rounded(d.advance, 2),
                Rounded(d.pushed_advance, 2)});

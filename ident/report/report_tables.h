@@ -22,11 +22,6 @@ TextTable PooledTable(const FitResult& result);
 // Pairs of parameters that the data separate poorly.
 std::string CorrelationText(const FitResult& result);
 
-// "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
-// for the shared values and say so.
-bool SettingsDiffer(const Behaviour& behaviour);
-std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ);
-
 // What people do after a push, in words, and settling simulation by settling simulation.
 std::string BehaviourText(const FitResult& result);
 // Where lines that are pushed forwards at their first person end up; only a header where no person

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "ident/report/report_tables.h"
+#include "ident/problem/behaviour_text.h"
 #include "ident/solver/large_network_stage.h"
 #include "models/cart_damping.h"
 
@@ -124,6 +124,17 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
   return fitted;
 }
 
+void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
+  const ModelOptions& model = result.options.model;
+  const Verdict verdict = VerdictOf(result.behaviour, model);
+  if (verdict == Verdict::kSettles) return;
+  const bool slow = verdict == Verdict::kSlowToSettle;
+  warnings->push_back(
+      VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
+      (slow ? "" : "; such a fit may score well and predicts nothing beyond the data") + " (" +
+      VerdictRemedy(verdict, model) + ")");
+}
+
 std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
   std::vector<std::string> warnings;
   for (const FittedRecording& recording : result.recordings) {
@@ -133,21 +144,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     }
   }
   if (!result.converged) warnings.push_back("the solver stopped before it converged");
-  if (RodRunsAway(result)) {
-    warnings.push_back("self-propelling: the rod or the person with it runs away from rest at " +
-                       Rounded(result.behaviour.fastest_growth, 2) +
-                       " 1/s; such a fit predicts nothing beyond the data (a smaller "
-                       "--network_prior or --rod=constant holds it)");
-  } else if (result.behaviour.self_propelling) {
-    warnings.push_back(
-        "self-propelling: the fitted forces drive the person after a push; such a fit may score "
-        "well "
-        "and predicts nothing beyond the data (--settling_weight holds it to settle)");
-  } else if (!result.behaviour.settles) {
-    warnings.push_back(
-        "slow to settle: the fitted person settles later than two seconds after "
-        "some pushes (--settling_weight holds it to settle sooner)");
-  }
+  AddVerdict(result, &warnings);
   if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
     warnings.push_back("pushed forwards by " + Rounded(d->impulse, 4) + " N s, the pushed person" +
                        (d->people > 1 ? " of the line" : "") + " ends " +
@@ -158,7 +155,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
     warnings.push_back("a single recording: errors cannot be clustered and are too small");
   }
   for (const Estimate& e : result.estimates) {
-    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " stands at its bound");
+    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
   const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
@@ -169,8 +166,8 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   return warnings;
 }
 
-// What is known of a network's weights says nothing to anybody and fills files: from here on the
-// covariance is that of everything else, whatever the weights are.
+// The covariance of a network's weights has no meaning for a reader and fills files: from here on
+// the covariance is that of everything else, at the fitted weights.
 void ForgetWeights(Eigen::Index weights, FitResult* result) {
   if (weights == 0) return;
   Uncertainty& u = result->uncertainty;
@@ -226,9 +223,6 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   return result;
 }
 
-bool RodRunsAway(const FitResult& result) {
-  const Behaviour& b = result.behaviour;
-  return RodMoves(result.options.model) && b.unstable() && b.settles;
 }
 
 }  // namespace pushid

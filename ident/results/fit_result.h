@@ -59,8 +59,4 @@ struct FitResult {
   bool ok() const { return best_start >= 0; }
 };
 
-// Whether a rod that moves makes a person unstable at rest who settles after pushes: settling
-// cannot hold it.
-bool RodRunsAway(const FitResult& result);
-
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: stopping the training of a network before it learns its recordings by heart.
+// ident: stopping the training of a network before it overfits its recordings.
 //
 // A share of the recordings, stratified like a fold of the cross-validation, is held out of the
 // solve; after each iteration their cost is looked at, and the best point of all is kept.

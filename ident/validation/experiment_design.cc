@@ -1,12 +1,10 @@
-// ident: candidates, their information, and the table.
+// ident: candidate pushes and their information.
 #include "ident/validation/experiment_design.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/number_text.h"
-#include "ident/figures/text_table.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
@@ -159,20 +157,34 @@ Eigen::MatrixXd WithSpread(const Eigen::MatrixXd& information, const Eigen::Matr
   return information - mixed * inner.ldlt().solve(mixed.transpose());
 }
 
+bool Falls(const PendulumRecording& candidate) {
+  if (candidate.states.empty()) return true;
+  return std::any_of(candidate.states[0].begin(), candidate.states[0].end(),
+                     [](const PendulumState<double>& state) {
+                       return state.q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle;
+                     });
+}
+
+// Shared parameters that the data determine: on a bound or undetermined there is no error to
+// reduce.
+std::vector<int> KnownParameters(const Uncertainty& uncertainty, int shared) {
+  std::vector<int> known;
+  for (int i = 0; i < shared; ++i) {
+    const EstimateStatus status = uncertainty.estimates[i].status;
+    if (status == EstimateStatus::kIdentified || status == EstimateStatus::kWeak) {
+      known.push_back(i);
+    }
+  }
+  return known;
+}
+
 }  // namespace
 
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                    const Uncertainty& uncertainty,
                                    const std::vector<CandidatePush>& candidates) {
-  const int shared = problem.map().num_shared();
   const Covariance covariance = CovarianceAt(problem, estimate);
-  // Only what the data determine: on a bound or undetermined there is no error to reduce.
-  std::vector<int> known;
-  for (int i = 0; i < shared; ++i) {
-    const EstimateStatus status = uncertainty.estimates[i].status;
-    if (status == EstimateStatus::kIdentified || status == EstimateStatus::kWeak)
-      known.push_back(i);
-  }
+  const std::vector<int> known = KnownParameters(uncertainty, problem.map().num_shared());
   ExperimentDesign design;
   design.kind = UsualKind(problem.recordings());
   for (int i : known) {
@@ -193,12 +205,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
       SpreadRoot(now, covariance.naive(known, known), std::max(1, uncertainty.num_clusters));
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
-    bool fell = candidate.states.empty();
-    for (const auto& state :
-         candidate.states.empty() ? std::vector<PendulumState<double>>() : candidate.states[0]) {
-      fell = fell || state.q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle;
-    }
-    if (fell) continue;
+    if (Falls(candidate)) continue;
     const Eigen::MatrixXd jacobian =
         CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
     const Eigen::MatrixXd information =
@@ -211,68 +218,6 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
     design.rows.push_back(row);
   }
   return design;
-}
-
-Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              int count) {
-  if (!design.refused.empty()) return Error{design.refused};
-  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
-  const bool all = parameter == "all";
-  if (!all && at == design.parameters.end()) {
-    std::string known = "all";
-    for (const std::string& name : design.parameters) known += ", " + name;
-    return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
-  }
-  const size_t index = all ? 0 : static_cast<size_t>(at - design.parameters.begin());
-  const auto score = [&](const DesignRow& row) {
-    return all ? row.volume_ratio : row.error_ratio[index];
-  };
-  std::vector<DesignRow> rows = design.rows;
-  std::stable_sort(rows.begin(), rows.end(),
-                   [&](const DesignRow& a, const DesignRow& b) { return score(a) < score(b); });
-  const auto change = [](double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; };
-  std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg"};
-  if (!all) header.push_back("error of " + parameter);
-  header.push_back("mean of all errors");
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  TextTable table(header, left);
-  const auto add = [&](const DesignRow& row) {
-    const double degrees = row.push.direction_deg;
-    const std::string direction = degrees == 0.0     ? "forwards"
-                                  : degrees == 90.0  ? "to the left"
-                                  : degrees == 180.0 ? "backwards"
-                                                     : Rounded(degrees, 4) + " degrees left";
-    std::vector<std::string> cells = {direction, Rounded(row.push.acceleration, 3),
-                                      Rounded(row.push.height, 2), Rounded(row.push.duration_s, 2),
-                                      Rounded(row.push.mass_kg, 3)};
-    if (!all) cells.push_back(change(score(row)));
-    cells.push_back(change(row.volume_ratio));
-    table.Add(cells);
-  };
-  const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
-  for (size_t i = 0; i < shown; ++i) add(rows[i]);
-  if (rows.size() > shown) {
-    table.AddGap();
-    add(rows.back());
-  }
-  return table;
-}
-
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
-                               int count) {
-  const Result<TextTable> table = DesignTable(design, parameter, count);
-  if (!table.ok()) return table.error();
-  std::string text = "what one more recording would change, best first, and the least useful of " +
-                     std::to_string(design.rows.size()) + " candidates last\n" +
-                     table.value().ToString();
-  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
-  if (at != design.parameters.end()) {
-    const size_t index = static_cast<size_t>(at - design.parameters.begin());
-    text += "now: " + parameter + " +- " + Rounded(design.standard_error[index], 3) + " " +
-            design.units[index] + "\n";
-  }
-  return text;
 }
 
 }  // namespace pushid

@@ -1,10 +1,10 @@
 // ident: which further recording would tell most: the drop of standard errors that one more push of
 // a kind would bring.
 //
-// A recording's own gains deviate from everybody's by the spread T between recordings, and are seen
-// through noise. With V the clustered covariance of the G present recordings, V_naive the one that
-// takes all errors for noise, and I_c = J_c'J_c / sigma^2 of a candidate, whose Jacobian comes from
-// rolling the model out at the estimate (no data needed):
+// A recording's own gains deviate from the shared ones by the spread T between recordings, and are
+// seen through noise. With V the clustered covariance of the G present recordings, V_naive the one
+// that takes all errors for noise, and I_c = J_c'J_c / sigma^2 of a candidate, whose Jacobian comes
+// from rolling the model out at the estimate (no data needed):
 //
 //   V' = (V^-1 + (I_c^-1 + T)^-1)^-1,   T = G (V - V_naive), its positive part
 //
@@ -20,9 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -56,15 +54,6 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                    const Uncertainty& uncertainty,
                                    const std::vector<CandidatePush>& candidates);
-
-// The best `count` candidates for a parameter, or for all together ("all"), best first, and after a
-// gap the least useful one. Errors: no such parameter.
-Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              int count);
-
-// With a heading and the present error below it. Errors: no such parameter.
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
-                               int count);
 
 // The recording a candidate would be: an upright person at rest, and the motion that the model
 // expects.

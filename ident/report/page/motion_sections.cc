@@ -7,6 +7,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_pictures.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/report/design_text.h"
 #include "ident/report/page/sections.h"
 
 namespace pushid {

@@ -3,6 +3,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/self_network_io.h"
+#include "ident/problem/behaviour_text.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/preparation_text.h"
 #include "ident/report/report_tables.h"
@@ -11,7 +12,7 @@
 namespace pushid {
 namespace {
 
-std::string Verdict(const FitResult& result) {
+std::string VerdictText(const FitResult& result) {
   std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
   int unsure = 0, free = 0;
   for (const Estimate& e : result.estimates) {
@@ -20,12 +21,9 @@ std::string Verdict(const FitResult& result) {
   }
   text += std::to_string(free - unsure) + " of " + std::to_string(free) +
           " free parameters are identified by the data. ";
-  const Behaviour& b = result.behaviour;
-  text += b.self_propelling
-              ? "The fitted person is self-propelling and never stands still: do not use "
-                "the gains."
-          : b.settles ? "The fitted people settle after every push of the settling simulations."
-                      : "The fitted people are slow to settle after some pushes.";
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  text += Capitalized(VerdictSentence(verdict, result.behaviour)) + ".";
+  if (result.behaviour.self_propelling) text += " Do not use the gains.";
   return text;
 }
 
@@ -40,7 +38,7 @@ double MeanExplained(const FitResult& result) {
 ReportSection SummarySection(const FittedModel& model) {
   const FitResult& result = model.fit;
   ReportSection section{"summary", "Summary", {}, {}, {}, {}, {}, ""};
-  section.paragraphs.push_back(Verdict(result));
+  section.paragraphs.push_back(VerdictText(result));
   const FitOptions& o = result.options;
   TextTable facts({"what", "value"}, {true, true});
   facts.Add({"recordings",
@@ -78,7 +76,7 @@ ReportSection BehaviourSection(const FittedModel& model) {
   const FitResult& result = model.fit;
   ReportSection section{"behaviour", "After a push", {}, {}, {}, {}, {}, ""};
   section.paragraphs = {BehaviourText(result)};
-  section.tables.push_back({"demonstrations: pushed and left alone", BehaviourTable(result)});
+  section.tables.push_back({"settling simulations: pushed and left alone", BehaviourTable(result)});
   return section;
 }
 

@@ -116,7 +116,7 @@ TEST(SensorOffsetTest, Errors) {
     return EstimateSensorOffset({scaled.force}, pushed.recording, 0, 0.5);
   };
   EXPECT_NEAR(times(1.0).value().gain, 1.0, 0.02);
-  EXPECT_TRUE(Contains(times(0.001).error().ToString(), "does not tell the sensor's time"));
+  EXPECT_TRUE(Contains(times(0.001).error().ToString(), "the sensor's time cannot be found"));
   EXPECT_TRUE(Contains(times(-1.0).error().ToString(), "against the force"));
   for (Eigen::Vector3d& force : pushed.force.record.force) force = {0.0, 0.0, 700.0};
   EXPECT_TRUE(Contains(message(0, 0.5), "no horizontal force"));

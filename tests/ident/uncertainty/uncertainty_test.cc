@@ -218,7 +218,7 @@ TEST(Uncertainty, AtABoundHasNoErrorAndSaysSo) {
   EXPECT_TRUE(result.uncertainty.null_directions.empty());
   bool warned = false;
   for (const std::string& w : result.warnings) {
-    warned = warned || w.find("tail_gain stands at its bound") != std::string::npos;
+    warned = warned || w.find("tail_gain is at its bound") != std::string::npos;
   }
   EXPECT_TRUE(warned);
 }

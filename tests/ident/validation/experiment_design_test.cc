@@ -85,18 +85,12 @@ TEST_F(Design, CandidatesCountAsRecordings) {
   }
 }
 
-TEST_F(Design, TheTableIsSortedAndNamesItsUnits) {
+TEST_F(Design, DefaultCandidatesSpanTheRecordings) {
   const std::vector<CandidatePush> candidates = DefaultCandidates(recordings_);
   EXPECT_EQ(candidates.size(), 96u);
   const ExperimentDesign d = Of(candidates);
-  const std::string text = DesignText(d, "mu_y", 5).value();
-  EXPECT_TRUE(Contains(text, "error of mu_y"));
-  EXPECT_TRUE(Contains(text, "now: mu_y +- "));
-  EXPECT_LT(text.find("to the left"), text.find("forwards"));
-  EXPECT_TRUE(DesignText(d, "all", 5).ok());
-  const Result<std::string> wrong = DesignText(d, "nu", 5);
-  ASSERT_FALSE(wrong.ok());
-  EXPECT_TRUE(Contains(wrong.error().message, "mu_y"));
+  EXPECT_TRUE(d.refused.empty()) << d.refused;
+  EXPECT_GT(d.rows.size(), 0u);
 }
 
 }  // namespace

@@ -1,0 +1,173 @@
+// apps: flags, help, and what every program does before and after its job.
+#include "apps/flags/command_line.h"
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <set>
+#include <sstream>
+
+#include "apps/support/overwrite_check.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
+
+DEFINE_bool(quiet, false, "no progress on stderr");
+
+namespace pushid {
+namespace {
+
+// gflags lists the flags of every library it finds; users care for ours.
+std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
+  std::vector<gflags::CommandLineFlagInfo> all, own;
+  gflags::GetAllFlags(&all);
+  for (const gflags::CommandLineFlagInfo& flag : all) {
+    if (flag.filename.find("apps/") != std::string::npos) own.push_back(flag);
+  }
+  return own;
+}
+
+// What names outputs or only changes speed and talk is no part of a result.
+bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
+                                                 "check"};
+  return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
+}
+
+// gflags prints 0.2 as 0.20000000000000001.
+std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
+  double value = 0.0;
+  if (flag.type != "double" || !ParseDouble(flag.default_value, &value)) return flag.default_value;
+  return DoubleText(value);
+}
+
+void PrintHelp(const std::string& usage) {
+  std::printf("%s\n\nflags:\n", usage.c_str());
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    const std::string value = flag.default_value.empty() ? "" : "=" + DefaultText(flag);
+    std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
+  }
+  std::printf("  --flagfile=FILE\n      read flags from a file, one a line\n");
+  std::printf("  --version\n      print the version\n");
+}
+
+bool Asked(const char* flag) {
+  std::string value;
+  return gflags::GetCommandLineOption(flag, &value) && value == "true";
+}
+
+// gflags would name neither the program nor what to do.
+MaybeError CheckFlagNames(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--" || word.find("undefok") != std::string::npos) return std::nullopt;
+    if (word.size() < 2 || word[0] != '-') continue;
+    const size_t equals = word.find('=');
+    const size_t first = word[1] == '-' ? 2 : 1;
+    const std::string name =
+        word.substr(first, equals == std::string::npos ? equals : equals - first);
+    gflags::CommandLineFlagInfo flag;
+    if (gflags::GetCommandLineFlagInfo(name.c_str(), &flag)) {
+      // Its value may be the next word.
+      if (flag.type != "bool" && equals == std::string::npos) ++i;
+      continue;
+    }
+    const bool negated = name.rfind("no", 0) == 0 &&
+                         gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) &&
+                         flag.type == "bool";
+    if (!negated) return Error{"there is no flag --" + name + "; see " + ProgramName() + " --help"};
+  }
+  return std::nullopt;
+}
+
+// A result that a full disk or a closed pipe swallowed must not look done.
+int CheckPrinted(int exit_code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+  const int failed = Fail(std::string("stdout cannot be written: ") + std::strerror(errno));
+  return exit_code == kDone ? failed : exit_code;
+}
+
+}  // namespace
+
+int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
+           std::vector<std::string>* words) {
+  SetProgramName(argv[0]);
+  gflags::SetUsageMessage(usage);
+  gflags::SetVersionString(Version());
+  // What goes wrong inside the solver is told in our own words; --minloglevel=0 brings its log
+  // back.
+  FLAGS_minloglevel = google::GLOG_FATAL;
+  FLAGS_logtostderr = true;
+  if (MaybeError error = CheckFlagNames(argc, argv)) return Fail(*error);
+  gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
+  google::InitGoogleLogging(argv[0]);
+  if (FLAGS_quiet) HideProgress();
+  if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
+    PrintHelp(usage);
+    return kDone;
+  }
+  if (Asked("version")) {
+    std::printf("%s %s\n", ProgramName().c_str(), Version().c_str());
+    return kDone;
+  }
+  if (words != nullptr) {
+    words->assign(argv + 1, argv + argc);
+  } else if (argc > 1) {
+    return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
+  }
+  if (MaybeError error = CheckOutputs()) return Fail(*error);
+  try {
+    return CheckPrinted(run());
+  } catch (const std::bad_alloc&) {
+    return Fail("out of memory");
+  } catch (const std::exception& exception) {
+    return Fail(std::string("unexpected: ") + exception.what());
+  }
+}
+
+MaybeError Require(const std::string& flag, const std::string& value, const std::string& what) {
+  if (!value.empty()) return std::nullopt;
+  return Error{"--" + flag + " is missing: " + what};
+}
+
+bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
+
+std::map<std::string, std::string> EffectiveFlags() {
+  std::map<std::string, std::string> flags;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    if (IsPartOfResult(flag)) flags[flag.name] = flag.current_value;
+  }
+  return flags;
+}
+
+std::vector<std::string> ChangedFlags() {
+  std::vector<std::string> names;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
+    // By value: a default that is given is no change, `none` over a preset's value is one.
+    const bool changed = flag.current_value != flag.default_value;
+    if (changed && IsPartOfResult(flag)) names.push_back(flag.name);
+  }
+  return names;
+}
+
+MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return std::nullopt;
+  std::ostringstream text;
+  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
+       << highest;
+  return Error{text.str()};
+}
+
+MaybeError CheckOutputFiles(std::initializer_list<std::string> files) {
+  for (const std::string& file : files) {
+    if (file.empty()) continue;
+    if (MaybeError error = CheckWritable(file)) return error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,73 @@
+// apps: pushid-simulate by flag.
+#include "apps/flags/simulate_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/formation_flags.h"
+#include "apps/support/output_folder.h"
+#include "datasets/manifest/recording_names.h"
+
+DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");
+DEFINE_int32(people, pushid::SyntheticOptions{}.subjects,
+             "how many people: of random mass and size, or in the formation");
+DEFINE_int32(recordings_per_person, pushid::SyntheticOptions{}.recordings_per_subject,
+             "pushes of each person: weak, medium and strong in turn");
+DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recording");
+DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames a second");
+// The library's recordings are exact; a user's trial should be as noisy as real ones.
+DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
+DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
+              "net (only the push's first part, the tail follows) or external");
+DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
+              "how much all parameters vary between recordings (standard deviation of the "
+              "logarithm; 0.1 is about 10 %)");
+DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread, "the same between people");
+DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
+
+namespace pushid {
+namespace {
+
+// The library checks them too, but knows no flags.
+MaybeError CheckNumbers() {
+  for (MaybeError error :
+       {CheckRange("people", FLAGS_people, 1, 10000),
+        CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000),
+        CheckRange("frames", FLAGS_frames, 3, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
+        CheckRange("noise", FLAGS_noise, 0, 0.1),
+        CheckRange("recording_spread", FLAGS_recording_spread, 0, 2),
+        CheckRange("subject_spread", FLAGS_subject_spread, 0, 2)}) {
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<SimulateFlags> SimulateFlagsFromCommandLine() {
+  if (const char* flag = GivenFormationFlag()) {
+    return Error{std::string("--") + flag + " needs --formation: line, diamond or grid"};
+  }
+  for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
+                           CheckOutputFolder("out", FLAGS_out), CheckNumbers()}) {
+    if (error) return *error;
+  }
+  const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);
+  if (!kind || *kind == PushKind::kNetWithoutFriction) {
+    return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
+  }
+  SimulateFlags flags;
+  flags.out = FLAGS_out;
+  flags.recordings.subjects = FLAGS_people;
+  flags.recordings.recordings_per_subject = FLAGS_recordings_per_person;
+  flags.recordings.frames = FLAGS_frames;
+  flags.recordings.fps = FLAGS_fps;
+  flags.recordings.joint_noise_m = FLAGS_noise;
+  flags.recordings.push_kind = *kind;
+  flags.recordings.recording_spread = FLAGS_recording_spread;
+  flags.recordings.subject_spread = FLAGS_subject_spread;
+  flags.recordings.seed = FLAGS_seed;
+  return flags;
+}
+
+}  // namespace pushid

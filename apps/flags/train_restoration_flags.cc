@@ -1,0 +1,111 @@
+// apps: pushid-train-restoration by flag.
+#include "apps/flags/train_restoration_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/postprocess_flags.h"
+#include "ident/results/result_json.h"
+#include "models/self_network.h"
+
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
+DEFINE_string(
+    kind, pushid::RestorationTrainingOptions{}.kind,
+    "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (siMLPe, which "
+    "continues 12 given frames, for --peer of pushid-evaluate)");
+DEFINE_string(coordinates, pushid::RestorationTrainingOptions{}.coordinates,
+              "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
+DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
+DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
+DEFINE_int32(crossvalidate, pushid::TrainRestorationFlags{}.crossvalidate,
+             "folds: instead of writing a restoration, refit pendulum and restoration in every "
+             "fold and score the recordings held out; 0: off");
+DEFINE_int32(inner_folds, pushid::RestorationRunOptions{}.inner_folds,
+             "folds of the out-of-fold pendulum predictions");
+DEFINE_double(held_out, pushid::RestorationRunOptions{}.held_out,
+              "share of the recordings by which training stops early");
+DEFINE_double(checkpoint_seconds, pushid::RestorationTrainingOptions{}.checkpoint_seconds,
+              "time between two checkpoints in --out");
+DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
+              "multiplies the number of training steps");
+DEFINE_bool(predicted_pendulums, pushid::RestorationRunOptions{}.predicted_pendulums,
+            "learn from out-of-fold predicted pendulums too");
+DEFINE_bool(mirrored, pushid::RestorationRunOptions{}.mirrored, "learn from mirrored copies too");
+DEFINE_string(more_settings, "",
+              "also learn how bodies follow recorded pendulums from these settings (as --setting "
+              "names them); their pendulums are not fitted and nothing of them is scored");
+DEFINE_uint64(seed, pushid::RestorationTrainingOptions{}.seed,
+              "seed of weights, batches, noise and folds");
+DEFINE_int32(num_threads, pushid::RestorationTrainingOptions{}.num_threads,
+             "threads of the training; only one repeats to the last bit");
+
+namespace pushid {
+namespace {
+
+MaybeError CheckFlags() {
+  if (MaybeError missing =
+          Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
+    return missing;
+  }
+  if (FLAGS_kind != "window" && FLAGS_kind != "cvae" && FLAGS_kind != "simlpe") {
+    return Error{"--kind is '" + FLAGS_kind + "'; it must be window, cvae or simlpe"};
+  }
+  if (FLAGS_coordinates != "tip" && FLAGS_coordinates != "ldp") {
+    return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
+  }
+  if (FLAGS_crossvalidate == 0) {
+    if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
+  } else if (FLAGS_crossvalidate < 2) {
+    return Error{"--crossvalidate must be 0 or at least 2 folds"};
+  }
+  if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
+  if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
+    return Error{"--held_out must lie above 0 and not above 0.5"};
+  }
+  if (!(FLAGS_effort > 0.0 && FLAGS_effort <= 100.0)) {
+    return Error{"--effort must lie above 0 and not above 100"};
+  }
+  if (!(FLAGS_checkpoint_seconds >= 0.0)) return Error{"--checkpoint_seconds must not be negative"};
+  if (FLAGS_num_threads < 1) return Error{"--num_threads must be positive"};
+  return std::nullopt;
+}
+
+Result<RestorationRunOptions> RunOptions() {
+  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
+  if (!model.ok()) return model.error();
+  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
+  if (!postprocess.ok()) return postprocess.error();
+  RestorationRunOptions options;
+  options.fit = model.value().fit.options;
+  if (RodMoves(options.fit.model)) {
+    return Error{
+        "its rod moves, and bodies are carried by rods of constant length; fit --rod=constant",
+        FLAGS_model};
+  }
+  options.fit.num_threads = FLAGS_num_threads;
+  options.postprocess = postprocess.value();
+  options.inner_folds = FLAGS_inner_folds;
+  options.held_out = FLAGS_held_out;
+  options.predicted_pendulums = FLAGS_predicted_pendulums;
+  options.mirrored = FLAGS_mirrored;
+  options.training.kind = FLAGS_kind;
+  options.training.coordinates = FLAGS_coordinates;
+  options.training.effort = FLAGS_effort;
+  options.training.seed = FLAGS_seed;
+  options.training.num_threads = FLAGS_num_threads;
+  options.training.checkpoint_seconds = FLAGS_checkpoint_seconds;
+  return options;
+}
+
+}  // namespace
+
+Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
+  if (MaybeError error = CheckFlags()) return *error;
+  const Result<RestorationRunOptions> options = RunOptions();
+  if (!options.ok()) return options.error();
+  if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
+  return TrainRestorationFlags{options.value(), FLAGS_out, FLAGS_crossvalidate, FLAGS_json_out,
+                               FLAGS_more_settings};
+}
+
+}  // namespace pushid

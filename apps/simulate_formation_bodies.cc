@@ -1,0 +1,76 @@
+// apps: bodies of formations, from poses to files.
+#include "apps/simulate_formation_bodies.h"
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/loading/load_recordings.h"
+#include "ident/bodies/animation.h"
+#include "ident/bodies/body_files.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kPosesOfStrip = 6;
+
+Result<std::vector<Pose>> FirstPosesFrom(const std::string& manifest, double rod_length) {
+  if (manifest.empty()) return std::vector<Pose>{SyntheticPose(rod_length)};
+  LoadOptions options;
+  options.keep_all_joints = true;
+  const Result<std::vector<Recording>> recordings = LoadRecordings(manifest, options);
+  if (!recordings.ok()) return recordings.error();
+  const Result<std::vector<BodyRecording>> bodies =
+      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
+  if (!bodies.ok()) return bodies.error();
+  return FirstPoses(bodies.value());
+}
+
+BodyScene SceneOf(const FormationRun& run, std::vector<BodyMotion> bodies) {
+  BodyScene scene;
+  scene.id = run.recording.id;
+  scene.dt = run.recording.scene.dt;
+  scene.subject_ids = run.recording.subject_ids;
+  scene.joint_names = DefaultJointNames();
+  scene.bodies = std::move(bodies);
+  return scene;
+}
+
+}  // namespace
+
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
+                                                    Scene* scene) {
+  if (!flags.restoration.given()) return std::optional<FormationBodyPlan>();
+  FormationBodyPlan plan;
+  Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(flags.restoration, rod_moves);
+  if (!restoration.ok()) return restoration.error();
+  plan.restoration = std::move(restoration.value());
+  const Result<std::vector<Pose>> poses =
+      FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);
+  if (!poses.ok()) return poses.error();
+  plan.first_poses = TakePoses(poses.value(), scene);
+  return std::optional<FormationBodyPlan>(std::move(plan));
+}
+
+MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const FormationBodyPlan& plan,
+                                const FormationRun& run, const std::string& title) {
+  const BodyScene scene = SceneOf(run, FormationBodies(run, plan.first_poses, *plan.restoration,
+                                                       flags.restoration.postprocess));
+  Animation animation;
+  animation.title = title;
+  animation.dt = scene.dt;
+  AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
+  MaybeError error;
+  if (!flags.html_out.empty()) {
+    error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));
+  }
+  if (!error && !flags.strip_out.empty()) {
+    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, kPosesOfStrip));
+  }
+  if (!error && !flags.joints_out.empty()) error = WriteJointsCsv(flags.joints_out, scene);
+  if (!error && !flags.bodies_out.empty()) {
+    const auto files = WriteBodyBvh(flags.bodies_out, scene);
+    if (!files.ok()) error = files.error();
+  }
+  return error;
+}
+
+}  // namespace pushid

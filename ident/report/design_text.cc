@@ -1,0 +1,93 @@
+// ident: the table of a design, and its heading.
+#include "ident/report/design_text.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+std::string DirectionText(double degrees) {
+  if (degrees == 0.0) return "forwards";
+  if (degrees == 90.0) return "to the left";
+  if (degrees == 180.0) return "backwards";
+  return Rounded(degrees, 4) + " degrees left";
+}
+
+std::string Change(double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; }
+
+// Where the parameter stands among those with an error; nothing for "all".
+Result<std::optional<size_t>> IndexOf(const ExperimentDesign& design,
+                                      const std::string& parameter) {
+  if (parameter == "all") return std::optional<size_t>();
+  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
+  if (at != design.parameters.end()) {
+    return std::optional<size_t>(static_cast<size_t>(at - design.parameters.begin()));
+  }
+  std::string known = "all";
+  for (const std::string& name : design.parameters) known += ", " + name;
+  return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
+}
+
+TextTable EmptyTable(const std::optional<size_t>& index, const std::string& parameter) {
+  std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg"};
+  if (index) header.push_back("error of " + parameter);
+  header.push_back("mean of all errors");
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  return TextTable(header, left);
+}
+
+std::vector<std::string> Cells(const DesignRow& row, const std::optional<size_t>& index) {
+  std::vector<std::string> cells = {DirectionText(row.push.direction_deg),
+                                    Rounded(row.push.acceleration, 3), Rounded(row.push.height, 2),
+                                    Rounded(row.push.duration_s, 2), Rounded(row.push.mass_kg, 3)};
+  if (index) cells.push_back(Change(row.error_ratio[*index]));
+  cells.push_back(Change(row.volume_ratio));
+  return cells;
+}
+
+}  // namespace
+
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count) {
+  if (!design.refused.empty()) return Error{design.refused};
+  const Result<std::optional<size_t>> found = IndexOf(design, parameter);
+  if (!found.ok()) return found.error();
+  const std::optional<size_t>& index = found.value();
+  const auto score = [&index](const DesignRow& row) {
+    return index ? row.error_ratio[*index] : row.volume_ratio;
+  };
+  std::vector<DesignRow> rows = design.rows;
+  std::stable_sort(rows.begin(), rows.end(), [&score](const DesignRow& a, const DesignRow& b) {
+    return score(a) < score(b);
+  });
+  TextTable table = EmptyTable(index, parameter);
+  const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
+  for (size_t i = 0; i < shown; ++i) table.Add(Cells(rows[i], index));
+  if (rows.size() > shown) {
+    table.AddGap();
+    table.Add(Cells(rows.back(), index));
+  }
+  return table;
+}
+
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
+                               int count) {
+  const Result<TextTable> table = DesignTable(design, parameter, count);
+  if (!table.ok()) return table.error();
+  std::string text = "what one more recording would change, best first, and the least useful of " +
+                     std::to_string(design.rows.size()) + " candidates last\n" +
+                     table.value().ToString();
+  const Result<std::optional<size_t>> index = IndexOf(design, parameter);
+  if (index.value()) {
+    text += "now: " + parameter + " +- " + Rounded(design.standard_error[*index.value()], 3) + " " +
+            design.units[*index.value()] + "\n";
+  }
+  return text;
+}
+
+}  // namespace pushid
