@@ -12,6 +12,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/parameters/parameter_glossary.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/results/fit.h"
@@ -69,11 +70,15 @@ MaybeError WriteModel(const std::string& path, const FittedModel& model, Clock::
 
 int Run() {
   const auto begin = Clock::now();
+  const Result<FitProgramFlags> flags = FitProgramFlagsFromCommandLine();
+  if (!flags.ok()) return Fail(flags.error());
+  if (flags.value().list_parameters) {
+    std::printf("%s", ParameterGlossaryMarkdown().c_str());
+    return kDone;
+  }
   Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
-  const Result<FitProgramFlags> flags = FitProgramFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
   if (flags.value().check) return kDone;
   const std::string& model_out = flags.value().model_out;

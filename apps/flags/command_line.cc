@@ -34,7 +34,7 @@ std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
 // What names outputs or only changes speed and talk is no part of a result.
 bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
   static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
-                                                 "check"};
+                                                 "check", "list_parameters"};
   return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
 }
 

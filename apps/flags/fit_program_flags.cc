@@ -9,12 +9,14 @@ DEFINE_int32(
     "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
     "k; 0: the recordings as they are");
 DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
+DEFINE_bool(list_parameters, false,
+            "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
 
 namespace pushid {
 
 Result<FitProgramFlags> FitProgramFlagsFromCommandLine() {
   if (FLAGS_resample < 0) return Error{"--resample must not be negative"};
-  return FitProgramFlags{FLAGS_model_out, FLAGS_resample, FLAGS_check};
+  return FitProgramFlags{FLAGS_model_out, FLAGS_resample, FLAGS_check, FLAGS_list_parameters};
 }
 
 }  // namespace pushid

@@ -8,9 +8,10 @@
 namespace pushid {
 
 struct FitProgramFlags {
-  std::string model_out;  // empty: the model is not kept
-  int resample = 0;       // replica of a bootstrap; 0: the recordings as they are
-  bool check = false;     // only check the flags
+  std::string model_out;         // empty: the model is not kept
+  int resample = 0;              // replica of a bootstrap; 0: the recordings as they are
+  bool check = false;            // only check the flags
+  bool list_parameters = false;  // only print the glossary of every parameter
 };
 
 Result<FitProgramFlags> FitProgramFlagsFromCommandLine();

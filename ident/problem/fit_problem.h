@@ -13,6 +13,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_point.h"
+#include "ident/problem/parallel_evaluation.h"
 #include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
@@ -65,23 +66,30 @@ class FitProblem {
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
   struct Built {
+    std::unique_ptr<ParallelEvaluation> evaluation;  // null: in the solver's own thread
     std::unique_ptr<ceres::Problem> problem;
     // Residual blocks by cluster: the recording they belong to, or one of the clusters below.
     std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
     int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
+
+    void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
+             int cluster);
+    // The same for one that costs a rollout: over threads, where there are any.
+    void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
+                    int cluster);
   };
 
-  // hold_network: its weights are constant.
-  Built Build(FitPoint* point, int horizon, bool hold_network = false) const;
+  // hold_network: its weights are constant. num_threads: of the evaluations; the same bits for any.
+  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const;
 
   // The same blocks with equation-error residuals instead of rollouts.
   Built BuildEquationError(FitPoint* point) const;
 
  private:
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
-  void AddParameterBlocks(FitPoint* point, Built* built) const;
+  void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
   void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;

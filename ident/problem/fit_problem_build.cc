@@ -20,8 +20,25 @@ constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the o
 
 }  // namespace
 
-void FitProblem::AddParameterBlocks(FitPoint* point, Built* built) const {
-  built->problem = std::make_unique<ceres::Problem>();
+void FitProblem::Built::Add(std::unique_ptr<ceres::CostFunction> cost,
+                            const std::vector<double*>& on, int cluster) {
+  blocks.emplace_back(problem->AddResidualBlock(cost.release(), nullptr, on), cluster);
+}
+
+void FitProblem::Built::AddRollout(std::unique_ptr<ceres::CostFunction> cost,
+                                   const std::vector<double*>& on, int cluster) {
+  if (evaluation != nullptr) cost = evaluation->Wrap(std::move(cost), on);
+  Add(std::move(cost), on, cluster);
+}
+
+void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const {
+  ceres::Problem::Options problem;
+  if (num_threads > 1) {
+    built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
+    problem.evaluation_callback = built->evaluation.get();
+  }
+  built->problem = std::make_unique<ceres::Problem>(problem);
+  if (built->evaluation != nullptr) built->evaluation->set_problem(built->problem.get());
   auto add = [built](std::vector<double>* values) {
     built->problem->AddParameterBlock(values->data(), static_cast<int>(values->size()));
     built->parameter_blocks.push_back(values->data());
@@ -46,9 +63,9 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
     if (!spec.prior) continue;
     const double sigma = spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean);
-    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.prior->mean), sigma);
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
+    built->Add(
+        std::make_unique<PriorResidual>(size, i, ToFitted(spec.transform, spec.prior->mean), sigma),
+        {point->shared.data()}, kPriorCluster);
   }
   for (auto& [name, values] : point->unit) {
     for (const FittedParameter& f : map_.fitted) {
@@ -56,22 +73,19 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
       // On an identity scale the deviation is in units of the parameter's typical size.
       const double unit =
           f.transform == Transform::kIdentity ? options_.table[f.parameter].scale : 1.0;
-      auto* prior =
-          new PriorResidual(map_.num_deviations, f.deviation, 0.0, options_.pooling_sigma * unit);
-      built->blocks.push_back(
-          {built->problem->AddResidualBlock(prior, nullptr, values.data()), kPoolingCluster});
+      built->Add(std::make_unique<PriorResidual>(map_.num_deviations, f.deviation, 0.0,
+                                                 options_.pooling_sigma * unit),
+                 {values.data()}, kPoolingCluster);
     }
   }
   if (map_.num_weights > 0 && options_.network_prior > 0.0) {
-    auto* prior = new RidgeResidual(map_.num_weights, options_.network_prior);
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(prior, nullptr, point->weights.data()), kPoolingCluster});
+    built->Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
+               {point->weights.data()}, kPoolingCluster);
   }
   if (map_.num_weights > 0 && options_.takeover_weight > 0.0) {
-    auto* takeover = new TakeoverResidual(recordings_, options_.model, options_.takeover_weight);
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(takeover, nullptr, point->weights.data()),
-         kPriorCluster});
+    built->Add(
+        std::make_unique<TakeoverResidual>(recordings_, options_.model, options_.takeover_weight),
+        {point->weights.data()}, kPriorCluster);
   }
 }
 
@@ -85,9 +99,9 @@ void FitProblem::AddStagePriors(FitPoint* point, Built* built) const {
     const double sigma = spec.transform == Transform::kIdentity
                              ? kStagePrior * std::max(std::abs(spec.nominal), spec.scale)
                              : std::log(kStagePrior);
-    auto* prior = new PriorResidual(size, i, ToFitted(spec.transform, spec.nominal), sigma);
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(prior, nullptr, point->shared.data()), kPriorCluster});
+    built->Add(
+        std::make_unique<PriorResidual>(size, i, ToFitted(spec.transform, spec.nominal), sigma),
+        {point->shared.data()}, kPriorCluster);
   }
 }
 
@@ -99,8 +113,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
       ++built->rests_left_out;  // Ceres cannot start from a block that fails
       return;
     }
-    built->blocks.push_back(
-        {built->problem->AddResidualBlock(residual.release(), nullptr, blocks), kPriorCluster});
+    built->AddRollout(std::move(residual), blocks, kPriorCluster);
   };
   // Where settings differ, people must settle in each of them.
   std::vector<std::string> units = {""};
@@ -126,10 +139,10 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     }
     if (options_.mode_weight > 0.0) {
       const Body body = SettlingScene(kSettlingMass, 0.0).people[0].body;
-      auto* cost = new ModalStabilityResidual(options_.model, body, map_, options_.mode_margin,
-                                              options_.mode_weight, !unit.empty());
-      built->blocks.push_back(
-          {built->problem->AddResidualBlock(cost, nullptr, blocks), kPriorCluster});
+      built->Add(
+          std::make_unique<ModalStabilityResidual>(options_.model, body, map_, options_.mode_margin,
+                                                   options_.mode_weight, !unit.empty()),
+          blocks, kPriorCluster);
     }
   }
   if (options_.stability_weight > 0.0) {
@@ -145,9 +158,10 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
   }
 }
 
-FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network) const {
+FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
+                                    int num_threads) const {
   Built built;
-  AddParameterBlocks(point, &built);
+  AddParameterBlocks(point, num_threads, &built);
   built.shortened = Failures(*point, horizon);
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     int frames = horizon;
@@ -158,10 +172,7 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
     if (frames == 1) continue;  // fails in its very first step: nothing left to compare
     const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
                                             Weight(i, horizon), frames);
-    built.blocks.push_back(
-        {built.problem->AddResidualBlock(MakeRolloutCost(rollout, options_.jacobian).release(),
-                                         nullptr, RecordingBlocks(point, i)),
-         i});
+    built.AddRollout(MakeRolloutCost(rollout, options_.jacobian), RecordingBlocks(point, i), i);
   }
   AddPriors(point, &built);
   // The settling simulations are long rollouts: they join once the horizon is as long.
@@ -178,12 +189,11 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
 
 FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
   Built built;
-  AddParameterBlocks(point, &built);
+  AddParameterBlocks(point, 1, &built);
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     if (Count(i) == 0) continue;
-    auto* residual = new EquationErrorResidual(recordings_[i], options_.model, map_);
-    built.blocks.push_back(
-        {built.problem->AddResidualBlock(residual, nullptr, RecordingBlocks(point, i)), i});
+    built.Add(std::make_unique<EquationErrorResidual>(recordings_[i], options_.model, map_),
+              RecordingBlocks(point, i), i);
   }
   AddPriors(point, &built);
   if (map_.num_weights > 0) built.problem->SetParameterBlockConstant(point->weights.data());

@@ -100,7 +100,7 @@ void Adviser::Identifiability() {
       if (std::abs(u.correlation(i, j)) < kStrongCorrelation) continue;
       const Estimate& second = u.estimates[j];
       const std::string held = second.name + "=" + Rounded(second.value, 4);
-      FitCommand compare("pushid-crossvalidate", result_);
+      FitCommand compare("pushid-crossvalidate", model_.provenance);
       compare.Set("compare", "held: --fix=" + compare.Appended("fix", held));
       Add(u.estimates[i].name + " and " + second.name + " trade off (correlation " +
               Rounded(u.correlation(i, j), 2) +

@@ -223,6 +223,4 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   return result;
 }
 
-}
-
 }  // namespace pushid

@@ -60,7 +60,7 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
   solver.function_tolerance = options.function_tolerance;
   solver.gradient_tolerance = options.gradient_tolerance;
   solver.parameter_tolerance = options.parameter_tolerance;
-  solver.num_threads = options.num_threads;
+  solver.num_threads = 1;  // evaluations have threads of their own (parallel_evaluation.h)
   solver.logging_type = ceres::SILENT;
   return solver;
 }
@@ -87,9 +87,8 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
   start.kind = "warm";
   start.from = start.to = from;
   FitProblem::Built built = problem.Build(&start.to, 0);
-  ceres::Solver::Options options = SolverOptions(problem.options(), *built.problem);
-  options.num_threads = 1;
-  const SolveStage stage = SolveBuilt(&built, options, 0, &start.message);
+  const SolveStage stage =
+      SolveBuilt(&built, SolverOptions(problem.options(), *built.problem), 0, &start.message);
   start.failed = std::move(built.shortened);
   start.stages.push_back(stage);
   start.iterations = stage.iterations;
@@ -123,7 +122,7 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
   const FitProblem training(problem.recordings(), options,
                             stop_early ? split.training : problem.counts());
   const FitProblem held_out(problem.recordings(), options, split.held_out);
-  FitProblem::Built built = training.Build(&start->to, 0);
+  FitProblem::Built built = training.Build(&start->to, 0, false, options.num_threads);
   ceres::Solver::Options solver = SolverOptions(options, *built.problem);
   solver.function_tolerance = std::max(kNetworkTolerance, options.function_tolerance);
   ProgressCallback callback(progress, label + "network");
@@ -161,7 +160,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     // A recording that could not be rolled out to its end at the stage's start may well be after
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
-      FitProblem::Built built = problem.Build(&start.to, horizons[i], true);
+      FitProblem::Built built = problem.Build(&start.to, horizons[i], true, options.num_threads);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
       // Stages on the way need not be exact.
       if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "models/enum_names.h"
 #include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
@@ -16,8 +17,9 @@ enum class JacobianMethod {
   kAutodiff        // Jets through the whole rollout by Ceres: the oracle, at a user's hand, to rule
                    // out an error in the chain; slower, and slower still with many parameters
 };
-inline constexpr std::pair<std::string_view, JacobianMethod> kJacobianMethods[] = {
-    {"sensitivities", JacobianMethod::kSensitivities}, {"autodiff", JacobianMethod::kAutodiff}};
+constexpr EnumNames<JacobianMethod, 2> Names(JacobianMethod) {
+  return {{{"sensitivities", JacobianMethod::kSensitivities}, {"autodiff", JacobianMethod::kAutodiff}}};
+}
 
 std::unique_ptr<ceres::CostFunction> MakeRolloutCost(std::shared_ptr<const RolloutProblem> problem,
                                                      JacobianMethod method);
