@@ -81,6 +81,11 @@ Json StartsJson(const FitResult& result) {
   return starts;
 }
 
+// A user's own laws are named, so that a reader knows what to ask for; they cannot be written.
+void AddLawNames(const ModelOptions& model, Json* json) {
+  if (!model.own_laws.empty()) (*json)["force_laws"] = LawNames(model);
+}
+
 Json EstimatesJson(const std::vector<Estimate>& estimates) {
   Json rows = Json::array();
   for (const Estimate& e : estimates) rows.push_back(EstimateJson(e));
@@ -112,7 +117,9 @@ nlohmann::ordered_json ToJson(const Behaviour& b) {
 }
 
 nlohmann::ordered_json SettingsJson(const FitOptions& options) {
-  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+  Json json = {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+  AddLawNames(options.model, &json);
+  return json;
 }
 
 namespace {
@@ -194,9 +201,7 @@ nlohmann::ordered_json ToJson(const FitResult& result, const RunInfo& run) {
                                   {"self_network", ToJson(*member.network)}});
     }
   }
-  if (!result.options.model.own_laws.empty()) {
-    json["force_laws"] = LawNames(result.options.model);
-  }
+  AddLawNames(result.options.model, &json);
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }
