@@ -2,6 +2,7 @@
 #include "ident/parameters/fit_options_json.h"
 
 #include "ident/parameters/option_table.h"
+#include "ident/parameters/own_laws.h"
 
 namespace pushid {
 
@@ -29,8 +30,15 @@ Json OptionsJson(const FitOptions& options) {
   return json;
 }
 
+void AddLawNames(const ModelOptions& model, Json* json) {
+  const std::vector<std::string> laws = LawNames(model);
+  if (!laws.empty()) (*json)["force_laws"] = laws;
+}
+
 Json SettingsJson(const FitOptions& options) {
-  return {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+  Json json = {{"model", OptionsJson(options)}, {"table", TableJson(options.table)}};
+  AddLawNames(options.model, &json);
+  return json;
 }
 
 ParameterTable TableFrom(const Json& json, const ParameterTable& known) {

@@ -194,9 +194,7 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                                   {"self_network", ToJson(*member.network)}});
     }
   }
-  if (!result.options.model.own_laws.empty()) {
-    json["force_laws"] = LawNames(result.options.model);
-  }
+  AddLawNames(result.options.model, &json);
   if (const auto& network = result.options.model.interaction_network) {
     json["interaction_network"] = ToJson(*network);
   }

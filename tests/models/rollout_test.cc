@@ -124,7 +124,7 @@ TEST(Rollout, LaterNetPushReplacesTheTailOfAnEarlierOne) {
   const std::vector<SelfForce> self = SelfForces(scene, options);
   const auto tail = [&](PushUse use, int frame) {
     options.push = use;
-    return NetForceAt(scene, options, self[0], p, 0, frame, state, state.qd).tail;
+    return NetForceAt(scene, options, self[0], p, 0, frame, state, state.qd)[ForcePart::kTail];
   };
   EXPECT_EQ(tail(PushUse::kAsRecorded, 11).norm(), 0.0);
   EXPECT_GT(tail(PushUse::kAdded, 11).norm(), 0.0);

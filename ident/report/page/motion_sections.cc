@@ -127,7 +127,7 @@ TextTable ForceNumbers(const FormationRun& run) {
         table.Add(cells);
       };
       add("net", run.Force(n, t).Total());
-      for (const ForcePart& part : parts) add(part.name, run.Force(n, t).*part.value);
+      for (ForcePart part : parts) add(NameOf(part), run.Force(n, t)[part]);
     }
   }
   return table;

@@ -33,7 +33,7 @@ TEST(JacobianMethod, BothFindTheSameFit) {
 TEST(JacobianMethod, ChoosesTheCostFunction) {
   const SyntheticOptions study = TinyStudy();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  for (const auto& [name, method] : kJacobianMethods) {
+  for (const auto& [name, method] : Names(JacobianMethod())) {
     FitOptions options = DefaultFit(study);
     options.jacobian = method;
     const FitProblem problem(recordings, options);
