@@ -34,6 +34,12 @@ std::string Said(const Behaviour& b, const ModelOptions& options) {
   return VerdictSentence(VerdictOf(b, options), b);
 }
 
+std::string Advised(const FitResult& result) {
+  std::string text;
+  for (const Advice& advice : Advise(result)) text += advice.sentence + advice.command + "\n";
+  return text;
+}
+
 TEST(BehaviourText, EachFindingHasItsVerdict) {
   const ModelOptions options;
   EXPECT_EQ(VerdictOf(Simulated(true, kDecays), options), Verdict::kSettles);
@@ -60,12 +66,10 @@ TEST(BehaviourText, SettledAndUnstableIsSaidInOneSentence) {
   const std::string text = BehaviourText(result);
   EXPECT_TRUE(Contains(text, "settle within 2 s")) << text;
   EXPECT_TRUE(Contains(text, "UNSTABLE: it grows too slowly")) << text;
-  std::string advised;
-  for (const Advice& advice : Advise(result)) advised += advice.sentence + advice.command + "\n";
-  EXPECT_TRUE(Contains(advised, "--mode_weight=30")) << advised;
-  EXPECT_FALSE(Contains(advised, "settling_weight")) << advised;
+  EXPECT_TRUE(Contains(Advised(result), "--mode_weight=30")) << Advised(result);
+  EXPECT_FALSE(Contains(Advised(result), "settling_weight")) << Advised(result);
   result.options.model.push_tail = PushTail::kNone;
-  EXPECT_TRUE(Contains(Advise(result).front().command, "--push_tail=exponential"));
+  EXPECT_TRUE(Contains(Advised(result), "--push_tail=exponential")) << Advised(result);
 }
 
 TEST(BehaviourText, AFallWithStableModesIsNoDrive) {
