@@ -9,7 +9,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/loading/motion_checks.h"
 #include "datasets/loading/track_gaps.h"
 #include "datasets/manifest/column_mapping.h"
@@ -51,10 +52,10 @@ class PersonLoader {
   PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
                const LoadOptions& options, std::vector<std::string>* warnings)
       : manifest_(manifest), entry_(entry), index_(index), options_(options), warnings_(warnings) {
-    path_ = ResolvePath(manifest.path, entry.motion_files()[index]);
+    path_ = ResolvePath(manifest.path, entry.motion[index]);
   }
 
-  Result<RecordedPerson> Load(std::string* file_hash) {
+  Result<LoadedPerson> Load() {
     if (!entry_.mapping.empty()) {
       Result<ColumnMapping> mapping =
           ReadColumnMapping(ResolvePath(manifest_.path, entry_.mapping));
@@ -65,25 +66,26 @@ class PersonLoader {
       mapping_hash_ = hash.value();
     }
     joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
-    Result<Motion> read =
-        entry_.motion_format == MotionFormat::kBvh ? ReadSkeleton() : ReadPoints();
+    Result<Motion> read = HasSkeleton(entry_.motion_format) ? ReadSkeleton() : ReadPoints();
     if (!read.ok()) return read.error();
     Motion& motion = read.value();
-    *file_hash = mapping_hash_ + motion.content_hash;
-    WarnOfRate(motion.frame_time_s);
-    RecordedPerson person;
+    if (MaybeError failed = SetRate(motion.frame_time_s)) return *std::move(failed);
+    LoadedPerson loaded;
+    loaded.fps = fps_;
+    loaded.file_hash = mapping_hash_ + motion.content_hash;
+    RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.file = path_;
     person.file_clock_s =
         motion.first_time_s +
-        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / entry_.fps);
+        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / fps_);
     if (MaybeError failed = Cut(&motion)) return *std::move(failed);
     if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
     if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
     Take(motion, &person);
     if (MaybeError failed = CheckMotion(person, motion.unit)) return *std::move(failed);
-    return person;
+    return loaded;
   }
 
  private:
@@ -103,8 +105,8 @@ class PersonLoader {
   void Warn(const std::string& warning) const {
     if (warnings_ != nullptr) {
       // As the manifest names it: results keep warnings, and not where the data lay.
-      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion_files()[index_] +
-                           " " + warning);
+      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion[index_] + " " +
+                           warning);
     }
   }
 
@@ -175,12 +177,30 @@ class PersonLoader {
     return motion;
   }
 
+  // The manifest's rate; where it gives none, that of the file.
+  MaybeError SetRate(double frame_time_s) {
+    fps_ = entry_.fps;
+    if (fps_ > 0.0) {
+      WarnOfRate(frame_time_s);
+      return std::nullopt;
+    }
+    if (frame_time_s == 0.0) {
+      return Error{
+          "neither the file nor the manifest says the frame rate; give fps in the manifest", path_};
+    }
+    fps_ = WholeFrameRate(1.0 / frame_time_s);
+    const std::string problem = FrameRateProblem(fps_);
+    if (problem.empty()) return std::nullopt;
+    return Error{"the file's frame rate " + problem + "; give the right one as fps in the manifest",
+                 path_};
+  }
+
   void WarnOfRate(double frame_time_s) const {
-    if (frame_time_s == 0.0 || std::abs(frame_time_s * entry_.fps - 1.0) <= kFrameTimeTolerance) {
+    if (frame_time_s == 0.0 || std::abs(frame_time_s * fps_ - 1.0) <= kFrameTimeTolerance) {
       return;
     }
     Warn("has a frame time of " + Rounded(frame_time_s) + " s (" + Rounded(1.0 / frame_time_s) +
-         " frames per second), the manifest says " + Rounded(entry_.fps) +
+         " frames per second), the manifest says " + Rounded(fps_) +
          " frames per second; the manifest's value is used");
   }
 
@@ -207,8 +227,7 @@ class PersonLoader {
   // Only gaps of hip and ankles take weight from a frame.
   MaybeError CloseGaps(Motion* motion, RecordedPerson* person) const {
     const std::size_t frames = motion->tracks[0].size();
-    const int max_gap =
-        static_cast<int>(std::floor(options_.preparation.max_gap_s * entry_.fps + 1e-9));
+    const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
     std::vector<double> weight(frames, 1.0), unused(frames, 1.0);
     int gaps = 0;
     for (std::size_t i = 0; i < motion->tracks.size(); ++i) {
@@ -293,14 +312,15 @@ class PersonLoader {
   ColumnMapping mapping_;
   std::string mapping_hash_;
   JointMapping joints_;
+  double fps_ = 0.0;
 };
 
 }  // namespace
 
-Result<RecordedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                  std::size_t index, const LoadOptions& options,
-                                  std::string* file_hash, std::vector<std::string>* warnings) {
-  return PersonLoader(manifest, entry, index, options, warnings).Load(file_hash);
+Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
+                                std::size_t index, const LoadOptions& options,
+                                std::vector<std::string>* warnings) {
+  return PersonLoader(manifest, entry, index, options, warnings).Load();
 }
 
 }  // namespace pushid
