@@ -63,8 +63,7 @@ int Run() {
               prediction.path.num_frames(), FLAGS_out.c_str());
   if (FLAGS_frames == 0) {
     const RecordingScore score = ScoreHip(recording, prediction.hip);
-    std::printf("against the recording: hipADE %s m, hipFDE %s m\n",
-                Rounded(score.hip_ade, 3).c_str(), Rounded(score.hip_fde, 3).c_str());
+    std::printf("against the recording: %s\n", MetricsText(score, 3).c_str());
   }
   return kDone;
 }
