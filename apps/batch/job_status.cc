@@ -34,14 +34,15 @@ std::optional<JobState> JobStateFromName(std::string_view name) {
 
 MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
                           const std::vector<std::vector<std::string>>& commands) {
-  return WriteJson(StatusFile(folder), {{"id", job.id},
-                                        {"variant", job.variant},
-                                        {"group", job.group},
-                                        {"replica", job.replica},
-                                        {"status", NameOf(status.state)},
-                                        {"reason", status.reason},
-                                        {"commands", commands},
-                                        {"run", {{"seconds", status.seconds}}}});
+  const nlohmann::ordered_json json = {{"id", job.id},
+                                       {"variant", job.variant},
+                                       {"group", job.group},
+                                       {"replica", job.replica},
+                                       {"status", NameOf(status.state)},
+                                       {"reason", status.reason},
+                                       {"commands", commands},
+                                       {"run", {{"seconds", status.seconds}}}};
+  return WriteJson(StatusFile(folder), json);
 }
 
 Result<JobStatus> ReadJobStatus(const std::string& folder) {
