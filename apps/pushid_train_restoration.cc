@@ -55,10 +55,11 @@ MaybeError CheckFlags() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return missing;
   }
-  if (FLAGS_kind != "window" && FLAGS_kind != "cvae" && FLAGS_kind != "simlpe") {
-    return Error{"--kind is '" + FLAGS_kind + "'; it must be window, cvae or simlpe"};
+  const auto kind = RestorationKindFromName(FLAGS_kind);
+  if (!kind || !RowOf(*kind).trained) {
+    return Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
-  if (FLAGS_coordinates != "tip" && FLAGS_coordinates != "ldp") {
+  if (!CvaeCoordinatesFromName(FLAGS_coordinates)) {
     return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
   }
   if (FLAGS_crossvalidate == 0) {
@@ -95,8 +96,8 @@ Result<RestorationRunOptions> RunOptions() {
   options.held_out = FLAGS_held_out;
   options.predicted_pendulums = FLAGS_predicted_pendulums;
   options.mirrored = FLAGS_mirrored;
-  options.training.kind = FLAGS_kind;
-  options.training.coordinates = FLAGS_coordinates;
+  options.training.kind = *RestorationKindFromName(FLAGS_kind);
+  options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;
   options.training.num_threads = FLAGS_num_threads;
