@@ -67,9 +67,7 @@ int WriteBodies(const PredictFlags& flags, const Recording& recorded, SkeletonMa
               std::string(restoration.value()->kind()).c_str());
   for (const std::string& file : files.value()) std::printf("  %s\n", file.c_str());
   if (flags.whole_recording()) {
-    std::printf("against the recording: MPJPE %s m, hipADE %s m, hipFDE %s m, FSE %s cm\n",
-                Rounded(score.value[kMpjpe], 3).c_str(), Rounded(score.value[kHipAde], 3).c_str(),
-                Rounded(score.value[kHipFde], 3).c_str(), Rounded(score.value[kFse], 3).c_str());
+    std::printf("against the recording: %s\n", MetricsText(score.value, 3).c_str());
   }
   return kDone;
 }

@@ -80,7 +80,7 @@ MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
 int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   if (MaybeError error = Summarize(plan, all)) return Fail(*error);
   std::map<std::string, int> rows;
-  for (const JobResult& row : ReadResults(plan, all)) ++rows[row.status];
+  for (const JobResult& row : ReadResults(plan, all)) ++rows[NameOf(row.status.state)];
   std::printf("%d done, %d failed, %d open; results in %s\n", rows["done"], rows["failed"],
               rows["open"], plan.dir.c_str());
   return kDone;

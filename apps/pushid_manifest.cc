@@ -14,7 +14,7 @@ using namespace pushid;
 // No flag names the files that the patterns find.
 MaybeError CheckFilesKept(const Manifest& manifest, const std::string& path) {
   for (const ManifestRecording& recording : manifest.recordings) {
-    std::vector<std::string> files = recording.motion_files();
+    std::vector<std::string> files = recording.motion;
     files.push_back(recording.push_csv);
     for (const std::string& file : files) {
       if (file.empty()) continue;

@@ -44,8 +44,7 @@ int Run() {
               prediction.path.num_frames(), flags.out.c_str());
   if (flags.whole_recording()) {
     const RecordingScore score = ScoreHip(recording, prediction.hip);
-    std::printf("against the recording: hipADE %s m, hipFDE %s m\n",
-                Rounded(score.hip_ade, 3).c_str(), Rounded(score.hip_fde, 3).c_str());
+    std::printf("against the recording: %s\n", MetricsText(score, 3).c_str());
   }
   return kDone;
 }

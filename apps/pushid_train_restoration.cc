@@ -102,7 +102,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   if (!trained.ok()) return Fail(trained.error());
   RestorationFile& file = trained.value().file;
   file.training = Provenance(recordings, trained.value());
-  const std::string title = options.training.kind + " restoration, " +
+  const std::string title = std::string(Name(options.training.kind)) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
   if (MaybeError error = WriteFileAtomically(in_out("curve.svg"),

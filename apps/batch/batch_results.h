@@ -2,25 +2,26 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/batch/batch_jobs.h"
+#include "apps/batch/job_status.h"
+#include "ident/prediction/evaluation.h"
 
 namespace pushid {
 
 struct JobResult {
   const BatchJob* job = nullptr;
-  // done: all its files can be read; failed: it ended otherwise, or they cannot; open: it never
-  // ended.
-  std::string status;
-  std::string reason;                                // of a failure
+  JobStatus status;
   std::map<std::string, double> parameters, errors;  // free ones, with standard errors
-  double cost = 0.0, solve_s = 0.0, seconds = 0.0;
+  double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;
-  double hip_ade = -1.0, hip_fde = -1.0;  // of what was held out; negative: nothing was
+  std::optional<HipMetrics> held_out;  // of what was held out
 
-  bool done() const { return status == "done"; }
+  bool done() const { return status.state == JobState::kDone; }
 };
 
 std::string JobFolder(const BatchPlan& plan, const BatchJob& job);

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/support/app_support.h"
@@ -14,7 +13,6 @@
 #include "apps/support/folder_lock.h"
 #include "apps/support/signal_reader.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -217,15 +215,8 @@ class Pool {
   // reason: empty when it is done.
   static MaybeError WriteStatus(const Running& running, const std::string& reason) {
     const double seconds = running.commands.empty() ? 0.0 : Since(running.begin);
-    nlohmann::ordered_json json = {{"id", running.job->id},
-                                   {"variant", running.job->variant},
-                                   {"group", running.job->group},
-                                   {"replica", running.job->replica},
-                                   {"status", reason.empty() ? "done" : "failed"},
-                                   {"reason", reason},
-                                   {"commands", running.commands},
-                                   {"run", {{"seconds", seconds}}}};
-    return WriteJson(running.folder + "/status.json", json);
+    const JobState state = reason.empty() ? JobState::kDone : JobState::kFailed;
+    return WriteJobStatus(running.folder, *running.job, {state, reason, seconds}, running.commands);
   }
 
   // What runs is ended and will be redone: it has no status.

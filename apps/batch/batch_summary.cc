@@ -1,6 +1,7 @@
 // apps: collecting a batch's results.
 #include "apps/batch/batch_summary.h"
 
+#include "apps/batch/batch_columns.h"
 #include "apps/batch/batch_tables.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -18,42 +19,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMostRowsInText = 40;
 
-std::string Cell(const std::map<std::string, double>& values, const std::string& name) {
-  const auto found = values.find(name);
-  return found == values.end() ? "" : DoubleText(found->second);
-}
-
-std::string Joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
-
 // Full precision, for summary.csv.
 TextTable FullTable(const std::vector<JobResult>& rows) {
-  const std::vector<std::string> names = ParameterNames(rows);
-  std::vector<std::string> header = {"id", "variant", "group", "replica", "status", "reason"};
-  header.insert(header.end(), names.begin(), names.end());
-  for (const std::string& name : names) header.push_back(name + "_se");
-  for (const char* name : {"cost", "settles", "held_out_hip_ade_m", "held_out_hip_fde_m",
-                           "warnings", "solve_s", "seconds"}) {
-    header.push_back(name);
-  }
+  const std::vector<JobColumn> columns = JobColumns(rows);
+  std::vector<std::string> header;
+  for (const JobColumn& column : columns) header.push_back(column.name);
   TextTable table(header, std::vector<bool>(header.size(), true));
   for (const JobResult& row : rows) {
-    const bool done = row.status == "done";
-    std::vector<std::string> cells = {row.job->id,    row.job->variant,
-                                      row.job->group, std::to_string(row.job->replica),
-                                      row.status,     row.reason};
-    for (const std::string& name : names) cells.push_back(Cell(row.parameters, name));
-    for (const std::string& name : names) cells.push_back(Cell(row.errors, name));
-    cells.push_back(done ? DoubleText(row.cost) : "");
-    cells.push_back(done ? (row.settles ? "yes" : "no") : "");
-    cells.push_back(row.hip_ade >= 0.0 ? DoubleText(row.hip_ade) : "");
-    cells.push_back(row.hip_fde >= 0.0 ? DoubleText(row.hip_fde) : "");
-    cells.push_back(Joined(row.warnings));
-    cells.push_back(done ? DoubleText(row.solve_s) : "");
-    cells.push_back(row.status == "open" ? "" : DoubleText(row.seconds));
+    std::vector<std::string> cells;
+    for (const JobColumn& column : columns) cells.push_back(column.cell(row).exact);
     table.Add(cells);
   }
   return table;
@@ -62,10 +36,13 @@ TextTable FullTable(const std::vector<JobResult>& rows) {
 Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   Json jobs = Json::array();
   for (const JobResult& row : rows) {
-    Json job = {{"id", row.job->id},       {"variant", row.job->variant},
-                {"group", row.job->group}, {"replica", row.job->replica},
-                {"status", row.status},    {"reason", row.reason}};
-    if (row.status == "done") {
+    Json job = {{"id", row.job->id},
+                {"variant", row.job->variant},
+                {"group", row.job->group},
+                {"replica", row.job->replica},
+                {"status", NameOf(row.status.state)},
+                {"reason", row.status.reason}};
+    if (row.done()) {
       for (const auto& [name, value] : row.parameters) {
         job["parameters"][name] = {{"value", NumberJson(value)},
                                    {"standard_error", NumberJson(row.errors.at(name))}};
@@ -73,11 +50,11 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
       job["cost"] = NumberJson(row.cost);
       job["settles"] = row.settles;
       if (!row.warnings.empty()) job["warnings"] = row.warnings;
-      if (row.hip_ade >= 0.0) {
-        job["held_out"] = {{"hipADE_m", row.hip_ade}, {"hipFDE_m", row.hip_fde}};
+      for (const HipMetric& metric : kHipMetrics) {
+        if (row.held_out) job["held_out"][metric.Key()] = *row.held_out.*metric.value;
       }
     }
-    job["run"] = {{"solve_s", row.solve_s}, {"seconds", row.seconds}};
+    job["run"] = {{"solve_s", row.solve_s}, {"seconds", row.status.seconds}};
     jobs.push_back(job);
   }
   Json bootstrap = Json::array();

@@ -10,9 +10,7 @@ namespace pushid {
 
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
 
-// summary.csv, summary.json and summary.html in the plan's folder. CSV columns:
-// id,variant,group,replica,status,reason,<parameter>...,<parameter>_se...,cost,settles,
-// held_out_hip_ade_m,held_out_hip_fde_m,warnings,solve_s,seconds
+// summary.csv (its columns: batch_columns.h), summary.json and summary.html in the plan's folder.
 MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
 // By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of

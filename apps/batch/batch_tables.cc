@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
+#include "apps/batch/batch_columns.h"
 #include "datasets/files/number_text.h"
 #include "ident/uncertainty/bootstrap.h"
 
@@ -12,53 +12,42 @@ namespace pushid {
 namespace {
 
 struct VariantSummary {
-  int done = 0, failed = 0, open = 0;
+  std::map<JobState, int> jobs;
   std::map<std::string, std::vector<double>> values;
 };
 
 std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<JobResult>& rows) {
   std::vector<std::pair<std::string, VariantSummary>> variants;
+  const std::vector<JobColumn> columns = JobColumns(rows);
   for (const JobResult& row : rows) {
     auto at = std::find_if(variants.begin(), variants.end(), [&row](const auto& variant) {
       return variant.first == row.job->variant;
     });
     if (at == variants.end()) at = variants.insert(variants.end(), {row.job->variant, {}});
-    ++(row.status == "done"   ? at->second.done
-       : row.status == "open" ? at->second.open
-                              : at->second.failed);
+    ++at->second.jobs[row.status.state];
     if (row.job->replica > 0) continue;
-    for (const auto& [name, value] : row.parameters) at->second.values[name].push_back(value);
-    if (row.hip_ade < 0.0) continue;
-    at->second.values["held-out hipADE, m"].push_back(row.hip_ade);
-    at->second.values["held-out hipFDE, m"].push_back(row.hip_fde);
+    for (const JobColumn& column : columns) {
+      if (!column.over_groups) continue;
+      const std::optional<double> number = column.cell(row).number;
+      if (number) at->second.values[column.title].push_back(*number);
+    }
   }
   return variants;
 }
 
-std::string WithError(double value, double error) {
-  const std::string text = Rounded(value, 4);
-  return std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text + " (unidentifiable)";
-}
-
 }  // namespace
-
-std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const JobResult& row : rows) {
-    for (const auto& [name, value] : row.parameters) {
-      if (seen.insert(name).second) names.push_back(name);
-    }
-  }
-  return names;
-}
 
 TextTable VariantTable(const std::vector<JobResult>& rows) {
   TextTable table({"variant", "jobs done", "failed", "open", "over groups", "mean", "std deviation",
                    "lowest", "highest"},
                   {true, false, false, false, true, false, false, false, false});
   for (const auto& [name, v] : ByVariant(rows)) {
-    table.Add({name, std::to_string(v.done), std::to_string(v.failed), std::to_string(v.open)});
+    std::vector<std::string> counts = {name};
+    for (JobState state : {JobState::kDone, JobState::kFailed, JobState::kOpen}) {
+      const auto found = v.jobs.find(state);
+      counts.push_back(std::to_string(found == v.jobs.end() ? 0 : found->second));
+    }
+    table.Add(counts);
     for (const auto& [what, values] : v.values) {
       double sum = 0.0, squares = 0.0;
       for (double value : values) sum += value;
@@ -132,39 +121,28 @@ TextTable FailureTable(const std::vector<JobResult>& rows) {
   TextTable table({"failed", "variant", "group", "replica", "reason"},
                   {true, true, true, false, true});
   for (const JobResult& row : rows) {
-    if (row.status != "failed" || table.rows().size() > kMostRowsOnPage) continue;
+    if (row.status.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
     table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
-               std::to_string(row.job->replica), row.reason});
+               std::to_string(row.job->replica), row.status.reason});
   }
   return table;
 }
 
 TextTable JobTable(const std::vector<JobResult>& rows) {
-  const std::vector<std::string> names = ParameterNames(rows);
-  std::vector<std::string> header = {"job", "variant", "group", "replica", "status"};
-  header.insert(header.end(), names.begin(), names.end());
-  header.insert(header.end(), {"settles", "held-out hipADE, m", "held-out hipFDE, m", "solve s",
-                               "seconds", "warnings"});
-  std::vector<bool> words(header.size(), false);
-  std::fill(words.begin(), words.begin() + 3, true);
-  words[4] = true;
+  std::vector<JobColumn> columns;
+  std::vector<std::string> header;
+  std::vector<bool> words;
+  for (const JobColumn& column : JobColumns(rows)) {
+    if (column.title.empty()) continue;
+    columns.push_back(column);
+    header.push_back(column.title);
+    words.push_back(column.words);
+  }
   TextTable table(header, words);
   for (const JobResult& row : rows) {
     if (table.rows().size() > kMostRowsOnPage) break;
-    std::vector<std::string> cells = {row.job->id.substr(0, 8), row.job->variant, row.job->group,
-                                      std::to_string(row.job->replica), row.status};
-    for (const std::string& name : names) {
-      const auto found = row.parameters.find(name);
-      cells.push_back(
-          found == row.parameters.end() ? "" : WithError(found->second, row.errors.at(name)));
-    }
-    const bool done = row.done();
-    cells.push_back(done ? (row.settles ? "yes" : "no") : "");
-    cells.push_back(row.hip_ade >= 0.0 ? Rounded(row.hip_ade, 3) : "");
-    cells.push_back(row.hip_fde >= 0.0 ? Rounded(row.hip_fde, 3) : "");
-    cells.push_back(done ? Rounded(row.solve_s, 2) : "");
-    cells.push_back(row.status == "open" ? "" : Rounded(row.seconds, 2));
-    cells.push_back(row.warnings.empty() ? "" : std::to_string(row.warnings.size()));
+    std::vector<std::string> cells;
+    for (const JobColumn& column : columns) cells.push_back(column.cell(row).shown);
     table.Add(cells);
   }
   return table;

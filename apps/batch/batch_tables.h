@@ -12,9 +12,6 @@ namespace pushid {
 
 inline constexpr size_t kMostRowsOnPage = 2000;
 
-// Of all jobs, in the order in which they first come.
-std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows);
-
 // Counts of each variant, and how its estimates (replica 0) differ between groups.
 TextTable VariantTable(const std::vector<JobResult>& rows);
 

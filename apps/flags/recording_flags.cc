@@ -84,7 +84,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   const Result<Manifest> manifest = ReadManifest(FLAGS_recordings);
   if (!manifest.ok()) return manifest.error();
   for (const ManifestRecording& entry : manifest.value().recordings) {
-    std::vector<std::string> files = entry.motion_files();
+    std::vector<std::string> files = entry.motion;
     if (!entry.mapping.empty()) files.push_back(entry.mapping);
     for (const std::string& file : files) {
       const MaybeError error =

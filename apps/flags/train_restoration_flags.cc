@@ -10,10 +10,10 @@
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
 DEFINE_string(
-    kind, pushid::RestorationTrainingOptions{}.kind,
+    kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name,
     "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (siMLPe, which "
     "continues 12 given frames, for --peer of pushid-evaluate)");
-DEFINE_string(coordinates, pushid::RestorationTrainingOptions{}.coordinates,
+DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
@@ -47,10 +47,11 @@ MaybeError CheckFlags() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return missing;
   }
-  if (FLAGS_kind != "window" && FLAGS_kind != "cvae" && FLAGS_kind != "simlpe") {
-    return Error{"--kind is '" + FLAGS_kind + "'; it must be window, cvae or simlpe"};
+  const auto kind = RestorationKindFromName(FLAGS_kind);
+  if (!kind || !RowOf(*kind).trained) {
+    return Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
-  if (FLAGS_coordinates != "tip" && FLAGS_coordinates != "ldp") {
+  if (!CvaeCoordinatesFromName(FLAGS_coordinates)) {
     return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
   }
   if (FLAGS_crossvalidate == 0) {
@@ -88,8 +89,8 @@ Result<RestorationRunOptions> RunOptions() {
   options.held_out = FLAGS_held_out;
   options.predicted_pendulums = FLAGS_predicted_pendulums;
   options.mirrored = FLAGS_mirrored;
-  options.training.kind = FLAGS_kind;
-  options.training.coordinates = FLAGS_coordinates;
+  options.training.kind = *RestorationKindFromName(FLAGS_kind);
+  options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;
   options.training.num_threads = FLAGS_num_threads;

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
@@ -23,8 +24,18 @@ inline std::string Shown(const nlohmann::ordered_json& value) {
   return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-// Takes typed values out of one JSON object and remembers the first thing that is wrong, so that a
-// reader lists its keys one after the other and asks once at the end.
+// A required key that an object lacks.
+struct MissingKey {
+  std::string label, pointer;  // of the object: "recording 'a'", "/recordings/0"
+  std::string key, what;       // "fps", "the frames per second"
+};
+
+// "recording 'a': fps and id are missing; fps must be ...; id must be ...; recording 'b': ..."
+std::string MissingText(const std::vector<MissingKey>& missing);
+
+// Takes typed values out of one JSON object and remembers every required key that is missing and
+// the first other thing that is wrong, so that a reader lists its keys one after the other and asks
+// once at the end.
 class JsonFields {
  public:
   // `label` begins every message: "recording 'single_X05_00'".
@@ -44,7 +55,15 @@ class JsonFields {
   }
   const std::string& label() const { return label_; }
   void set_label(std::string label) { label_ = std::move(label); }
-  const MaybeError& error() const { return error_; }
+  // All keys that are missing, in one error; otherwise the first other thing that is wrong.
+  MaybeError error() const {
+    if (missing_.empty()) return error_;
+    const MissingKey& first = missing_.front();
+    return document_.ErrorAt(first.pointer + "/" + first.key, MissingText(missing_));
+  }
+  bool failed() const { return error_ || !missing_.empty(); }
+  // Something else than missing keys.
+  bool is_wrong() const { return error_.has_value(); }
 
   void Fail(const std::string& key, const std::string& problem) {
     if (error_) return;
@@ -53,6 +72,11 @@ class JsonFields {
   }
   void Fail(const MaybeError& error) {
     if (!error_) error_ = error;
+  }
+  // What is wrong with an object inside of this one.
+  void Add(const JsonFields& inner) {
+    missing_.insert(missing_.end(), inner.missing_.begin(), inner.missing_.end());
+    Fail(inner.error_);
   }
 
   // Other keys than these are mistakes, which would be read over.
@@ -67,13 +91,13 @@ class JsonFields {
     }
   }
 
-  bool Require(const char* key, const char* what) {
+  bool Require(const char* key, const std::string& what) {
     if (Has(key)) return true;
-    Fail(key, std::string("is missing; it must be ") + what);
+    if (object_.is_object()) missing_.push_back({label_, pointer_, key, what});
     return false;
   }
 
-  std::string Text(const char* key, const char* what) {
+  std::string Text(const char* key, const std::string& what) {
     return Require(key, what) ? OptionalText(key, "") : "";
   }
 
@@ -86,19 +110,19 @@ class JsonFields {
     return At(key).get<std::string>();
   }
 
-  double Number(const char* key, const char* what) {
+  double Number(const char* key, const std::string& what) {
     if (!Require(key, what)) return 0.0;
     if (!At(key).is_number()) {
-      Fail(key, std::string("must be ") + what + ", not " + Shown(At(key)));
+      Fail(key, "must be " + what + ", not " + Shown(At(key)));
       return 0.0;
     }
     return At(key).get<double>();
   }
 
   // A whole number in [lowest, highest].
-  int Whole(const char* key, const char* what, int lowest, int highest) {
+  int Whole(const char* key, const std::string& what, int lowest, int highest) {
     const double value = Number(key, what);
-    if (error_) return lowest;
+    if (failed()) return lowest;
     if (std::floor(value) != value || value < lowest || value > highest) {
       Fail(key, "is " + Shown(At(key)) + "; it must be " + what);
       return lowest;
@@ -131,6 +155,7 @@ class JsonFields {
   const nlohmann::ordered_json& object_;
   std::string pointer_;
   std::string label_;
+  std::vector<MissingKey> missing_;
   MaybeError error_;
 };
 

@@ -111,8 +111,4 @@ MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit
 Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
                         const std::string& name);
 
-// Frame times accepted in files: 1 to 10000 frames per second.
-constexpr double kMinFramesPerSecond = 1.0;
-constexpr double kMaxFramesPerSecond = 10000.0;
-
 }  // namespace pushid

@@ -1,25 +1,19 @@
 // datasets: trajectories of named points (markers or joints) from files other than BVH: C3D, TRC,
 // and tables (CSV, OpenSim STO and MOT) with three columns per point.
 //
-//   Result<PointMotion> motion = ReadPointMotion("trial.trc", MotionFormat::kTrc, {});
+//   Result<PointMotion> motion = ReadTrc("trial.trc");  // any format: motion_formats.h
 #pragma once
 
 #include <Eigen/Core>
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/formats/length_unit.h"
-#include "datasets/manifest/manifest.h"
 
 namespace pushid {
-
-// What files of the format are called: ".c3d" is C3D, ".mot" and ".sto" storage, ...; nullopt for
-// other endings.
-std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
 
 struct PointMotion {
   std::string path;
@@ -55,10 +49,6 @@ struct PointReadOptions {
   std::vector<PointColumns> columns;
   bool accept_truncated = false;  // of C3D, see C3dReadOptions
 };
-
-// Errors besides those of the single readers: no points, times that are not evenly spaced.
-Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
-                                    const PointReadOptions& options = {});
 
 // "there is no point 'hip'; it has LASI, RASI, ..." for callers that look points up by name.
 Error UnknownPointError(const std::string& path, const std::vector<std::string>& names,

@@ -94,7 +94,9 @@ PointMotion WithoutForces(const PointMotion& motion) {
   return points;
 }
 
-Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format,
+namespace {
+
+Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
                                     const PointReadOptions& options) {
   PointMotion motion;
   motion.path = path;
@@ -129,9 +131,7 @@ Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format
     if (columns.empty() && !names.empty()) columns.push_back(0);  // counts the rows
     return columns;
   };
-  const TableFormat table_format =
-      format == MotionFormat::kCsv ? TableFormat::kCsv : TableFormat::kStorage;
-  const Result<NumericTable> table = ReadNumericTable(path, table_format, table_options);
+  const Result<NumericTable> table = ReadNumericTable(path, format, table_options);
   if (!table.ok()) return table.error();
   motion.content_hash = table.value().content_hash;
   if (time_column >= 0) {
@@ -153,6 +153,16 @@ Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format
     motion.positions.push_back(std::move(track));
   }
   return motion;
+}
+
+}  // namespace
+
+Result<PointMotion> ReadCsvPoints(const std::string& path, const PointReadOptions& options) {
+  return ReadTablePoints(path, TableFormat::kCsv, options);
+}
+
+Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOptions& options) {
+  return ReadTablePoints(path, TableFormat::kStorage, options);
 }
 
 }  // namespace pushid

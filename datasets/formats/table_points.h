@@ -23,8 +23,10 @@ bool IsForceColumn(const std::string& name);
 // Three columns of a force or a torque look like a point: all that do not.
 PointMotion WithoutForces(const PointMotion& motion);
 
-// `format`: kCsv or kStorage. Points are those of options.columns, otherwise of PointsOf.
-Result<PointMotion> ReadTablePoints(const std::string& path, MotionFormat format,
-                                    const PointReadOptions& options);
+// Points are those of options.columns, otherwise of PointsOf. Errors besides those of the table:
+// times that are not evenly spaced.
+Result<PointMotion> ReadCsvPoints(const std::string& path, const PointReadOptions& options = {});
+Result<PointMotion> ReadStoragePoints(const std::string& path,
+                                      const PointReadOptions& options = {});
 
 }  // namespace pushid

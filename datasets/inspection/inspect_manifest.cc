@@ -1,28 +1,14 @@
 // datasets: what a manifest lists.
 #include "datasets/inspection/inspect_manifest.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 
+#include "datasets/files/list_of_names.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/manifest/recording_names.h"
 
 namespace pushid {
-namespace {
-
-constexpr std::size_t kListed = 60;
-
-}  // namespace
-
-std::string ListOfNames(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kListed, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  return text + (names.size() > kListed ? ", ... (" + std::to_string(names.size()) + ")" : "");
-}
-
 MaybeError InspectManifest(Inspection* found) {
   const Result<Manifest> manifest = ReadManifest(found->path);
   if (!manifest.ok()) return manifest.error();

@@ -1,9 +1,6 @@
 // datasets: what a manifest lists, and which of it can be read.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "datasets/inspection/inspection.h"
 
 namespace pushid {
@@ -11,8 +8,5 @@ namespace pushid {
 // Adds facts about the manifest at inspection->path, and a warning for every recording that cannot
 // be read and everything unusual about the others.
 MaybeError InspectManifest(Inspection* inspection);
-
-// "a, b, c, ... (51)": the first dozen names.
-std::string ListOfNames(const std::vector<std::string>& names);
 
 }  // namespace pushid

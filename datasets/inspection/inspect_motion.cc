@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/frame_rate.h"
 
 namespace pushid {
 namespace {
@@ -59,10 +59,9 @@ class MotionInspector {
     if (motion_.rate_hz > 0.0) {
       text +=
           " at " + Rounded(motion_.rate_hz) + " per second, " + Seconds(frames / motion_.rate_hz);
-      const double whole = std::round(motion_.rate_hz);
-      if (whole > 0.0 && motion_.rate_hz != whole &&
-          std::fabs(motion_.rate_hz / whole - 1.0) < 1e-3) {
-        text += "; most likely " + Rounded(whole) + " (\"fps\" in the manifest wins)";
+      const double whole = WholeFrameRate(motion_.rate_hz);
+      if (Rounded(whole) != Rounded(motion_.rate_hz)) {
+        text += "; taken as " + Rounded(whole) + " (\"fps\" in the manifest wins)";
       }
       if (motion_.rate_hz < 30.0) {
         found_.Warn("a push lasts a few frames only at " + Rounded(motion_.rate_hz) +

@@ -6,16 +6,15 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
+#include "datasets/files/list_of_names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
-#include "datasets/formats/table_points.h"
 #include "datasets/inspection/inspect_manifest.h"
 #include "datasets/inspection/inspect_motion.h"
-#include "datasets/manifest/recording_names.h"
 #include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_csv.h"
 
@@ -146,7 +145,7 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   if (!file.points.empty()) {
     PointReadOptions options;
     options.accept_truncated = true;
-    const Result<PointMotion> motion = ReadPointMotion(found->path, MotionFormat::kC3d, options);
+    const Result<PointMotion> motion = ReadC3dPoints(found->path, options);
     if (!motion.ok()) return motion.error();
     LookAtPoints(motion.value(), mapping, found);
   }
@@ -188,10 +187,9 @@ MaybeError LookAtSensor(Inspection* found) {
 }
 
 // A table: points where columns come in threes, and forces by their names.
-MaybeError LookAtTable(MotionFormat format, const ColumnMapping& mapping, Inspection* found) {
-  const TableFormat table_format =
-      format == MotionFormat::kCsv ? TableFormat::kCsv : TableFormat::kStorage;
-  const Result<NumericTable> read = ReadNumericTable(found->path, table_format, {});
+MaybeError LookAtTable(const MotionFormatRow& format, const ColumnMapping& mapping,
+                       Inspection* found) {
+  const Result<NumericTable> read = ReadNumericTable(found->path, *format.table, {});
   if (!read.ok()) return read.error();
   const NumericTable& table = read.value();
   found->Fact("columns", ListOfNames(table.names));
@@ -208,7 +206,7 @@ MaybeError LookAtTable(MotionFormat format, const ColumnMapping& mapping, Inspec
   PointReadOptions options;
   options.columns = mapping.columns;
   options.time_column = mapping.time_column;
-  const Result<PointMotion> motion = ReadPointMotion(found->path, format, options);
+  const Result<PointMotion> motion = ReadPointMotion(found->path, format.format, options);
   PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
   points.rate_hz = rate;
   if (!points.names.empty()) {
@@ -235,34 +233,26 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   if (!format) {
     const std::string first = FirstLine(path);
     if (first.empty() || first[0] != '{') {
-      return Error{
-          "what this is cannot be told: names end in .bvh, .c3d, .trc, .sto, .mot, .csv, "
-          "or .json for a manifest",
-          path};
+      return Error{"what this is cannot be told: names end in " + MotionFileEndings() +
+                       ", or .json for a manifest",
+                   path};
     }
     found->format = "manifest";
     return InspectManifest(found);
   }
   found->format = Title(*format);
-  switch (*format) {
-    case MotionFormat::kBvh:
-      return LookAtBvh(mapping, found);
-    case MotionFormat::kC3d:
-      return LookAtC3d(mapping, found);
-    case MotionFormat::kTrc: {
-      const Result<PointMotion> motion = ReadPointMotion(path, *format, {});
-      if (!motion.ok()) return motion.error();
-      LookAtPoints(motion.value(), mapping, found);
-      return std::nullopt;
-    }
-    case MotionFormat::kCsv:
-    case MotionFormat::kStorage:
-      break;
+  if (HasSkeleton(*format)) return LookAtBvh(mapping, found);
+  if (*format == MotionFormat::kC3d) return LookAtC3d(mapping, found);
+  if (!RowOf(*format).table) {
+    const Result<PointMotion> motion = ReadPointMotion(path, *format);
+    if (!motion.ok()) return motion.error();
+    LookAtPoints(motion.value(), mapping, found);
+    return std::nullopt;
   }
   const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
   if (first.rfind("frame,fx,fy,ftheta", 0) == 0) return LookAtPush(found);
   if (first == "time,force" || first == "time,fx,fy,fz") return LookAtSensor(found);
-  return LookAtTable(*format, mapping, found);
+  return LookAtTable(RowOf(*format), mapping, found);
 }
 
 }  // namespace

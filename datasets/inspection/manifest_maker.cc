@@ -2,17 +2,14 @@
 #include "datasets/inspection/manifest_maker.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <set>
 
 #include "datasets/files/found_files.h"
-#include "datasets/files/input_file.h"
 #include "datasets/files/name_pattern.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
-#include "datasets/formats/bvh_header.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/manifest_keys.h"
 
@@ -24,7 +21,6 @@ namespace fs = std::filesystem;
 // What names of a pattern mean something; others tell recordings apart.
 const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
                                               "person"};
-constexpr double kNearlyWhole = 1e-3;  // of a frame rate
 
 class Maker {
  public:
@@ -37,7 +33,7 @@ class Maker {
     const std::optional<MotionFormat> format = MotionFormatOfFile(options_.pattern);
     if (!format) {
       return Error{"the pattern " + Quoted(options_.pattern) +
-                   " must end like its files: .bvh, .c3d, .trc, .csv, .sto or .mot"};
+                   " must end like its files: " + MotionFileEndings()};
     }
     format_ = *format;
     if (!options_.up.empty() || !options_.forward.empty()) {
@@ -170,8 +166,7 @@ class Maker {
       const std::string subject =
           Value(file.values, "subject", Value(file.values, "person", "person"));
       recording.subjects.push_back({subject, MassOf(subject)});
-      auto& list = format_ == MotionFormat::kBvh ? recording.bvh : recording.motion;
-      list.push_back(FromManifest(file.path));
+      recording.motion.push_back(FromManifest(file.path));
     }
     recording.pushed_person = options_.pushed_person;
     if (recording.pushed_person >= static_cast<int>(files->size())) {
@@ -212,26 +207,11 @@ class Maker {
   Result<double> Rate(const std::string& relative) const {
     if (options_.fps > 0.0) return options_.fps;
     const std::string path = (fs::path(options_.folder) / relative).string();
-    double rate = 0.0;
-    if (format_ == MotionFormat::kBvh) {
-      LineReader reader;
-      if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-      const Result<BvhHeader> header = ReadBvhHeader(&reader);
-      if (!header.ok()) return header.error();
-      rate = 1.0 / header.value().frame_time_s;
-    } else {
-      PointReadOptions point_options;
-      if (mapping_.frame_rate > 0.0) return mapping_.frame_rate;
-      point_options.time_column = mapping_.time_column;
-      point_options.columns = mapping_.columns;
-      point_options.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
-      const Result<PointMotion> motion = ReadPointMotion(path, format_, point_options);
-      if (!motion.ok()) return motion.error();
-      rate = motion.value().rate_hz;
-    }
-    if (!(rate > 0.0)) return 0.0;
-    const double whole = std::round(rate);
-    return whole > 0.0 && std::fabs(rate / whole - 1.0) < kNearlyWhole ? whole : rate;
+    if (mapping_.frame_rate > 0.0 && !HasSkeleton(format_)) return mapping_.frame_rate;
+    PointReadOptions point_options;
+    point_options.time_column = mapping_.time_column;
+    point_options.columns = mapping_.columns;
+    return ReadFrameRate(path, format_, point_options);
   }
 
   void SetPush(const NameValues& values, ManifestRecording* recording) {

@@ -25,8 +25,9 @@ Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
     }
     double value = 0.0;
     if (!ParseDouble(mass, &value)) return reader.ErrorHere("mass_kg: " + NumberProblem(mass));
-    if (!(value > 0.0 && value <= 400.0)) {
-      return reader.ErrorHere("a mass in kg is above 0 and at most 400, not " + Rounded(value));
+    if (!(value > 0.0 && value <= kHeaviestPerson)) {
+      return reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
+                              ", not " + Rounded(value));
     }
     if (!masses.emplace(id, value).second) {
       return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
-#include "datasets/formats/bvh.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/frame_rate.h"
+#include "datasets/loading/file_motion.h"
 #include "datasets/loading/motion_checks.h"
 #include "datasets/loading/track_gaps.h"
 #include "datasets/manifest/column_mapping.h"
@@ -23,38 +22,15 @@ using Track = std::vector<Eigen::Vector3d>;
 // fps and a BVH's rounded frame time agree within this: 0.016667 s against 60 Hz is 0.002 %.
 constexpr double kFrameTimeTolerance = 1e-3;
 
-// What the files have in common once they are read.
-struct Motion {
-  std::vector<Track> tracks;  // of every joint or point read, file's axes, metres
-  PendulumJoints places;      // indices into tracks
-  std::vector<std::string> names;
-  std::vector<int> parents;   // of BVH joints; otherwise -1 each
-  double frame_time_s = 0.0;  // 0: the file does not say
-  double first_time_s = 0.0;  // by the file's clock
-  LengthUnit unit = LengthUnit::kMillimetre;
-  std::string content_hash;
-};
-
-// Turns indices into the file's joints to indices into the list of those that are read.
-std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
-  std::vector<int> places;
-  for (int joint : wanted) {
-    const auto found = std::find(read->begin(), read->end(), joint);
-    places.push_back(static_cast<int>(found - read->begin()));
-    if (found == read->end()) read->push_back(joint);
-  }
-  return places;
-}
-
 class PersonLoader {
  public:
   PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
                const LoadOptions& options, std::vector<std::string>* warnings)
       : manifest_(manifest), entry_(entry), index_(index), options_(options), warnings_(warnings) {
-    path_ = ResolvePath(manifest.path, entry.motion_files()[index]);
+    path_ = ResolvePath(manifest.path, entry.motion[index]);
   }
 
-  Result<RecordedPerson> Load(std::string* file_hash) {
+  Result<LoadedPerson> Load() {
     if (!entry_.mapping.empty()) {
       Result<ColumnMapping> mapping =
           ReadColumnMapping(ResolvePath(manifest_.path, entry_.mapping));
@@ -64,26 +40,30 @@ class PersonLoader {
       if (!hash.ok()) return hash.error();
       mapping_hash_ = hash.value();
     }
-    joints_ = Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
-    Result<Motion> read =
-        entry_.motion_format == MotionFormat::kBvh ? ReadSkeleton() : ReadPoints();
+    const JointMapping joints =
+        Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
+    Result<FileMotion> read = ReadFileMotion(
+        {path_, entry_.motion_format, UnitGiven(), joints, mapping_, options_.keep_all_joints,
+         [this](const std::string& warning) { Warn(warning); }});
     if (!read.ok()) return read.error();
-    Motion& motion = read.value();
-    *file_hash = mapping_hash_ + motion.content_hash;
-    WarnOfRate(motion.frame_time_s);
-    RecordedPerson person;
+    FileMotion& motion = read.value();
+    if (MaybeError failed = SetRate(motion.frame_time_s)) return *std::move(failed);
+    LoadedPerson loaded;
+    loaded.fps = fps_;
+    loaded.file_hash = mapping_hash_ + motion.content_hash;
+    RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.file = path_;
     person.file_clock_s =
         motion.first_time_s +
-        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / entry_.fps);
+        entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / fps_);
     if (MaybeError failed = Cut(&motion)) return *std::move(failed);
     if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
     if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
     Take(motion, &person);
     if (MaybeError failed = CheckMotion(person, motion.unit)) return *std::move(failed);
-    return person;
+    return loaded;
   }
 
  private:
@@ -96,95 +76,42 @@ class PersonLoader {
     return std::nullopt;
   }
 
-  LengthUnit Unit(const std::optional<LengthUnit>& of_file) const {
-    return UnitGiven().value_or(of_file.value_or(LengthUnit::kMillimetre));
-  }
-
   void Warn(const std::string& warning) const {
     if (warnings_ != nullptr) {
       // As the manifest names it: results keep warnings, and not where the data lay.
-      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion_files()[index_] +
-                           " " + warning);
+      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion[index_] + " " +
+                           warning);
     }
   }
 
-  // Which of the file's `all` joints are read; where the pendulum's stand among those.
-  std::vector<int> Wanted(const PendulumJoints& joints, std::size_t all, Motion* motion) const {
-    std::vector<int> read(options_.keep_all_joints ? all : 0);
-    std::iota(read.begin(), read.end(), 0);
-    motion->places = {Among(joints.hip, &read), Among(joints.left_ankle, &read),
-                      Among(joints.right_ankle, &read)};
-    return read;
-  }
-
-  Result<Motion> ReadSkeleton() {
-    Motion motion;
-    motion.unit = Unit(std::nullopt);
-    BvhPositionOptions bvh_options;
-    bvh_options.length_unit = motion.unit;
-    bvh_options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
-      const Result<PendulumJoints> joints = ChoosePendulumJoints(path_, skeleton, joints_);
-      if (!joints.ok()) return joints.error();
-      return Wanted(joints.value(), skeleton.joints.size(), &motion);
-    };
-    Result<BvhPositions> bvh = ReadBvhPositions(path_, bvh_options);
-    if (!bvh.ok()) return bvh.error();
-    motion.tracks = std::move(bvh.value().positions);
-    motion.frame_time_s = bvh.value().frame_time_s;
-    motion.content_hash = bvh.value().content_hash;
-    for (int joint : bvh.value().joints) {
-      motion.names.push_back(bvh.value().skeleton.joints[joint].name);
-      motion.parents.push_back(bvh.value().skeleton.joints[joint].parent);
+  // The manifest's rate; where it gives none, that of the file.
+  MaybeError SetRate(double frame_time_s) {
+    fps_ = entry_.fps;
+    if (fps_ > 0.0) {
+      WarnOfRate(frame_time_s);
+      return std::nullopt;
     }
-    return motion;
-  }
-
-  Result<Motion> ReadPoints() {
-    Motion motion;
-    PointReadOptions point_options;
-    point_options.columns = mapping_.columns;
-    point_options.time_column = mapping_.time_column;
-    point_options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-      const Result<PendulumJoints> joints = ChoosePendulumPoints(path_, names, joints_);
-      if (!joints.ok()) return joints.error();
-      return Wanted(joints.value(), names.size(), &motion);
-    };
-    Result<PointMotion> points = ReadPointMotion(path_, entry_.motion_format, point_options);
-    if (!points.ok()) return points.error();
-    motion.unit = Unit(points.value().unit);
-    const std::string& said = points.value().unit_text;
-    if (!points.value().unit && !Trimmed(said).empty() && !UnitGiven()) {
-      return Error{"says its lengths are in " + Quoted(said) +
-                       ", which is not known here; give length_unit (mm, cm or m) in the manifest",
-                   path_};
+    if (frame_time_s == 0.0) {
+      return Error{
+          "neither the file nor the manifest says the frame rate; give fps in the manifest", path_};
     }
-    if (points.value().unit && *points.value().unit != motion.unit) {
-      Warn("says its lengths are " + Name(*points.value().unit) + "; they are read as " +
-           Name(motion.unit));
-    }
-    motion.tracks = std::move(points.value().positions);
-    for (Track& track : motion.tracks) {
-      for (Eigen::Vector3d& position : track) position *= MetresPer(motion.unit);
-    }
-    const double rate = mapping_.frame_rate > 0.0 ? mapping_.frame_rate : points.value().rate_hz;
-    motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
-    motion.first_time_s = points.value().first_time_s;
-    motion.content_hash = points.value().content_hash;
-    for (int point : points.value().chosen) motion.names.push_back(points.value().names[point]);
-    motion.parents.assign(motion.names.size(), -1);
-    return motion;
+    fps_ = WholeFrameRate(1.0 / frame_time_s);
+    const std::string problem = FrameRateProblem(fps_);
+    if (problem.empty()) return std::nullopt;
+    return Error{"the file's frame rate " + problem + "; give the right one as fps in the manifest",
+                 path_};
   }
 
   void WarnOfRate(double frame_time_s) const {
-    if (frame_time_s == 0.0 || std::abs(frame_time_s * entry_.fps - 1.0) <= kFrameTimeTolerance) {
+    if (frame_time_s == 0.0 || std::abs(frame_time_s * fps_ - 1.0) <= kFrameTimeTolerance) {
       return;
     }
     Warn("has a frame time of " + Rounded(frame_time_s) + " s (" + Rounded(1.0 / frame_time_s) +
-         " frames per second), the manifest says " + Rounded(entry_.fps) +
+         " frames per second), the manifest says " + Rounded(fps_) +
          " frames per second; the manifest's value is used");
   }
 
-  MaybeError Cut(Motion* motion) const {
+  MaybeError Cut(FileMotion* motion) const {
     const int frames = static_cast<int>(motion->tracks[0].size());
     if (entry_.frames && *entry_.frames != frames) {
       return Error{"wrong frame count: the file has " + std::to_string(frames) +
@@ -205,10 +132,9 @@ class PersonLoader {
   }
 
   // Only gaps of hip and ankles take weight from a frame.
-  MaybeError CloseGaps(Motion* motion, RecordedPerson* person) const {
+  MaybeError CloseGaps(FileMotion* motion, RecordedPerson* person) const {
     const std::size_t frames = motion->tracks[0].size();
-    const int max_gap =
-        static_cast<int>(std::floor(options_.preparation.max_gap_s * entry_.fps + 1e-9));
+    const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
     std::vector<double> weight(frames, 1.0), unused(frames, 1.0);
     int gaps = 0;
     for (std::size_t i = 0; i < motion->tracks.size(); ++i) {
@@ -247,7 +173,7 @@ class PersonLoader {
     return false;
   }
 
-  MaybeError Turn(Motion* motion, RecordedPerson* person) const {
+  MaybeError Turn(FileMotion* motion, RecordedPerson* person) const {
     const bool own =
         mapping_.up.empty() || entry_.json.contains("up") || entry_.json.contains("forward");
     person->file_up = own ? entry_.up : mapping_.up;
@@ -269,7 +195,7 @@ class PersonLoader {
     return mean;
   }
 
-  void Take(const Motion& motion, RecordedPerson* person) const {
+  void Take(const FileMotion& motion, RecordedPerson* person) const {
     person->hip = Mean(motion.tracks, motion.places.hip);
     person->left_ankle = Mean(motion.tracks, motion.places.left_ankle);
     person->right_ankle = Mean(motion.tracks, motion.places.right_ankle);
@@ -292,15 +218,15 @@ class PersonLoader {
   std::string path_;
   ColumnMapping mapping_;
   std::string mapping_hash_;
-  JointMapping joints_;
+  double fps_ = 0.0;
 };
 
 }  // namespace
 
-Result<RecordedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                  std::size_t index, const LoadOptions& options,
-                                  std::string* file_hash, std::vector<std::string>* warnings) {
-  return PersonLoader(manifest, entry, index, options, warnings).Load(file_hash);
+Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
+                                std::size_t index, const LoadOptions& options,
+                                std::vector<std::string>* warnings) {
+  return PersonLoader(manifest, entry, index, options, warnings).Load();
 }
 
 }  // namespace pushid

@@ -58,7 +58,6 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.setting = entry.setting;
   recording.magnitude = entry.magnitude;
   recording.condition_code = entry.condition_code;
-  recording.fps = entry.fps;
   recording.pushed_person = entry.pushed_person;
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
@@ -68,19 +67,27 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   }
 
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
-  for (std::size_t i = 0; i < entry.motion_files().size(); ++i) {
-    std::string file_hash;
-    Result<RecordedPerson> person = LoadPerson(manifest, entry, i, options, &file_hash, warnings);
-    if (!person.ok()) return OfRecording(entry, person.error());
-    hash.Add(file_hash);
-    if (i > 0 && person.value().hip.size() != recording.people[0].hip.size()) {
-      return OfRecording(entry, {"the file has " + std::to_string(person.value().hip.size()) +
+  for (std::size_t i = 0; i < entry.motion.size(); ++i) {
+    Result<LoadedPerson> loaded = LoadPerson(manifest, entry, i, options, warnings);
+    if (!loaded.ok()) return OfRecording(entry, loaded.error());
+    hash.Add(loaded.value().file_hash);
+    RecordedPerson& person = loaded.value().person;
+    if (i == 0) recording.fps = loaded.value().fps;
+    if (loaded.value().fps != recording.fps) {
+      return OfRecording(
+          entry, {"the file says " + Rounded(loaded.value().fps) + " frames per second, but " +
+                      recording.people[0].file + " says " + Rounded(recording.fps) +
+                      "; give the right one as fps in the manifest",
+                  person.file});
+    }
+    if (i > 0 && person.hip.size() != recording.people[0].hip.size()) {
+      return OfRecording(entry, {"the file has " + std::to_string(person.hip.size()) +
                                      " frames, but " + recording.people[0].file + " has " +
                                      std::to_string(recording.people[0].hip.size()) +
                                      "; the people of one recording share their frames",
-                                 person.value().file, 0});
+                                 person.file, 0});
     }
-    recording.people.push_back(std::move(person.value()));
+    recording.people.push_back(std::move(person));
   }
 
   std::vector<ManifestPush> pushes = entry.pushes;

@@ -41,7 +41,8 @@ struct LoadOptions {
 // can be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
 // `warnings`.
 //
-// Besides what the readers of the single files refuse: fewer than three frames, a number of frames
+// Besides what the readers of the single files refuse: no frame rate in manifest, mapping or file,
+// fewer than three frames, a number of frames
 // other than the manifest's `frames`, people with different numbers of frames, a push longer than
 // the motion or starting after it, hip heights that show wrong units, joints not found.
 Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh.h"
+#include "datasets/formats/frame_rate.h"
 #include "datasets/loading/low_pass.h"
 #include "datasets/loading/resample.h"
 
@@ -33,7 +33,7 @@ void ForEachTrack(RecordedPerson* person, const Change& change) {
   }
 }
 
-bool IsRate(double value) { return value >= kMinFramesPerSecond && value <= kMaxFramesPerSecond; }
+bool IsRate(double value) { return FrameRateProblem(value).empty(); }
 
 }  // namespace
 

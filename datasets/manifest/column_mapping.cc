@@ -2,7 +2,7 @@
 #include "datasets/manifest/column_mapping.h"
 
 #include "datasets/formats/axes.h"
-#include "datasets/formats/bvh.h"
+#include "datasets/formats/frame_rate.h"
 #include "datasets/manifest/mapping_json.h"
 
 namespace pushid {
@@ -44,10 +44,8 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   mapping.time_column = fields.OptionalText("time", "");
   if (fields.Has("frame_rate")) {
     mapping.frame_rate = fields.Number("frame_rate", "the frames per second");
-    if (!fields.error() &&
-        !(mapping.frame_rate >= kMinFramesPerSecond && mapping.frame_rate <= kMaxFramesPerSecond)) {
-      fields.Fail("frame_rate", "must be from 1 to 10000 frames per second");
-    }
+    const std::string problem = FrameRateProblem(mapping.frame_rate);
+    if (!problem.empty()) fields.Fail("frame_rate", problem);
   }
   mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
   mapping.up = fields.OptionalText("up", "");

@@ -6,7 +6,11 @@
 //     "bvh": ["bvh/s1_00.bvh"], "push_csv": "push/s1_00.csv",
 //     "push_kind": "external", "magnitude": "weak"}]}
 //
-// Required per recording: id, setting, fps, subjects (id, mass_kg), pushed_person, bvh, magnitude.
+// Required per recording: id, setting, subjects (id, mass_kg), pushed_person, bvh, magnitude; all
+// that are missing are told of in one error. fps may be left out where the motion's file says its
+// rate (BVH's frame time, C3D's and TRC's rate, a column of times) or a mapping gives it; a file's
+// rate is read as the whole number that it most likely means (frame_rate.h). A given fps wins over
+// the file, with a warning where they differ by more than 0.1 %.
 // Optional: push_csv (none: no push known), push_kind (net, net_without_friction, external; default
 // external), joints {hip, left_ankle, right_ankle} by name or index, up and forward (axes of the
 // BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
@@ -30,12 +34,10 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/length_unit.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
-
-// What the files of the motion are.
-enum class MotionFormat { kBvh, kC3d, kTrc, kCsv, kStorage };
 
 // A joint or marker by name or, where the manifest gives a number, by index in file order; or the
 // mean of several.
@@ -50,6 +52,8 @@ struct JointReference {
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
 };
+
+inline constexpr double kHeaviestPerson = 400.0;  // kg
 
 struct ManifestSubject {
   std::string id;
@@ -66,15 +70,13 @@ struct ManifestPush {
 struct ManifestRecording {
   std::string id;
   std::string setting;
-  double fps = 0.0;
+  double fps = 0.0;  // 0: as the motion's files say
   std::vector<ManifestSubject> subjects;
   int pushed_person = 0;
-  std::vector<std::string> bvh;  // one per subject, relative to the manifest
-  // Of another format: the files stand here, and `bvh` is empty.
   MotionFormat motion_format = MotionFormat::kBvh;
-  std::vector<std::string> motion;
-  std::string mapping;   // relative to the manifest; empty: none
-  std::string push_csv;  // relative to the manifest; empty: no push at frame 0
+  std::vector<std::string> motion;  // files, one per subject, relative to the manifest
+  std::string mapping;              // relative to the manifest; empty: none
+  std::string push_csv;             // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;
   std::string magnitude;
   std::string condition_code;
@@ -92,10 +94,6 @@ struct ManifestRecording {
   // The entry as read, with the keys this program does not know. Writing starts from it and sets
   // the fields above on top.
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
-
-  const std::vector<std::string>& motion_files() const {
-    return motion_format == MotionFormat::kBvh ? bvh : motion;
-  }
 };
 
 struct Manifest {
@@ -108,8 +106,9 @@ struct Manifest {
 
 // Reads and checks a manifest; does not open the files it names. Errors name file, line and
 // recording: JSON syntax (with column), missing or mistyped keys, duplicate ids, no recordings,
-// mass not in (0, 400] kg, fps not in [1, 10000], pushed_person out of range, not as many BVH files
-// as subjects.
+// mass not in (0, 400] kg, fps not in [1, 10000], pushed_person out of range, not as many motion
+// files as subjects. All required keys that a recording lacks are in one error, with the number of
+// other recordings that have errors.
 Result<Manifest> ReadManifest(const std::string& path);
 
 // Writes atomically. A field that equals its default is written only where the JSON already has it;

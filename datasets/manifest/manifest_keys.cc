@@ -9,12 +9,15 @@
 namespace pushid {
 namespace {
 
-const std::vector<std::string> kKeys = {
-    "id",      "setting",     "fps",         "subjects",      "pushed_person",
-    "bvh",     "c3d",         "trc",         "csv",           "sto",
-    "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
-    "up",      "forward",     "length_unit", "pushes",        "initial_velocity",
-    "frames",  "first_frame", "end_frame",   "condition_code"};
+std::vector<std::string> KnownKeys() {
+  std::vector<std::string> keys = {
+      "id",      "setting",     "fps",         "subjects",      "pushed_person",
+      "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
+      "up",      "forward",     "length_unit", "pushes",        "initial_velocity",
+      "frames",  "first_frame", "end_frame",   "condition_code"};
+  for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
+  return keys;
+}
 
 // Letters to put in, take out or replace (Levenshtein), hyphens and capitals aside.
 std::size_t Distance(const std::string& a, const std::string& b) {
@@ -49,11 +52,16 @@ std::string MeantBy(const std::string& word, const std::vector<std::string>& kno
   return "";
 }
 
+const std::vector<std::string>& ManifestKeys() {
+  static const std::vector<std::string> keys = KnownKeys();
+  return keys;
+}
+
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
   std::vector<std::string> found;
   if (!entry.json.is_object()) return found;
   for (const auto& [key, value] : entry.json.items()) {
-    const std::string meant = MeantBy(key, kKeys);
+    const std::string meant = MeantBy(key, ManifestKeys());
     if (meant.empty()) continue;
     found.push_back("has the key " + Quoted(key) + ", which is not known and not used; is " +
                     meant + " meant?");

@@ -12,6 +12,9 @@ namespace pushid {
 // or like none of them.
 std::string MeantBy(const std::string& word, const std::vector<std::string>& known);
 
+// Of a recording, known to this program.
+const std::vector<std::string>& ManifestKeys();
+
 // "has the key 'push_scv', which is not known and not used; is push_csv meant?" for each. Keys that
 // are like no known one are a user's own, and fine.
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry);

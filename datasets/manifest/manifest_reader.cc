@@ -7,7 +7,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
-#include "datasets/formats/bvh.h"
+#include "datasets/formats/frame_rate.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/mapping_json.h"
 #include "datasets/manifest/recording_names.h"
@@ -16,8 +16,6 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kHeaviestPerson = 400.0;  // kg
 
 constexpr int kAnyFrame = 1 << 30;
 
@@ -30,13 +28,13 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
     ManifestSubject read;
     read.id = subject.Text("id", "text that names the person");
     read.mass_kg = subject.Number("mass_kg", "the person's mass in kg");
-    if (!subject.error() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
+    if (!subject.failed() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
       subject.Fail("mass_kg", "is " + Rounded(read.mass_kg) +
                                   "; a mass in kg is above 0 and at most " +
                                   Rounded(kHeaviestPerson));
     }
     read.joints = ReadJointMapping(document, &subject);
-    fields->Fail(subject.error());
+    fields->Add(subject);
     recording->subjects.push_back(read);
     ++index;
   }
@@ -45,22 +43,22 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
 
 void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
   std::string key;
-  for (MotionFormat format : {MotionFormat::kBvh, MotionFormat::kC3d, MotionFormat::kTrc,
-                              MotionFormat::kCsv, MotionFormat::kStorage}) {
-    const std::string name = Name(format);
-    if (!fields->Has(name.c_str())) continue;
+  for (const MotionFormatRow& row : kMotionFormats) {
+    if (!fields->Has(row.key)) continue;
     if (!key.empty()) {
-      fields->Fail(name, "is given beside " + key + "; the motion stands in one of them");
+      fields->Fail(row.key, "is given beside " + key + "; the motion stands in one of them");
     }
-    key = name;
-    recording->motion_format = format;
+    key = row.key;
+    recording->motion_format = row.format;
   }
   if (key.empty()) {
-    fields->Require("bvh", "a list of BVH files, one per subject (or c3d, trc, csv, sto instead)");
+    fields->Require(kMotionFormats[0].key,
+                    "a list of motion files, one per subject, under the "
+                    "key of their format: " +
+                        MotionKeys());
     return;
   }
-  const bool bvh = recording->motion_format == MotionFormat::kBvh;
-  std::vector<std::string>& files = bvh ? recording->bvh : recording->motion;
+  std::vector<std::string>& files = recording->motion;
   for (const Json& item : fields->List(key.c_str())) {
     if (!item.is_string() || item.get<std::string>().empty()) {
       fields->Fail(key + "/" + std::to_string(files.size()),
@@ -69,7 +67,7 @@ void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
     }
     files.push_back(item.get<std::string>());
   }
-  if (!fields->error() && files.size() != recording->subjects.size()) {
+  if (!fields->failed() && files.size() != recording->subjects.size()) {
     fields->Fail(key, "lists " + std::to_string(files.size()) + " files for " +
                           std::to_string(recording->subjects.size()) +
                           " subjects; there must be one per subject, in the same order");
@@ -85,48 +83,46 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
     ManifestPush read;
     read.person = push.Whole("person", "the index of a subject, from 0", 0, people - 1);
     read.csv = push.Text("csv", "the name of a push CSV file");
-    if (!push.error() && read.csv.empty()) push.Fail("csv", "is empty");
+    if (!push.failed() && read.csv.empty()) push.Fail("csv", "is empty");
     if (push.Has("start_frame")) {
       read.start_frame =
           push.Whole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame);
     }
-    if (!push.error() && read.csv == recording->push_csv && read.start_frame == 0 &&
+    if (!push.failed() && read.csv == recording->push_csv && read.start_frame == 0 &&
         read.person == recording->pushed_person) {
       push.Fail("csv", "is also given as push_csv; the push would count twice");
     }
-    fields->Fail(push.error());
+    fields->Add(push);
     recording->pushes.push_back(read);
   }
 }
 
-Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json& object,
-                                        int index) {
+// What is wrong is added to the manifest's fields.
+ManifestRecording ReadRecording(const JsonDocument& document, const Json& object, int index,
+                                JsonFields* manifest) {
   const std::string pointer = "/recordings/" + std::to_string(index);
   JsonFields fields(document, object, pointer, "recording " + std::to_string(index));
   ManifestRecording recording;
   recording.id = fields.Text("id", "text that names the recording");
-  if (!fields.error() && recording.id.empty()) fields.Fail("id", "is empty");
-  if (!fields.error()) fields.set_label("recording " + Quoted(recording.id));
-  if (!fields.error() && recording.id.find(',') != std::string::npos) {
+  if (!fields.failed() && recording.id.empty()) fields.Fail("id", "is empty");
+  if (!fields.failed()) fields.set_label("recording " + Quoted(recording.id));
+  if (!fields.failed() && recording.id.find(',') != std::string::npos) {
     fields.Fail("id", "must have no comma: commas separate ids in lists");
   }
 
   recording.setting = fields.Text("setting", "text, for instance single");
-  recording.fps = fields.Number("fps", "the frames per second");
-  if (!fields.error() &&
-      !(recording.fps >= kMinFramesPerSecond && recording.fps <= kMaxFramesPerSecond)) {
-    fields.Fail("fps", "is " + Rounded(recording.fps) + "; accepted are " +
-                           Rounded(kMinFramesPerSecond) + " to " + Rounded(kMaxFramesPerSecond) +
-                           " frames per second");
+  if (fields.Has("fps")) {
+    recording.fps = fields.Number("fps", "the frames per second");
+    const std::string problem = FrameRateProblem(recording.fps);
+    if (!problem.empty()) fields.Fail("fps", problem);
   }
   ReadSubjects(document, &fields, &recording);
-  if (!fields.error()) {
-    const int people = static_cast<int>(recording.subjects.size());
-    const std::string what =
-        "the index of the pushed subject, " +
-        (people == 1 ? std::string("0") : "0 to " + std::to_string(people - 1));
-    recording.pushed_person = fields.Whole("pushed_person", what.c_str(), 0, people - 1);
-  }
+  const int people = static_cast<int>(recording.subjects.size());
+  recording.pushed_person =
+      fields.Whole("pushed_person",
+                   "the index of the pushed subject, " +
+                       (people > 1 ? "0 to " + std::to_string(people - 1) : std::string("0")),
+                   0, people - 1);
   ReadMotionNames(&fields, &recording);
   recording.mapping = fields.OptionalText("mapping", "");
   recording.push_csv = fields.OptionalText("push_csv", "");
@@ -143,7 +139,7 @@ Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json
     fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
                                  fields.label() + ": " + axes.error().message));
   recording.length_unit = ReadLengthUnit(&fields, "length_unit");
-  if (!fields.error()) ReadPushes(document, &fields, &recording);
+  ReadPushes(document, &fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", &InitialVelocityFromName,
                                              InitialVelocity::kZero, "zero, estimated or free");
   if (fields.Has("frames")) {
@@ -158,7 +154,7 @@ Result<ManifestRecording> ReadRecording(const JsonDocument& document, const Json
         fields.Whole("end_frame", "the frame behind the last one used, after first_frame",
                      recording.first_frame + 1, kAnyFrame);
   }
-  if (fields.error()) return *fields.error();
+  manifest->Add(fields);
   recording.json = object;
   return recording;
 }
@@ -174,7 +170,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
   manifest.path = path;
   top.Require("recordings", "a list of recordings");
   const Json& recordings = top.List("recordings");
-  if (!top.error() && recordings.empty()) {
+  if (!top.failed() && recordings.empty()) {
     top.Fail("recordings", "is empty: the manifest lists no recordings");
   }
   if (top.Has("units") && top.At("units").is_object()) {
@@ -188,19 +184,19 @@ Result<Manifest> ReadManifest(const std::string& path) {
   const std::vector<int> lines = document.ElementLines("/recordings");
   std::unordered_map<std::string, int> line_of_id;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    Result<ManifestRecording> recording =
-        ReadRecording(document, recordings[i], static_cast<int>(i));
-    if (!recording.ok()) return recording.error();
-    recording.value().line = lines[i];
-    const auto [earlier, is_new] = line_of_id.emplace(recording.value().id, recording.value().line);
-    if (!is_new) {
+    ManifestRecording recording = ReadRecording(document, recordings[i], static_cast<int>(i), &top);
+    if (top.is_wrong()) return *top.error();
+    recording.line = lines[i];
+    const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
+    if (!is_new && !top.failed()) {
       return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
-                              "recording " + Quoted(recording.value().id) +
+                              "recording " + Quoted(recording.id) +
                                   ": this id was given before, in line " +
                                   std::to_string(earlier->second) + "; ids must be unique");
     }
-    manifest.recordings.push_back(std::move(recording.value()));
+    manifest.recordings.push_back(std::move(recording));
   }
+  if (top.failed()) return *top.error();
   manifest.json = document.content;
   manifest.json.erase("recordings");
   return manifest;

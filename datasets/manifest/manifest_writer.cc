@@ -63,8 +63,10 @@ Json RecordingJson(const ManifestRecording& recording) {
   Json json = recording.json.is_object() ? recording.json : Json::object();
   json["id"] = recording.id;
   json["setting"] = recording.setting;
+  // Left out again where the file says it.
   const bool whole_fps = recording.fps == std::floor(recording.fps) && recording.fps < 1e6;
-  json["fps"] = whole_fps ? Json(static_cast<int>(recording.fps)) : Json(recording.fps);
+  SetUnless(recording.fps == 0.0, "fps",
+            whole_fps ? Json(static_cast<int>(recording.fps)) : Json(recording.fps), &json);
   Json subjects = ObjectsUnder(json, "subjects", recording.subjects.size());
   for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
     subjects[i]["id"] = recording.subjects[i].id;
@@ -74,7 +76,7 @@ Json RecordingJson(const ManifestRecording& recording) {
   }
   json["subjects"] = subjects;
   json["pushed_person"] = recording.pushed_person;
-  json[Name(recording.motion_format)] = recording.motion_files();
+  json[Name(recording.motion_format)] = recording.motion;
   SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = Name(recording.push_kind);

@@ -55,7 +55,7 @@ JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) 
   mapping.hip = ReadJoint(&joints, "hip");
   mapping.left_ankle = ReadJoint(&joints, "left_ankle");
   mapping.right_ankle = ReadJoint(&joints, "right_ankle");
-  fields->Fail(joints.error());
+  fields->Add(joints);
   return mapping;
 }
 

@@ -42,28 +42,4 @@ std::optional<InitialVelocity> InitialVelocityFromName(std::string_view name) {
   return std::nullopt;
 }
 
-std::string Name(MotionFormat format) {
-  switch (format) {
-    case MotionFormat::kC3d:
-      return "c3d";
-    case MotionFormat::kTrc:
-      return "trc";
-    case MotionFormat::kCsv:
-      return "csv";
-    case MotionFormat::kStorage:
-      return "sto";
-    case MotionFormat::kBvh:
-      break;
-  }
-  return "bvh";
-}
-
-std::string Title(MotionFormat format) {
-  std::string title = Name(format);
-  for (char& c : title) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return title;
-}
-
 }  // namespace pushid

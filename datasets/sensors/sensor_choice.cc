@@ -4,13 +4,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "datasets/files/list_of_names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/axes.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_points.h"
-#include "datasets/inspection/inspect_manifest.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/sensors/force_platform.h"
 
 namespace pushid {

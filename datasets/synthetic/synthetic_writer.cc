@@ -38,7 +38,7 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
     entry.subjects.push_back({person.subject_id, person.mass_kg});
   }
   entry.pushed_person = recording.pushed_person;
-  entry.bvh = bvh;
+  entry.motion = bvh;
   entry.push_kind = recording.push_kind;
   entry.magnitude = recording.magnitude;
   entry.initial_velocity = recording.initial_velocity;

@@ -52,10 +52,12 @@ BodyMean Mean(const Scores& scores, bool by_frames) {
 
 }  // namespace
 
-const char* KeyOf(BodyMetric metric) {
-  static constexpr std::array<const char*, kNumBodyMetrics> kKeys = {
-      "MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm", "relative_MPJPE_m", "bound_MPJPE_m"};
-  return kKeys[metric];
+std::string MetricsText(const BodyMetrics& metrics, int digits) {
+  std::string text;
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    text += (m > 0 ? ", " : "") + kBodyMetrics[m].Text(metrics[m], digits);
+  }
+  return text;
 }
 
 double FootSkate(const BodyMotion& motion) {

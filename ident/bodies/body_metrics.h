@@ -20,15 +20,35 @@
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
+#include "ident/figures/metric.h"
 
 namespace pushid {
 
-enum BodyMetric { kMpjpe, kHipAde, kHipFde, kMble, kFse, kRelativeMpjpe, kBoundMpjpe };
-inline constexpr int kNumBodyMetrics = 7;
+// A new metric is a value and a row here, and its formula in ScorePerson; means, files and tables
+// take it from there.
+enum BodyMetric {
+  kMpjpe,
+  kHipAde,
+  kHipFde,
+  kRelativeMpjpe,
+  kBoundMpjpe,
+  kMble,
+  kFse,
+  kNumBodyMetrics
+};
 using BodyMetrics = std::array<double, kNumBodyMetrics>;
 
-// "MPJPE_m", ...: as files spell them.
-const char* KeyOf(BodyMetric metric);
+struct BodyMetricRow : Metric {
+  bool with_error;  // files and tables have its standard error
+};
+inline constexpr BodyMetricRow kBodyMetrics[kNumBodyMetrics] = {
+    {{"MPJPE", "m"}, true},          {{"hipADE", "m"}, true},       {{"hipFDE", "m"}, true},
+    {{"relative_MPJPE", "m"}, true}, {{"bound_MPJPE", "m"}, false}, {{"MBLE", "m"}, false},
+    {{"FSE", "cm"}, false},
+};
+
+// "MPJPE 0.1 m, hipADE 0.1 m, ..."
+std::string MetricsText(const BodyMetrics& metrics, int digits);
 
 struct BodyScore {
   std::string id;

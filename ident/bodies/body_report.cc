@@ -13,16 +13,14 @@ using Json = nlohmann::ordered_json;
 
 Json MetricsJson(const BodyMetrics& value) {
   Json json;
-  for (int m = 0; m < kNumBodyMetrics; ++m) json[KeyOf(static_cast<BodyMetric>(m))] = value[m];
+  for (int m = 0; m < kNumBodyMetrics; ++m) json[kBodyMetrics[m].Key()] = value[m];
   return json;
 }
 
 Json MeanJson(const BodyMean& mean) {
   Json json = MetricsJson(mean.value);
-  for (const BodyMetric m : {kMpjpe, kRelativeMpjpe, kHipAde, kHipFde}) {
-    std::string key = KeyOf(m);
-    key.insert(key.size() - 2, "_standard_error");  // before _m
-    json[key] = mean.error[m];
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    if (kBodyMetrics[m].with_error) json[kBodyMetrics[m].ErrorKey()] = mean.error[m];
   }
   json["recordings"] = mean.recordings;
   return json;
@@ -57,22 +55,19 @@ std::string Cell(double value, double error = 0.0) {
 }
 
 std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
-  const auto& v = mean.value;
-  return {name,
-          std::to_string(mean.recordings),
-          Cell(v[kMpjpe], mean.error[kMpjpe]),
-          Cell(v[kHipAde], mean.error[kHipAde]),
-          Cell(v[kHipFde]),
-          Cell(v[kRelativeMpjpe], mean.error[kRelativeMpjpe]),
-          Cell(v[kBoundMpjpe]),
-          Cell(v[kMble]),
-          Cell(v[kFse])};
+  std::vector<std::string> row = {name, std::to_string(mean.recordings)};
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    row.push_back(Cell(mean.value[m], kBodyMetrics[m].with_error ? mean.error[m] : 0.0));
+  }
+  return row;
 }
 
 TextTable NewTable(const std::string& first) {
-  return TextTable({first, "recordings", "MPJPE m", "hipADE m", "hipFDE m", "relative m", "bound m",
-                    "MBLE m", "FSE cm"},
-                   {true, false, false, false, false, false, false, false, false});
+  std::vector<std::string> header = {first, "recordings"};
+  for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  return TextTable(header, left);
 }
 
 std::string Spaced(std::string name) {

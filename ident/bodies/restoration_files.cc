@@ -67,7 +67,7 @@ MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile
   if (MaybeError error = WriteNpy(weights, numbers)) return error;
   const Result<std::string> hash = HashFile(weights);
   if (!hash.ok()) return hash.error();
-  Json json = {{"format", kRestorationFormat}, {"kind", file.kind}};
+  Json json = {{"format", kRestorationFormat}, {"kind", Name(file.kind)}};
   json["settings"] = file.settings;
   json["weights"] = kWeightsFile;
   json["weights_hash"] = hash.value();
@@ -91,7 +91,9 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
   JsonFields fields(document, document.content, "", "restoration");
   const int format = fields.Whole("format", "the format's number", 1, 1 << 20);
   RestorationFile file;
-  if (fields.Require("kind", "window, cvae or simlpe")) file.kind = fields.OptionalText("kind", "");
+  const std::string kinds = TrainedRestorationKinds();
+  fields.Require("kind", kinds);
+  file.kind = fields.Choice("kind", &RestorationKindFromName, file.kind, kinds.c_str());
   const std::string hash = fields.OptionalText("weights_hash", "");
   fields.Require("weights_hash", "the weights file's hash");
   fields.Require("tensors", "the list of tensors");
@@ -120,36 +122,64 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
   return file;
 }
 
+namespace {
+
+using MadeRestoration = Result<std::unique_ptr<Restoration>>;
+
+MadeRestoration MakeWindow(const RestorationFile&, const std::string&, TensorReader* reader) {
+  WindowWeights weights;
+  weights.inputs = TakeScaling("inputs", kWindowInputs, reader);
+  weights.network = TakeNetwork("network", 3, kWindowInputs, kWindowOutputs, reader);
+  return std::unique_ptr<Restoration>(new WindowRestoration(std::move(weights)));
+}
+
+MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
+                         TensorReader* reader) {
+  const std::string name = file.settings.value(kCvaeCoordinatesKey, Name(CvaeCoordinates::kTip));
+  const std::optional<CvaeCoordinates> coordinates = CvaeCoordinatesFromName(name);
+  if (!coordinates) {
+    return Error{
+        std::string(kCvaeCoordinatesKey) + " is " + Quoted(name) + "; it must be tip or ldp", path};
+  }
+  return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(reader), *coordinates));
+}
+
+struct Maker {
+  RestorationKind kind;
+  MadeRestoration (*make)(const RestorationFile& file, const std::string& path,
+                          TensorReader* reader);
+};
+
+constexpr Maker kMakers[] = {
+    {RestorationKind::kWindow, MakeWindow},
+    {RestorationKind::kCvae, MakeCvae},
+};
+
+}  // namespace
+
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder) {
-  TensorReader reader(file.tensors);
-  std::unique_ptr<Restoration> restoration;
-  if (file.kind == "window") {
-    WindowWeights weights;
-    weights.inputs = TakeScaling("inputs", kWindowInputs, &reader);
-    weights.network = TakeNetwork("network", 3, kWindowInputs, kWindowOutputs, &reader);
-    restoration = std::make_unique<WindowRestoration>(std::move(weights));
-  } else if (file.kind == "cvae") {
-    const std::string coordinates = file.settings.value("coordinates", "tip");
-    if (coordinates != "tip" && coordinates != "ldp") {
-      return Error{"coordinates is " + Quoted(coordinates) + "; it must be tip or ldp",
-                   InFolder(folder, kJsonFile)};
+  const std::string path = InFolder(folder, kJsonFile);
+  std::string known;
+  for (const Maker& maker : kMakers) {
+    known += (known.empty() ? "" : " and ") + std::string(Name(maker.kind));
+    if (maker.kind != file.kind) continue;
+    TensorReader reader(file.tensors);
+    MadeRestoration restoration = maker.make(file, path, &reader);
+    if (restoration.ok() && !reader.problem().empty()) {
+      return Error{reader.problem() + "; train again with this version", path};
     }
-    restoration = std::make_unique<CvaeRestoration>(
-        TakeCvae(&reader), coordinates == "tip" ? CvaeCoordinates::kTip : CvaeCoordinates::kLdp);
-  } else {
-    return Error{"the kind is " + Quoted(file.kind) +
-                     "; known are window and cvae (simlpe is named by --peer)",
-                 InFolder(folder, kJsonFile)};
+    return restoration;
   }
-  if (!reader.problem().empty()) {
-    return Error{reader.problem() + "; train again with this version", InFolder(folder, kJsonFile)};
-  }
-  return restoration;
+  return Error{"the kind is " + Quoted(Name(file.kind)) + "; known are " + known +
+                   " (simlpe is named by --peer)",
+               path};
 }
 
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder) {
-  if (folder == "rigid") return std::unique_ptr<Restoration>(new RigidRestoration());
+  if (folder == Name(RestorationKind::kRigid)) {
+    return std::unique_ptr<Restoration>(new RigidRestoration());
+  }
   const Result<RestorationFile> file = ReadRestorationFile(folder);
   if (!file.ok()) return file.error();
   return MakeRestoration(file.value(), folder);

@@ -14,14 +14,17 @@
 
 #include "datasets/files/error.h"
 #include "models/restoration/restoration.h"
+#include "models/restoration/restoration_kind.h"
 #include "models/restoration/tensors.h"
 
 namespace pushid {
 
 inline constexpr int kRestorationFormat = 1;
+// In RestorationFile::settings of kCvae: a name of CvaeCoordinates.
+inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 
 struct RestorationFile {
-  std::string kind;                                                    // window, cvae, ...
+  RestorationKind kind = RestorationKind::kWindow;
   nlohmann::ordered_json settings = nlohmann::ordered_json::object();  // of the kind
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
   TensorList tensors;
@@ -33,7 +36,8 @@ MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile
 // Errors: no such folder, a newer format, weights that are not those of the JSON (by their hash).
 Result<RestorationFile> ReadRestorationFile(const std::string& folder);
 
-// The restoration a file describes. Errors: an unknown kind, missing or misshapen tensors by name.
+// The restoration a file describes. Errors: a kind that is no restoration, missing or misshapen
+// tensors by name.
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder);
 

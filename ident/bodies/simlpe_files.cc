@@ -18,8 +18,9 @@ void AddTensors(const SimlpeWeights& weights, TensorList* tensors) {
 
 Result<SimlpeWeights> MakeSimlpe(const RestorationFile& file, const std::string& folder) {
   const std::string path = (std::filesystem::path(folder) / "restoration.json").string();
-  if (file.kind != kSimlpeKind) {
-    return Error{"the kind is " + Quoted(file.kind) + "; --peer takes what --kind=simlpe trained",
+  if (file.kind != RestorationKind::kSimlpe) {
+    return Error{"the kind is " + Quoted(Name(file.kind)) +
+                     "; --peer takes what --kind=" + Name(RestorationKind::kSimlpe) + " trained",
                  path};
   }
   TensorReader reader(file.tensors);

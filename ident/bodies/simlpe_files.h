@@ -9,8 +9,6 @@
 
 namespace pushid {
 
-inline constexpr char kSimlpeKind[] = "simlpe";
-
 void AddTensors(const SimlpeWeights& weights, TensorList* tensors);
 // Errors: another kind, missing or misshapen tensors.
 Result<SimlpeWeights> MakeSimlpe(const RestorationFile& file, const std::string& folder);

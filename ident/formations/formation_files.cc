@@ -114,9 +114,9 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
   for (int n = 0; n < run.num_people(); ++n) {
     const std::string& name = run.recording.subject_ids[n];
     entry.subjects.push_back({name, scene.people[n].body.mass});
-    entry.bvh.push_back("bvh/" + name + ".bvh");
+    entry.motion.push_back("bvh/" + name + ".bvh");
     const MaybeError failed =
-        WriteBvh(folder + "/" + entry.bvh.back(), PendulumMotion(run, n), kUnit);
+        WriteBvh(folder + "/" + entry.motion.back(), PendulumMotion(run, n), kUnit);
     if (failed) return failed;
   }
   for (size_t i = 0; i < scene.pushes.size(); ++i) {

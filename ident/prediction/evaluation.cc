@@ -11,31 +11,37 @@ namespace {
 
 MeanScore Mean(const std::vector<const RecordingScore*>& scores, bool by_frames) {
   MeanScore mean;
+  const auto weight = [by_frames](const RecordingScore* s) {
+    return by_frames ? s->frames - 1 : 1.0;
+  };
   double total = 0.0;
-  for (const RecordingScore* s : scores) {
-    const double weight = by_frames ? s->frames - 1 : 1.0;
-    total += weight;
-    mean.hip_ade += weight * s->hip_ade;
-    mean.hip_fde += weight * s->hip_fde;
-  }
+  for (const RecordingScore* s : scores) total += weight(s);
   mean.recordings = static_cast<int>(scores.size());
   if (scores.empty()) return mean;
-  mean.hip_ade /= total;
-  mean.hip_fde /= total;
-  if (scores.size() < 2) return mean;
-  double ade = 0.0, fde = 0.0;
-  for (const RecordingScore* s : scores) {
-    const double weight = by_frames ? s->frames - 1 : 1.0;
-    ade += std::pow(weight / total * (s->hip_ade - mean.hip_ade), 2);
-    fde += std::pow(weight / total * (s->hip_fde - mean.hip_fde), 2);
-  }
   const double n = static_cast<double>(scores.size());
-  mean.hip_ade_error = std::sqrt(ade * n / (n - 1.0));
-  mean.hip_fde_error = std::sqrt(fde * n / (n - 1.0));
+  for (const HipMetric& metric : kHipMetrics) {
+    const auto value = metric.value;
+    for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
+    mean.*value /= total;
+    if (scores.size() < 2) continue;
+    double squares = 0.0;
+    for (const RecordingScore* s : scores) {
+      squares += std::pow(weight(s) / total * (s->*value - mean.*value), 2);
+    }
+    mean.error.*value = std::sqrt(squares * n / (n - 1.0));
+  }
   return mean;
 }
 
 }  // namespace
+
+std::string MetricsText(const HipMetrics& metrics, int digits) {
+  std::string text;
+  for (const HipMetric& metric : kHipMetrics) {
+    text += (text.empty() ? "" : ", ") + metric.Text(metrics.*metric.value, digits);
+  }
+  return text;
+}
 
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted) {
   RecordingScore score;

@@ -10,25 +10,43 @@
 #include <string>
 #include <vector>
 
+#include "ident/figures/metric.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
 
 namespace pushid {
 
-struct RecordingScore {
-  std::string id;
-  int frames = 0;
-  double hip_ade = 0.0, hip_fde = 0.0;  // m
-  std::string failure;                  // why there is no score; such a recording is in no mean
-  bool fell = false;                    // a person leaned beyond 1.0 rad
-  bool fell_harder = false;             // FallsWhenPushedHarder, where it was asked
-  PropagationScore propagation = {};    // empty for a single person and after a failure
+// A new metric is a value here, a row in kHipMetrics and its formula in ScoreHip; means, files,
+// tables, cross-validation and batches take it from there.
+struct HipMetrics {
+  double hip_ade = 0.0, hip_fde = 0.0;
 };
 
-struct MeanScore {
+struct HipMetric : Metric {
+  double HipMetrics::*value;
+};
+
+// The first is the one that predictors are compared by where there is room for one.
+inline constexpr HipMetric kHipMetrics[] = {
+    {{"hipADE", "m"}, &HipMetrics::hip_ade},
+    {{"hipFDE", "m"}, &HipMetrics::hip_fde},
+};
+
+// "hipADE 0.1 m, hipFDE 0.2 m"
+std::string MetricsText(const HipMetrics& metrics, int digits);
+
+struct RecordingScore : HipMetrics {
+  std::string id;
+  int frames = 0;
+  std::string failure;                // why there is no score; such a recording is in no mean
+  bool fell = false;                  // a person leaned beyond 1.0 rad
+  bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
+  PropagationScore propagation = {};  // empty for a single person and after a failure
+};
+
+struct MeanScore : HipMetrics {
   int recordings = 0;
-  double hip_ade = 0.0, hip_fde = 0.0;
-  double hip_ade_error = 0.0, hip_fde_error = 0.0;  // standard error of the mean over recordings
+  HipMetrics error;  // standard error of the mean over recordings
 };
 
 struct ScoreSummary {

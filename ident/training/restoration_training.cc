@@ -80,20 +80,36 @@ Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const Regressio
   return trainer.Best();
 }
 
+namespace {
+
+struct Trainer {
+  RestorationKind kind;
+  Result<TrainedRestoration> (*train)(const std::vector<RestorationSample>& training,
+                                      const std::vector<RestorationSample>& held,
+                                      const RestorationTrainingOptions& options,
+                                      const TrainingProgress& progress);
+};
+
+constexpr Trainer kTrainers[] = {
+    {RestorationKind::kWindow, TrainWindow},
+    {RestorationKind::kCvae, TrainCvae},
+    {RestorationKind::kSimlpe, TrainSimlpe},
+};
+
+}  // namespace
+
 Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
                                             const std::vector<RestorationSample>& held,
                                             const RestorationTrainingOptions& options,
                                             const TrainingProgress& progress) {
-  const auto train = options.kind == "window"   ? TrainWindow
-                     : options.kind == "cvae"   ? TrainCvae
-                     : options.kind == "simlpe" ? TrainSimlpe
-                                                : nullptr;
-  if (train == nullptr) {
-    return Error{"--kind is '" + options.kind + "'; it must be window, cvae or simlpe"};
+  for (const Trainer& trainer : kTrainers) {
+    if (trainer.kind != options.kind) continue;
+    Result<TrainedRestoration> trained = trainer.train(training, held, options, progress);
+    if (trained.ok()) trained.value().file.kind = options.kind;
+    return trained;
   }
-  Result<TrainedRestoration> trained = train(training, held, options, progress);
-  if (trained.ok()) trained.value().file.kind = options.kind;
-  return trained;
+  return Error{std::string("--kind is '") + Name(options.kind) +
+               "', which is not trained; it must be " + TrainedRestorationKinds()};
 }
 
 }  // namespace pushid

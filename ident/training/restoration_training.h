@@ -7,14 +7,15 @@
 
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_data.h"
+#include "models/restoration/cvae_features.h"
 #include "models/restoration/regression_trainer.h"
 
 namespace pushid {
 
 struct RestorationTrainingOptions {
-  std::string kind = "window";      // window or cvae
-  std::string coordinates = "tip";  // cvae: tip, or ldp (minus the hip at frame 0)
-  double effort = 1.0;              // multiplies the number of steps
+  RestorationKind kind = RestorationKind::kWindow;
+  CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
+  double effort = 1.0;                                  // multiplies the number of steps
   uint64_t seed = 1;
   int num_threads = 1;
   std::string checkpoint;            // file; empty: none
@@ -30,8 +31,8 @@ struct TrainedRestoration {
   bool resumed = false;
 };
 
-// training, held: samples to learn from and to stop early by. Errors: an unknown kind, a checkpoint
-// that cannot be written. A checkpoint of other data or options is not used.
+// training, held: samples to learn from and to stop early by. Errors: a kind without training, a
+// checkpoint that cannot be written. A checkpoint of other data or options is not used.
 Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
                                             const std::vector<RestorationSample>& held,
                                             const RestorationTrainingOptions& options,

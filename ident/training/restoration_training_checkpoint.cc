@@ -82,8 +82,9 @@ void Checkpoint::Remove() const {
 std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
-  return "1 " + options.kind + " " + options.coordinates + " " + std::to_string(options.effort) +
-         " " + std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+  return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
+         std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
+         KeyOfSamples(training) + KeyOfSamples(held);
 }
 
 std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {

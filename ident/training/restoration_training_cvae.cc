@@ -48,10 +48,8 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
                                      const std::vector<RestorationSample>& held,
                                      const RestorationTrainingOptions& options,
                                      const TrainingProgress& progress) {
-  const CvaeCoordinates coordinates =
-      options.coordinates == "ldp" ? CvaeCoordinates::kLdp : CvaeCoordinates::kTip;
-  std::vector<CvaeSequence> learnt = Sequences(training, coordinates);
-  std::vector<CvaeSequence> judged = Sequences(held, coordinates);
+  std::vector<CvaeSequence> learnt = Sequences(training, options.coordinates);
+  std::vector<CvaeSequence> judged = Sequences(held, options.coordinates);
   CvaeWeights scalings;
   scalings.lower = ScalingOfAll(learnt, &CvaeSequence::lower);
   scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
@@ -78,7 +76,7 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
     if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
   }
   trained.file.tensors = ToTensors(trainer.Best());
-  trained.file.settings["coordinates"] = options.coordinates;
+  trained.file.settings[kCvaeCoordinatesKey] = Name(options.coordinates);
   checkpoint.Remove();
   return trained;
 }

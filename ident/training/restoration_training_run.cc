@@ -41,7 +41,7 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
                                 const PostprocessOptions& postprocess,
                                 const BodyRecording& recording) {
   BodyScores scores;
-  if (file.kind == kSimlpeKind) {
+  if (file.kind == RestorationKind::kSimlpe) {
     const Result<SimlpeWeights> simlpe = MakeSimlpe(file, "");
     if (!simlpe.ok()) return simlpe.error();
     ScoreSimlpe(simlpe.value(), recording, &scores);
@@ -61,7 +61,7 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   std::vector<RolloutPath<double>> paths;
-  if (options.predicted_pendulums && options.training.kind != kSimlpeKind) {
+  if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum) {
     paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
                              options.training.seed, [&](int fold, int folds) {
                                if (progress) {

@@ -44,17 +44,14 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
       }
       ++scored;
       ++count[folds[f].held_out[k]];
-      sum.hip_ade += score.hip_ade;
-      sum.hip_fde += score.hip_fde;
+      for (const HipMetric& metric : kHipMetrics) {
+        sum.*metric.value += score.*metric.value;
+        fold.*metric.value += score.*metric.value;
+      }
       sum.propagation.Add(score.propagation);
       propagation.push_back(&score.propagation);
-      fold.hip_ade += score.hip_ade;
-      fold.hip_fde += score.hip_fde;
     }
-    if (scored > 0) {
-      fold.hip_ade /= scored;
-      fold.hip_fde /= scored;
-    }
+    for (const HipMetric& metric : kHipMetrics) fold.*metric.value /= std::max(1, scored);
     fold.propagation = SummarizePropagation(propagation);
     fold.behaviour = predictions[f].behaviour;
     if (fold.behaviour) {
@@ -76,8 +73,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
   for (int i = 0; i < total; ++i) {
     if (count[i] == 0 && mean[i].failure.empty()) continue;  // never held out
     if (count[i] > 0) {
-      mean[i].hip_ade /= count[i];
-      mean[i].hip_fde /= count[i];
+      for (const HipMetric& metric : kHipMetrics) mean[i].*metric.value /= count[i];
       mean[i].propagation.Divide(count[i]);
     }
     held.push_back(recordings[i]);
@@ -93,23 +89,27 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   difference.b = b.predictor;
   std::map<std::string, const RecordingScore*> of_a;
   for (const RecordingScore& score : a.summary.recordings) of_a[score.id] = &score;
-  std::vector<double> ade, fde;
+  std::vector<HipMetrics> pairs;
   for (const RecordingScore& score : b.summary.recordings) {
     const auto found = of_a.find(score.id);
     if (found == of_a.end() || !score.failure.empty() || !found->second->failure.empty()) continue;
-    ade.push_back(score.hip_ade - found->second->hip_ade);
-    fde.push_back(score.hip_fde - found->second->hip_fde);
+    HipMetrics pair;
+    for (const HipMetric& metric : kHipMetrics) {
+      pair.*metric.value = score.*metric.value - found->second->*metric.value;
+    }
+    pairs.push_back(pair);
   }
-  auto mean_and_error = [](const std::vector<double>& values, double* mean, double* error) {
-    const double n = static_cast<double>(values.size());
-    for (double value : values) *mean += value / n;
-    double squares = 0.0;
-    for (double value : values) squares += (value - *mean) * (value - *mean);
-    *error = n > 1 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
-  };
-  difference.recordings = static_cast<int>(ade.size());
-  mean_and_error(ade, &difference.hip_ade, &difference.hip_ade_error);
-  mean_and_error(fde, &difference.hip_fde, &difference.hip_fde_error);
+  difference.recordings = static_cast<int>(pairs.size());
+  const double n = static_cast<double>(pairs.size());
+  for (const HipMetric& metric : kHipMetrics) {
+    double mean = 0.0, squares = 0.0;
+    for (const HipMetrics& pair : pairs) mean += pair.*metric.value / n;
+    for (const HipMetrics& pair : pairs) {
+      squares += (pair.*metric.value - mean) * (pair.*metric.value - mean);
+    }
+    difference.*metric.value = mean;
+    difference.error.*metric.value = n > 1 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
+  }
   return difference;
 }
 

@@ -32,10 +32,9 @@ class Predictor {
   std::string name;
 };
 
-struct FoldScore {
+struct FoldScore : HipMetrics {  // means over the fold's recordings
   std::string name;
   int held_out = 0;
-  double hip_ade = 0.0, hip_fde = 0.0;  // mean over the fold's recordings
   int failures = 0, falls = 0;
   int falls_harder = 0;  // FallsWhenPushedHarder (evaluation.h)
   std::optional<Behaviour> behaviour;
@@ -60,11 +59,10 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               int num_threads, const JobProgress& progress = nullptr);
 
 // b minus a, recording by recording, with the standard error of its mean.
-struct PairedDifference {
+struct PairedDifference : HipMetrics {
   std::string a, b;
   int recordings = 0;
-  double hip_ade = 0.0, hip_ade_error = 0.0;
-  double hip_fde = 0.0, hip_fde_error = 0.0;
+  HipMetrics error;
 };
 PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 

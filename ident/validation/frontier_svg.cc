@@ -57,8 +57,8 @@ std::string FrontierSvg(const std::vector<CrossValidation>& validations) {
     if (v.fits == 0) continue;
     const MeanScore& mean = v.summary.mean;
     fastest = std::max(fastest, 1.1 * v.slowest_to_settle);
-    lowest = std::min(lowest, mean.hip_ade - 1.2 * mean.hip_ade_error);
-    highest = std::max(highest, mean.hip_ade + 1.2 * mean.hip_ade_error);
+    lowest = std::min(lowest, mean.hip_ade - 1.2 * mean.error.hip_ade);
+    highest = std::max(highest, mean.hip_ade + 1.2 * mean.error.hip_ade);
   }
   SvgPicture svg(kWidth, kHeight, "accuracy against settling");
   if (highest <= lowest) {
@@ -75,7 +75,7 @@ std::string FrontierSvg(const std::vector<CrossValidation>& validations) {
     if (v.fits == 0) continue;
     const MeanScore& mean = v.summary.mean;
     const double x = across(v.slowest_to_settle), y = up(mean.hip_ade);
-    svg.Line(x, up(mean.hip_ade - mean.hip_ade_error), x, up(mean.hip_ade + mean.hip_ade_error),
+    svg.Line(x, up(mean.hip_ade - mean.error.hip_ade), x, up(mean.hip_ade + mean.error.hip_ade),
              "stroke:#0072b2;stroke-width:1.5");
     svg.Circle(x, y, 4.5, v.settling == v.fits ? "fill:#009e73" : "fill:#d55e00");
     labels.push_back({x, y, v.predictor});

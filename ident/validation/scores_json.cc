@@ -1,4 +1,4 @@
-// ident: scores as JSON.
+// ident: scores as JSON. scores_json_reader.cc is the inverse.
 #include "ident/validation/scores_json.h"
 
 #include "ident/parameters/option_names.h"
@@ -9,12 +9,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+void AddMetrics(const HipMetrics& metrics, Json* json) {
+  for (const HipMetric& metric : kHipMetrics) (*json)[metric.Key()] = metrics.*metric.value;
+}
+
 Json MeanJson(const MeanScore& mean) {
-  return {{"hipADE_m", mean.hip_ade},
-          {"hipFDE_m", mean.hip_fde},
-          {"hipADE_standard_error_m", mean.hip_ade_error},
-          {"hipFDE_standard_error_m", mean.hip_fde_error},
-          {"recordings", mean.recordings}};
+  Json json;
+  AddMetrics(mean, &json);
+  for (const HipMetric& metric : kHipMetrics) json[metric.ErrorKey()] = mean.error.*metric.value;
+  json["recordings"] = mean.recordings;
+  return json;
 }
 
 Json GroupsJson(const std::map<std::string, MeanScore>& groups) {
@@ -32,8 +36,7 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
     for (const RecordingScore& r : summary.recordings) {
       Json row = {{"id", r.id}, {"frames", r.frames}};
       if (r.failure.empty()) {
-        row["hipADE_m"] = r.hip_ade;
-        row["hipFDE_m"] = r.hip_fde;
+        AddMetrics(r, &row);
       } else {
         row["failure"] = r.failure;
       }
@@ -77,27 +80,24 @@ Json ToJson(const CrossValidation& validation) {
   }
   json["folds"] = Json::array();
   for (const FoldScore& fold : validation.folds) {
-    json["folds"].push_back({{"name", fold.name},
-                             {"held_out", fold.held_out},
-                             {"hipADE_m", fold.hip_ade},
-                             {"hipFDE_m", fold.hip_fde},
-                             {"failures", fold.failures},
-                             {"falls", fold.falls}});
-    if (fold.behaviour) json["folds"].back()["behaviour"] = ToJson(*fold.behaviour);
-    if (fold.propagation.recordings == 0) continue;
-    json["folds"].back()["propagation"] = ToJson(fold.propagation);
+    Json row = {{"name", fold.name}, {"held_out", fold.held_out}};
+    AddMetrics(fold, &row);
+    row["failures"] = fold.failures;
+    row["falls"] = fold.falls;
+    if (fold.behaviour) row["behaviour"] = ToJson(*fold.behaviour);
+    if (fold.propagation.recordings > 0) row["propagation"] = ToJson(fold.propagation);
+    json["folds"].push_back(row);
   }
   return json;
 }
 
 Json ToJson(const PairedDifference& difference) {
-  return {{"from", difference.a},
-          {"to", difference.b},
-          {"recordings", difference.recordings},
-          {"hipADE_m", difference.hip_ade},
-          {"hipADE_standard_error_m", difference.hip_ade_error},
-          {"hipFDE_m", difference.hip_fde},
-          {"hipFDE_standard_error_m", difference.hip_fde_error}};
+  Json json = {{"from", difference.a}, {"to", difference.b}, {"recordings", difference.recordings}};
+  for (const HipMetric& metric : kHipMetrics) {
+    json[metric.Key()] = difference.*metric.value;
+    json[metric.ErrorKey()] = difference.error.*metric.value;
+  }
+  return json;
 }
 
 }  // namespace pushid

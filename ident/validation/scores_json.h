@@ -1,7 +1,9 @@
-// ident: evaluations, cross-validations and propagation as JSON. Keys carry their units.
+// ident: evaluations, cross-validations and propagation to JSON, and scores back from it. Keys
+// carry their units.
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "ident/validation/crossvalidation.h"
 
@@ -13,5 +15,10 @@ nlohmann::ordered_json ToJson(const PropagationSummary& summary);
 nlohmann::ordered_json PeopleJson(const PropagationScore& score);  // one row per person
 nlohmann::ordered_json ToJson(const CrossValidation& validation);
 nlohmann::ordered_json ToJson(const PairedDifference& difference);
+
+// The model's scores of an Evaluation's JSON (or of one summary with its recordings), without each
+// person's propagation. Errors: keys that are missing or of another type.
+Result<ScoreSummary> ScoresFromJson(const nlohmann::ordered_json& json, const std::string& file);
+Result<ScoreSummary> ReadScores(const std::string& path);
 
 }  // namespace pushid

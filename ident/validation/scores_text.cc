@@ -15,9 +15,54 @@ std::string WithError(double value, double error, const MeanScore& mean) {
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
-std::string MeanText(const MeanScore& mean) {
-  return WithError(mean.hip_ade, mean.hip_ade_error, mean) + " / " +
-         WithError(mean.hip_fde, mean.hip_fde_error, mean);
+// A cell for each metric.
+std::vector<std::string> MeanCells(const MeanScore& mean) {
+  std::vector<std::string> cells;
+  for (const HipMetric& metric : kHipMetrics) {
+    cells.push_back(WithError(mean.*metric.value, mean.error.*metric.value, mean));
+  }
+  return cells;
+}
+
+// The same without errors; "-" where there is no score.
+std::vector<std::string> PlainCells(const HipMetrics& metrics, bool known = true) {
+  std::vector<std::string> cells;
+  for (const HipMetric& metric : kHipMetrics) {
+    cells.push_back(known ? Rounded(metrics.*metric.value, 3) : "-");
+  }
+  return cells;
+}
+
+std::vector<std::string> Titles() {
+  std::vector<std::string> titles;
+  for (const HipMetric& metric : kHipMetrics) titles.push_back(metric.Title());
+  return titles;
+}
+
+std::vector<std::string> Names() {
+  std::vector<std::string> names;
+  for (const HipMetric& metric : kHipMetrics) names.push_back(metric.name);
+  return names;
+}
+
+// "a / b"
+std::string Together(const std::vector<std::string>& cells) {
+  std::string text;
+  for (const std::string& cell : cells) text += (text.empty() ? "" : " / ") + cell;
+  return text;
+}
+
+std::string MeanText(const MeanScore& mean) { return Together(MeanCells(mean)); }
+
+void Append(const std::vector<std::string>& cells, std::vector<std::string>* row) {
+  row->insert(row->end(), cells.begin(), cells.end());
+}
+
+// Text stands to the left in the first column and in those from `text_from` on.
+TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
+  std::vector<bool> left(header.size(), false);
+  for (size_t i = 0; i < left.size(); ++i) left[i] = i == 0 || i >= text_from;
+  return TextTable(header, left);
 }
 
 }  // namespace
@@ -25,22 +70,28 @@ std::string MeanText(const MeanScore& mean) {
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
   if (per_recording) {
-    TextTable table({"recording", "frames", "hipADE m", "hipFDE m", "static", "const velocity", ""},
-                    {true, false, false, false, false, false, true});
+    std::vector<std::string> header = {"recording", "frames"};
+    Append(Titles(), &header);
+    Append({"static", "const velocity", ""}, &header);
+    TextTable table = TableOf(header, header.size() - 1);
     for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
       const RecordingScore& r = evaluation.model.recordings[i];
-      const bool ok = r.failure.empty();
-      table.Add({r.id, std::to_string(r.frames), ok ? Rounded(r.hip_ade, 3) : "-",
-                 ok ? Rounded(r.hip_fde, 3) : "-",
-                 Rounded(evaluation.static_baseline.recordings[i].hip_ade, 3),
-                 Rounded(evaluation.constant_velocity.recordings[i].hip_ade, 3), r.failure});
+      std::vector<std::string> row = {r.id, std::to_string(r.frames)};
+      Append(PlainCells(r, r.failure.empty()), &row);
+      for (const ScoreSummary* baseline :
+           {&evaluation.static_baseline, &evaluation.constant_velocity}) {
+        row.push_back(PlainCells(baseline->recordings[i])[0]);
+      }
+      row.push_back(r.failure);
+      table.Add(row);
     }
     text += table.ToString() + "\n";
     if (evaluation.model.propagation.recordings > 0) {
       text += OnsetsText(evaluation.model.recordings) + "\n";
     }
   }
-  TextTable table({"hipADE / hipFDE in m", "recordings", "model", "static", "constant velocity"},
+  TextTable table({Together(Names()) + " in " + kHipMetrics[0].unit, "recordings", "model",
+                   "static", "constant velocity"},
                   {true, false, true, true, true});
   auto add = [&table](const std::string& name, const MeanScore& model, const MeanScore& still,
                       const MeanScore& velocity) {
@@ -77,16 +128,17 @@ namespace {
 // One honest sentence on two configurations.
 std::string ConclusionText(const PairedDifference& d) {
   if (d.recordings == 0) return d.b + " cannot be compared with " + d.a + ".";
-  const std::string by =
-      Rounded(std::abs(d.hip_ade), 2) + " +- " + Rounded(d.hip_ade_error, 2) + " m of hipADE";
-  if (std::abs(d.hip_ade) <= d.hip_ade_error) {
+  const HipMetric& metric = kHipMetrics[0];
+  const double change = d.*metric.value, error = d.error.*metric.value;
+  const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
+                         metric.unit + " of " + metric.name;
+  if (std::abs(change) <= error) {
     return d.b + " is not distinguishable from " + d.a + " (" + by + ").";
   }
-  const std::string surely = std::abs(d.hip_ade) > 2.0 * d.hip_ade_error
-                                 ? ""
-                                 : ", more than one standard error but less than two";
-  return d.b + " predicts " + (d.hip_ade < 0.0 ? "better" : "worse") + " than " + d.a + " by " +
-         by + surely + ".";
+  const std::string surely =
+      std::abs(change) > 2.0 * error ? "" : ", more than one standard error but less than two";
+  return d.b + " predicts " + (change < 0.0 ? "better" : "worse") + " than " + d.a + " by " + by +
+         surely + ".";
 }
 
 }  // namespace
@@ -95,48 +147,46 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::string text;
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
-  std::vector<std::string> header = {"fold", "held out", "hipADE m", "hipFDE m", "failed", "fell"};
-  if (groups) header.insert(header.end(), {"onset error", "missed movers", "false movers"});
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  TextTable folds(header, left);
+  std::vector<std::string> header = {"fold", "held out"};
+  Append(Titles(), &header);
+  Append({"failed", "fell"}, &header);
+  if (groups) Append({"onset error", "missed movers", "false movers"}, &header);
+  TextTable folds = TableOf(header, header.size());
   for (const FoldScore& fold : candidates[0].folds) {
-    std::vector<std::string> row = {fold.name,
-                                    std::to_string(fold.held_out),
-                                    Rounded(fold.hip_ade, 3),
-                                    Rounded(fold.hip_fde, 3),
-                                    std::to_string(fold.failures),
-                                    std::to_string(fold.falls)};
-    if (groups) {
-      const std::vector<std::string> cells = FoldPropagationCells(fold.propagation);
-      row.insert(row.end(), cells.begin(), cells.end());
-    }
+    std::vector<std::string> row = {fold.name, std::to_string(fold.held_out)};
+    Append(PlainCells(fold), &row);
+    Append({std::to_string(fold.failures), std::to_string(fold.falls)}, &row);
+    if (groups) Append(FoldPropagationCells(fold.propagation), &row);
     folds.Add(row);
   }
   text += folds.ToString() + "\n";
-  TextTable table(
-      {"held out", "hipADE m", "hipFDE m", "frame-weighted", "hipADE - " + candidates[0].predictor,
-       "failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""},
-      {true, true, true, true, true, false, false, false, false, false});
+  const HipMetric& main = kHipMetrics[0];
+  header = {"held out"};
+  Append(Titles(), &header);
+  Append({"frame-weighted", std::string(main.name) + " - " + candidates[0].predictor}, &header);
+  std::vector<bool> left(header.size(), true);
+  Append({"failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""}, &header);
+  left.resize(header.size(), false);
+  TextTable table(header, left);
   const auto folds_that = [](int number, const CrossValidation& candidate) {
     return candidate.fits > 0 ? std::to_string(number) + " of " + std::to_string(candidate.fits)
                               : "";
   };
   for (const CrossValidation& candidate : candidates) {
-    const MeanScore& mean = candidate.summary.mean;
-    const MeanScore& frames = candidate.summary.frame_weighted;
     const PairedDifference difference = Compare(candidates[0], candidate);
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
-    table.Add({candidate.predictor, WithError(mean.hip_ade, mean.hip_ade_error, mean),
-               WithError(mean.hip_fde, mean.hip_fde_error, mean),
-               Rounded(frames.hip_ade, 3) + " / " + Rounded(frames.hip_fde, 3),
-               compared
-                   ? Rounded(difference.hip_ade, 2) + " +- " + Rounded(difference.hip_ade_error, 2)
-                   : "",
-               std::to_string(candidate.failures), std::to_string(candidate.falls),
-               candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
-               folds_that(candidate.settling, candidate),
-               groups ? folds_that(candidate.harder_farther, candidate) : ""});
+    std::vector<std::string> row = {candidate.predictor};
+    Append(MeanCells(candidate.summary.mean), &row);
+    Append({Together(PlainCells(candidate.summary.frame_weighted)),
+            compared ? Rounded(difference.*main.value, 2) + " +- " +
+                           Rounded(difference.error.*main.value, 2)
+                     : "",
+            std::to_string(candidate.failures), std::to_string(candidate.falls),
+            candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
+            folds_that(candidate.settling, candidate),
+            groups ? folds_that(candidate.harder_farther, candidate) : ""},
+           &row);
+    table.Add(row);
   }
   text += table.ToString() +
           "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";

@@ -8,6 +8,18 @@
 #include "models/restoration/skeleton_fit.h"
 
 namespace pushid {
+
+const char* Name(CvaeCoordinates coordinates) {
+  return coordinates == CvaeCoordinates::kTip ? "tip" : "ldp";
+}
+
+std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name) {
+  for (CvaeCoordinates coordinates : {CvaeCoordinates::kTip, CvaeCoordinates::kLdp}) {
+    if (name == Name(coordinates)) return coordinates;
+  }
+  return std::nullopt;
+}
+
 namespace {
 
 // Where positions are measured from.

@@ -17,6 +17,8 @@
 // positions.
 #pragma once
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "models/restoration/restoration.h"
@@ -24,6 +26,8 @@
 namespace pushid {
 
 enum class CvaeCoordinates { kTip, kLdp };
+const char* Name(CvaeCoordinates coordinates);  // "tip", "ldp"
+std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name);
 
 inline constexpr int kLowerFrame = 3 + 12 * static_cast<int>(kLowerJoints.size());
 inline constexpr int kUpperFrame = 3 + 12 * static_cast<int>(kUpperJoints.size());

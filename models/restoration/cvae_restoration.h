@@ -10,7 +10,7 @@ class CvaeRestoration : public Restoration {
  public:
   CvaeRestoration(CvaeWeights weights, CvaeCoordinates coordinates)
       : weights_(std::move(weights)), coordinates_(coordinates) {}
-  std::string_view kind() const override { return "cvae"; }
+  std::string_view kind() const override { return Name(RestorationKind::kCvae); }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const CvaeWeights& weights() const { return weights_; }
 

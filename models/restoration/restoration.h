@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "models/restoration/body.h"
+#include "models/restoration/restoration_kind.h"
 
 namespace pushid {
 
@@ -27,7 +28,7 @@ struct RestorationInput {
 class Restoration {
  public:
   virtual ~Restoration() = default;
-  virtual std::string_view kind() const = 0;
+  virtual std::string_view kind() const = 0;  // its name
   // Bare motions, one per person with as many frames as q has; without post-processing.
   virtual std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const = 0;
 };
@@ -35,7 +36,7 @@ class Restoration {
 // The first pose carried along by the rod's tip: what any network has to beat.
 class RigidRestoration : public Restoration {
  public:
-  std::string_view kind() const override { return "rigid"; }
+  std::string_view kind() const override { return Name(RestorationKind::kRigid); }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
 };
 

@@ -82,6 +82,9 @@ TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
   EXPECT_EQ(Batch(plan, {"--gather"}).exit_code, 0);
   EXPECT_TRUE(Contains(Table("out")[1], ",failed,"));
   EXPECT_TRUE(Contains(Table("out")[3], ",failed,"));
+  EXPECT_TRUE(Contains(Table("out")[1], "model.json:"));
+  EXPECT_TRUE(Contains(Table("out")[2], "scores.json: there is no such file"));
+  EXPECT_TRUE(Contains(Table("out")[3], "status.json: the file is empty"));
   EXPECT_EQ(Lines(Batch(plan, {"--dry_run"}).out).size(), 2u * 3u);
   const AppRun again = Batch(plan);
   EXPECT_EQ(again.exit_code, 0) << again.err;

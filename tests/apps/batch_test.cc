@@ -99,6 +99,14 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
     EXPECT_GT(job["held_out"]["hipADE_m"].get<double>(), 0.0);
     EXPECT_LT(job["held_out"]["hipADE_m"].get<double>(), 0.1);
   }
+  const std::string header = Lines(ReadText(Path("out/summary.csv")))[0];
+  EXPECT_EQ(header.rfind("id,variant,group,replica,status,reason,", 0), 0u) << header;
+  EXPECT_TRUE(Contains(header, "mu,"));
+  EXPECT_TRUE(Contains(header, ",mu_se,"));
+  EXPECT_TRUE(Contains(header,
+                       ",cost,settles,held_out_hip_ade_m,held_out_hip_fde_m,warnings,"
+                       "solve_s,seconds"));
+  EXPECT_TRUE(Contains(run.out, "held-out hipFDE, m"));
   const std::string page = ReadText(Path("out/summary.html"));
   for (const char* column : {"held-out hipADE, m", "held-out hipFDE, m", "solve s", "seconds"}) {
     EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;

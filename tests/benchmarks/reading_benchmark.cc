@@ -11,7 +11,7 @@
 #include "datasets/files/random.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/trc.h"
 #include "datasets/synthetic/synthetic_skeleton.h"
 

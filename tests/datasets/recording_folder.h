@@ -49,7 +49,7 @@ class RecordingFolderTest : public TempDirTest {
     recording.setting = "single";
     recording.fps = 60.0;
     recording.subjects = {{"s1", 70.0}};
-    recording.bvh = {"a.bvh"};
+    recording.motion = {"a.bvh"};
     recording.push_csv = "a.csv";
     recording.magnitude = "weak";
     manifest_.recordings = {recording};

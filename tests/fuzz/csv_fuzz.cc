@@ -1,6 +1,6 @@
 // CSV: pushes, sensors, masses and tables with points.
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/inspection/manifest_maker.h"
 #include "datasets/sensors/sensor_csv.h"

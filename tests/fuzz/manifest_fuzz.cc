@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Result<Manifest> manifest = ReadManifest(path);
   if (manifest.ok()) {
     for (const ManifestRecording& recording : manifest.value().recordings) {
-      Demand(recording.motion_files().size() == recording.subjects.size());
+      Demand(recording.motion.size() == recording.subjects.size());
     }
   }
   (void)ReadColumnMapping(path);

@@ -1,6 +1,6 @@
 // TRC and OpenSim storage files.
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/trc.h"
+#include "datasets/formats/motion_formats.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -161,8 +161,7 @@ std::string FoldTitle(const RecordingView& view) {
   std::string title = r.id;
   if (view.run.prediction.status.ok) {
     const RecordingScore score = ScoreHip(r, view.run.prediction.hip);
-    title +=
-        ": hipADE " + Rounded(score.hip_ade, 2) + " m, hipFDE " + Rounded(score.hip_fde, 2) + " m";
+    title += ": " + MetricsText(score, 2);
   }
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
 }

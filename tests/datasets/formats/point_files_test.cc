@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "datasets/formats/point_motion.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/table_points.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/column_mapping.h"
@@ -192,7 +192,7 @@ TEST_F(PointFilesTest, MappingFiles) {
       {"{\"colums\": {}}", "colums is not known"},
       {"{\"columns\": {\"a\": [\"x\", \"y\"]}}", "columns of 'a' must be three column names"},
       {"{\"columns\": []}", "columns must be an object"},
-      {"{\"frame_rate\": 0}", "frame_rate must be from 1 to 10000"},
+      {"{\"frame_rate\": 0}", "frame_rate is 0; accepted are 1 to 10000"},
       {"{\"length_unit\": \"inch\"}", "length_unit is 'inch'"},
       {"{\"up\": \"y\"}", "give up and forward"},
       {"{\"up\": \"y\", \"forward\": \"-y\"}", "lie along the same axis"},

@@ -163,7 +163,7 @@ TEST_F(InspectionTest, C3d) {
 
 TEST_F(InspectionTest, OtherFiles) {
   const std::string bvh = Of("a.bvh");  // of the folder: in mm, moving from the first frame
-  EXPECT_TRUE(Contains(bvh, "20 at 59.9988 per second, 0.333 s; most likely 60"));
+  EXPECT_TRUE(Contains(bvh, "20 at 59.9988 per second, 0.333 s; taken as 60 (\"fps\""));
   EXPECT_TRUE(Contains(bvh, "unit            mm, by the length of the rod"));
   EXPECT_TRUE(Contains(bvh, "the person moves at the start"));
   EXPECT_TRUE(Contains(Of("a.csv"), "a.csv: push CSV\n  rows            5"));

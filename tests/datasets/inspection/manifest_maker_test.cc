@@ -95,6 +95,20 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   EXPECT_EQ(loaded.value()[2].people[0].mass_kg, 80.0);
 }
 
+// A manifest without the rates that were written means the same.
+TEST_F(ManifestMakerTest, WritesTheRatesThatLoadingTakes) {
+  Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  for (ManifestRecording& recording : made.value().manifest.recordings) {
+    EXPECT_EQ(recording.fps, 60.0);
+    recording.fps = 0.0;
+  }
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  const auto loaded = LoadRecordings(options_.manifest_path);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  for (const Recording& recording : loaded.value()) EXPECT_EQ(recording.fps, 60.0);
+}
+
 TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
   WriteText("data/anna_weak_2.bvh", "no motion");
   options_.masses.clear();  // no mass is asked for of a person left out
@@ -150,7 +164,7 @@ TEST_F(ManifestMakerTest, PeopleOfOneRecording) {
   EXPECT_EQ(r1.id, "r1");
   ASSERT_EQ(r1.subjects.size(), 2u);
   EXPECT_EQ(r1.subjects[0].id, "y") << "person 2 before person 10";
-  EXPECT_EQ(r1.bvh[0], "../rows/r1_p2_y.bvh");
+  EXPECT_EQ(r1.motion[0], "../rows/r1_p2_y.bvh");
   options_.pushed_person = 1;
   EXPECT_TRUE(Contains(MakingMessage(), "recording 'r2' has 1 people"));
 }

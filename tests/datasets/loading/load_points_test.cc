@@ -32,7 +32,6 @@ class LoadPointsTest : public RecordingFolderTest {
       motion_.positions[4].push_back({0.0, 100.0, 80.0});
       motion_.positions[5].push_back({0.0, -100.0, 80.0});
     }
-    entry().bvh.clear();
     Use("a.trc", MotionFormat::kTrc);
   }
 
@@ -122,7 +121,7 @@ TEST_F(LoadPointsTest, ManifestRoundTrip) {
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   const ManifestRecording& again = read.value().recordings[0];
   EXPECT_EQ(again.motion_format, MotionFormat::kTrc);
-  EXPECT_EQ(again.motion_files(), std::vector<std::string>{"a.trc"});
+  EXPECT_EQ(again.motion, std::vector<std::string>{"a.trc"});
   ASSERT_EQ(again.joints.hip->mean_of.size(), 2u);
   EXPECT_EQ(again.joints.hip->mean_of[0].name, "LASI");
   EXPECT_EQ(again.joints.hip->mean_of[1].index, 1);
@@ -286,6 +285,34 @@ TEST_F(LoadPointsTest, RatesThatDiffer) {
   ASSERT_TRUE(Load().ok());
   ASSERT_EQ(warnings_.size(), 1u);
   EXPECT_TRUE(Contains(warnings_[0], "(60 frames per second), the manifest says 50"));
+}
+
+// From TRC and C3D heads, a column of times, a mapping; without all of those there is none.
+TEST_F(LoadPointsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
+  entry().fps = 0.0;
+  const auto rate = [this] {
+    const auto loaded = Load();
+    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
+    return loaded.ok() ? loaded.value()[0].fps : -1.0;
+  };
+  for (double fps : {60.0, 59.94}) {
+    motion_.rate_hz = fps;
+    Use("a.trc", MotionFormat::kTrc);
+    EXPECT_NEAR(rate(), fps, 1e-9);
+    Use("a.c3d", MotionFormat::kC3d);
+    EXPECT_NEAR(rate(), fps, 1e-5);  // C3D keeps 32 bits
+  }
+  UseTable("motion.csv", MotionFormat::kCsv);
+  EXPECT_EQ(rate(), 60.0);
+
+  std::string text = ReadText(Path("motion.csv"));
+  text.replace(text.find("time"), 4, "tick");
+  WriteText("motion.csv", text);
+  EXPECT_TRUE(Contains(Message(), Path("motion.csv") + ": recording 'a': neither the file nor the "
+                                                       "manifest says the frame rate; give fps"));
+  WriteText("map.json", "{\"frame_rate\": 60}");
+  entry().mapping = "map.json";
+  EXPECT_EQ(rate(), 60.0);
 }
 
 TEST_F(LoadPointsTest, FilterAndResampling) {

@@ -201,6 +201,29 @@ TEST_F(LoadRecordingsTest, FrameTimes) {
   EXPECT_TRUE(Contains(warnings_[0], "59.9 frames per second; the manifest's value is used"));
 }
 
+// 0.016667 s is 1/60 s, rounded.
+TEST_F(LoadRecordingsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
+  entry().fps = 0.0;
+  const auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].fps, 60.0);
+  EXPECT_TRUE(warnings_.empty());
+  EXPECT_FALSE(Contains(ReadText(Path("manifest.json")), "fps"));
+
+  BvhMotion slow = Walker(20);
+  slow.frame_time_s = 0.04;
+  WriteBvhFile("b.bvh", slow);
+  entry().subjects.push_back({"s2", 70.0});
+  entry().motion.push_back("b.bvh");
+  EXPECT_TRUE(Contains(Message(), Path("b.bvh") +
+                                      ": recording 'a': the file says 25 frames per "
+                                      "second, but " +
+                                      Path("a.bvh") + " says 60; give the right one as fps"));
+  entry().fps = 60.0;
+  EXPECT_TRUE(Load().ok());
+  EXPECT_EQ(warnings_.size(), 1u) << "25 is not 60";
+}
+
 TEST_F(LoadRecordingsTest, FrameCounts) {
   entry().frames = 21;
   EXPECT_EQ(Message(), Path("a.bvh") +
@@ -212,7 +235,7 @@ TEST_F(LoadRecordingsTest, FrameCounts) {
   WriteBvhFile("a.bvh", Walker(20));
   WriteBvhFile("b.bvh", Walker(19));
   entry().subjects.push_back({"s2", 80.0});
-  entry().bvh.push_back("b.bvh");
+  entry().motion.push_back("b.bvh");
   EXPECT_TRUE(Contains(Message(), Path("b.bvh") + ": recording 'a': the file has 19 frames, but " +
                                       Path("a.bvh") + " has 20"));
 }
@@ -246,9 +269,9 @@ TEST_F(LoadRecordingsTest, PushesAndTheMotion) {
 }
 
 TEST_F(LoadRecordingsTest, BadFilesAreNamed) {
-  entry().bvh[0] = "none.bvh";
+  entry().motion[0] = "none.bvh";
   EXPECT_EQ(Message(), Path("none.bvh") + ": recording 'a': there is no such file");
-  entry().bvh[0] = "a.bvh";
+  entry().motion[0] = "a.bvh";
   entry().push_csv = "none.csv";
   EXPECT_EQ(Message(), Path("none.csv") + ": recording 'a': there is no such file");
   WriteText("bad.csv", "frame,fx,fy,ftheta,fphi\n0,1,2,3,x\n");
@@ -267,7 +290,7 @@ TEST_F(LoadRecordingsTest, SettingsAndIds) {
   pair.id = "b";
   pair.setting = "row_1";
   pair.subjects.push_back({"s2", 80.0});
-  pair.bvh.push_back("a.bvh");
+  pair.motion.push_back("a.bvh");
   ManifestRecording other = entry();
   other.id = "c";
   other.setting = "other";

@@ -48,7 +48,7 @@ TEST_F(RealRoundTrip, Bvh) {
   const Result<Manifest> manifest = ReadManifest(RecordingsRoot() + "/manifest.json");
   ASSERT_TRUE(manifest.ok()) << manifest.error().ToString();
   const std::string path =
-      ResolvePath(manifest.value().path, manifest.value().recordings.back().bvh.back());
+      ResolvePath(manifest.value().path, manifest.value().recordings.back().motion.back());
   const Result<BvhMotion> original = ReadBvh(path);
   ASSERT_TRUE(original.ok()) << original.error().ToString();
   ASSERT_FALSE(WriteBvh(Path("a.bvh"), original.value(), original.value().length_unit));

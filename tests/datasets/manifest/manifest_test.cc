@@ -61,7 +61,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   ASSERT_EQ(a.subjects.size(), 1u);
   EXPECT_EQ(a.subjects[0].id, "s1");
   EXPECT_EQ(a.subjects[0].mass_kg, 67.5);
-  EXPECT_EQ(a.bvh, std::vector<std::string>{"bvh/a.bvh"});
+  EXPECT_EQ(a.motion, std::vector<std::string>{"bvh/a.bvh"});
   EXPECT_EQ(a.push_csv, "push/a.csv");
   EXPECT_EQ(a.push_kind, PushKind::kNet);
   EXPECT_EQ(a.magnitude, "weak");
@@ -87,9 +87,9 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.initial_velocity, InitialVelocity::kFree);
   EXPECT_EQ(b.frames, 91);
 
-  EXPECT_EQ(ResolvePath("M/manifest.json", b.bvh[0]), "M/bvh/b0.bvh");
-  EXPECT_EQ(ResolvePath("M/manifest.json", b.bvh[1]), "/elsewhere/b1.bvh");
-  EXPECT_EQ(ResolvePath("manifest.json", b.bvh[0]), "bvh/b0.bvh");
+  EXPECT_EQ(ResolvePath("M/manifest.json", b.motion[0]), "M/bvh/b0.bvh");
+  EXPECT_EQ(ResolvePath("M/manifest.json", b.motion[1]), "/elsewhere/b1.bvh");
+  EXPECT_EQ(ResolvePath("manifest.json", b.motion[0]), "bvh/b0.bvh");
 }
 
 TEST_F(ManifestTest, RewritingLosesNothing) {
@@ -139,7 +139,7 @@ TEST_F(ManifestTest, WrittenFromScratch) {
   recording.setting = "single";
   recording.fps = 120.5;
   recording.subjects = {{"s", 80.0}};
-  recording.bvh = {"x.bvh"};
+  recording.motion = {"x.bvh"};
   recording.magnitude = "weak";
   recording.pushes = {{0, "x.csv", 4}};
   manifest.recordings.push_back(recording);
@@ -163,8 +163,6 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
       {"\"recordings\"", "\"recording\"", ":1:1: ", "manifest: recordings is missing"},
       {"\"bvh_length\": \"cm\"", "\"bvh_length\": \"inch\"",
        ":3:26: ", "'inch'; it must be mm, cm"},
-      {"\"fps\": 60,", "",
-       ":5:3: ", "recording 'a': fps is missing; it must be the frames per second"},
       {"\"fps\": 60,", "\"fps\": \"60\",", ":9:11: ", "fps must be the frames per second, not"},
       {"\"fps\": 60,", "\"fps\": 0,", ":9:11: ", "fps is 0; accepted are 1 to 10000"},
       {"\"fps\": 60,", "\"fps\": -60,", ":9:11: ", "fps is -60"},
@@ -244,6 +242,47 @@ TEST_F(ManifestTest, NothingInIt) {
   EXPECT_TRUE(Contains(message("{\"recordings\": {}}"), "recordings must be a list"));
   EXPECT_TRUE(Contains(message("{\"recordings\": [5]}"), "recording 0: must be an object"));
   EXPECT_TRUE(Contains(ReadManifest(Path("none.json")).error().ToString(), "no such file"));
+}
+
+// A manifest written from memory: everything that is missing is told of at once.
+TEST_F(ManifestTest, AllMissingKeysInOneError) {
+  const auto message = [&](const std::string& recordings) {
+    const Result<Manifest> read =
+        ReadManifest(WriteText("manifest.json", "{\"recordings\": [" + recordings + "]}"));
+    return read.ok() ? std::string("no error") : read.error().ToString();
+  };
+  EXPECT_EQ(message("{\"id\": \"a\", \"setting\": \"single\", \"pushed_person\": 0,\n"
+                    "\"subjects\": [{\"id\": \"s\"}], \"bvh\": [\"a.bvh\"]},\n"
+                    "{\"id\": \"b\", \"subjects\": [{\"id\": \"s\"}], \"trc\": [\"b.trc\"]}"),
+            Path("manifest.json") +
+                ":2:14: recording 'a', subject 0: mass_kg is missing; it must be the person's mass "
+                "in kg; recording 'a': magnitude is missing; it must be the push's strength as a "
+                "label, for instance weak, medium, strong; recording 'b': setting, pushed_person "
+                "and magnitude are missing; setting must be text, for instance single; "
+                "pushed_person must be the index of the pushed subject, 0; recording 'b', subject "
+                "0: mass_kg is missing");
+  const std::string nothing = message("{}");
+  EXPECT_TRUE(Contains(nothing,
+                       "recording 0: id, setting, subjects, pushed_person, bvh and "
+                       "magnitude are missing"));
+  EXPECT_TRUE(Contains(nothing, "under the key of their format: bvh, c3d, trc, csv, sto"));
+  std::string many = "{}";
+  for (int i = 0; i < 10; ++i) many += ", {}";
+  EXPECT_TRUE(Contains(message(many), "; and 3 more lack keys"));
+  // Until something is wrong that no list of keys can say.
+  EXPECT_TRUE(Contains(message("{}, 7"), "recording 0: id"));
+  EXPECT_TRUE(Contains(message("7"), "recording 0: must be an object"));
+}
+
+TEST_F(ManifestTest, TheRateMayBeLeftOut) {
+  std::string text = kGood;
+  text.replace(text.find("\"fps\": 60,"), 10, "");
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", text));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().recordings[0].fps, 0.0);
+  ASSERT_FALSE(WriteManifest(Path("again.json"), read.value()));
+  EXPECT_FALSE(
+      nlohmann::json::parse(ReadText(Path("again.json")))["recordings"][0].contains("fps"));
 }
 
 // Reading must not take time that grows with the square of the list.

@@ -16,7 +16,7 @@ class RestorationFilesTest : public TempDirTest {
  protected:
   std::string WriteWindow() {
     RestorationFile file;
-    file.kind = "window";
+    file.kind = RestorationKind::kWindow;
     const WindowWeights weights = RandomWindow();
     AddTensors("inputs", weights.inputs, &file.tensors);
     AddTensors("network", weights.network, &file.tensors);
@@ -48,7 +48,7 @@ TEST_F(RestorationFilesTest, AWindowComesBackToTheLastBit) {
 
 TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
   RestorationFile file;
-  file.kind = "cvae";
+  file.kind = RestorationKind::kCvae;
   file.settings["coordinates"] = "ldp";
   file.tensors = ToTensors(RandomCvae());
   ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
@@ -71,7 +71,10 @@ TEST_F(RestorationFilesTest, WhatIsWrongIsNamed) {
   EXPECT_TRUE(Contains(ErrorOf(Path("nowhere")), "pushid-train-restoration"));
   WriteWindow();
   Replace("\"window\"", "\"wndow\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "wndow"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "'wndow'; it must be window, cvae or simlpe"));
+  WriteWindow();
+  Replace("\"window\"", "\"simlpe\"");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "simlpe is named by --peer"));
   WriteWindow();
   Replace("\"format\": 1", "\"format\": 9");
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "format 9"));
@@ -103,7 +106,7 @@ TEST_F(RestorationFilesTest, DamagedOrExchangedWeightsAreRefused) {
 
 TEST_F(RestorationFilesTest, NumbersThatAreNoneAreRefused) {
   RestorationFile file;
-  file.kind = "window";
+  file.kind = RestorationKind::kWindow;
   WindowWeights weights = RandomWindow();
   weights.network.layers[1].weights(3, 4) = std::numeric_limits<float>::quiet_NaN();
   AddTensors("inputs", weights.inputs, &file.tensors);

@@ -64,28 +64,28 @@ TEST(Evaluation, PeopleCountTheSame) {
 TEST(Evaluation, BothMeansByHand) {
   const std::vector<PendulumRecording> recordings = {Parabola("a", 4), Parabola("b", 11),
                                                      Parabola("c", 6)};
-  RecordingScore a{"a", 4, 0.1, 0.2, "", false}, b{"b", 11, 0.4, 0.6, "", true};
-  RecordingScore c{"c", 6, 9.0, 9.0, "theta of person 0 leaves the model's domain", true};
+  RecordingScore a{{0.1, 0.2}, "a", 4, "", false}, b{{0.4, 0.6}, "b", 11, "", true};
+  RecordingScore c{{9.0, 9.0}, "c", 6, "theta of person 0 leaves the model's domain", true};
   const ScoreSummary s = Summarize(recordings, {a, b, c});
   EXPECT_EQ(s.recordings.size(), 3u);  // named, but in no mean
   EXPECT_EQ(s.mean.recordings, 2);
   EXPECT_NEAR(s.mean.hip_ade, 0.25, 1e-15);
   EXPECT_NEAR(s.mean.hip_fde, 0.40, 1e-15);
   // Standard deviation 0.3 / sqrt(2), over sqrt(2).
-  EXPECT_NEAR(s.mean.hip_ade_error, 0.15, 1e-15);
-  EXPECT_NEAR(s.mean.hip_fde_error, 0.20, 1e-15);
+  EXPECT_NEAR(s.mean.error.hip_ade, 0.15, 1e-15);
+  EXPECT_NEAR(s.mean.error.hip_fde, 0.20, 1e-15);
   EXPECT_NEAR(s.frame_weighted.hip_ade, (3 * 0.1 + 10 * 0.4) / 13.0, 1e-15);
   EXPECT_NEAR(s.frame_weighted.hip_fde, (3 * 0.2 + 10 * 0.6) / 13.0, 1e-15);
   EXPECT_EQ(s.by_magnitude.at("weak").recordings, 1);
   EXPECT_NEAR(s.by_magnitude.at("strong").hip_ade, 0.4, 1e-15);
-  EXPECT_EQ(s.by_magnitude.at("strong").hip_ade_error, 0.0);
+  EXPECT_EQ(s.by_magnitude.at("strong").error.hip_ade, 0.0);
   EXPECT_EQ(s.by_subject.count("Sc"), 0u);
   EXPECT_NEAR(s.by_subject.at("Sa").hip_fde, 0.2, 1e-15);
   EXPECT_EQ(s.by_setting.at("single").recordings, 2);
 }
 
 TEST(Evaluation, NothingScored) {
-  RecordingScore failed{"a", 4, 0.0, 0.0, "fails", true};
+  RecordingScore failed{{0.0, 0.0}, "a", 4, "fails", true};
   const ScoreSummary s = Summarize({Parabola("a", 4)}, {failed});
   EXPECT_EQ(s.mean.recordings, 0);
   EXPECT_EQ(s.mean.hip_ade, 0.0);

@@ -155,7 +155,7 @@ TEST(CrossValidation, ThreadsDoNotMatter) {
   for (size_t i = 0; i < one.summary.recordings.size(); ++i) {
     EXPECT_EQ(one.summary.recordings[i].hip_ade, two.summary.recordings[i].hip_ade);
   }
-  EXPECT_EQ(one.summary.mean.hip_fde_error, two.summary.mean.hip_fde_error);
+  EXPECT_EQ(one.summary.mean.error.hip_fde, two.summary.mean.error.hip_fde);
 }
 
 // Scores 1, 2, 3, ... by recording; 10 more when it is asked the second time. Fails on one.
@@ -218,7 +218,8 @@ TEST(CrossValidation, PairedDifferenceByHand) {
     CrossValidation v;
     v.predictor = name;
     for (size_t i = 0; i < scores.size(); ++i) {
-      v.summary.recordings.push_back({std::to_string(i), 5, scores[i], 2.0 * scores[i], "", false});
+      v.summary.recordings.push_back(
+          {{scores[i], 2.0 * scores[i]}, std::to_string(i), 5, "", false});
     }
     return v;
   };
@@ -229,9 +230,9 @@ TEST(CrossValidation, PairedDifferenceByHand) {
   EXPECT_EQ(d.recordings, 3);
   EXPECT_NEAR(d.hip_ade, 0.02, 1e-15);
   // Deviations -0.01, 0.02, -0.01: variance 3e-4, over 3.
-  EXPECT_NEAR(d.hip_ade_error, std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_NEAR(d.error.hip_ade, std::sqrt(3e-4 / 3.0), 1e-15);
   EXPECT_NEAR(d.hip_fde, 0.04, 1e-15);
-  EXPECT_NEAR(d.hip_fde_error, 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_NEAR(d.error.hip_fde, 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
   EXPECT_EQ(d.a, "a");
   EXPECT_EQ(d.b, "b");
 }

@@ -1,0 +1,97 @@
+// datasets: the formats of motion files.
+#include "datasets/formats/motion_formats.h"
+
+#include "datasets/files/input_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/bvh_header.h"
+#include "datasets/formats/frame_rate.h"
+
+namespace pushid {
+namespace {
+
+constexpr bool RowsAreInOrder() {
+  int value = 0;
+  for (const MotionFormatRow& row : kMotionFormats) {
+    if (static_cast<int>(row.format) != value++) return false;
+  }
+  return true;
+}
+static_assert(RowsAreInOrder(), "RowOf finds a row by its format's value");
+
+}  // namespace
+
+const MotionFormatRow& RowOf(MotionFormat format) {
+  return kMotionFormats[static_cast<int>(format)];
+}
+
+std::string Name(MotionFormat format) { return RowOf(format).key; }
+
+std::string Title(MotionFormat format) {
+  std::string title = Name(format);
+  for (char& c : title) {
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  }
+  return title;
+}
+
+std::optional<MotionFormat> MotionFormatOfFile(std::string_view path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string_view::npos) return std::nullopt;
+  for (const MotionFormatRow& row : kMotionFormats) {
+    for (const char* ending : row.endings) {
+      if (ending != nullptr && EqualsIgnoringCase(path.substr(dot + 1), ending)) return row.format;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string MotionFileEndings() {
+  std::string list;
+  for (const MotionFormatRow& row : kMotionFormats) {
+    for (const char* ending : row.endings) {
+      if (ending != nullptr) list += (list.empty() ? "." : ", .") + std::string(ending);
+    }
+  }
+  return list;
+}
+
+std::string MotionKeys() {
+  std::string list;
+  for (const MotionFormatRow& row : kMotionFormats)
+    list += (list.empty() ? "" : ", ") + Name(row.format);
+  return list;
+}
+
+Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
+                                    const PointReadOptions& options) {
+  const MotionFormatRow& row = RowOf(format);
+  if (row.read == nullptr) return Error{"a skeleton's joints are no points", path};
+  Result<PointMotion> motion = row.read(path, options);
+  if (!motion.ok()) return motion;
+  if (motion.value().names.empty()) {
+    return Error{"the file has no points" +
+                     std::string(row.table ? ": no three columns such as hip_x, hip_y, hip_z; name "
+                                             "them in a mapping file"
+                                           : ""),
+                 path};
+  }
+  return motion;
+}
+
+Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
+                             const PointReadOptions& options) {
+  if (HasSkeleton(format)) {
+    LineReader reader;
+    if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+    const Result<BvhHeader> header = ReadBvhHeader(&reader);
+    if (!header.ok()) return header.error();
+    return WholeFrameRate(1.0 / header.value().frame_time_s);
+  }
+  PointReadOptions none = options;
+  none.choose = [](const std::vector<std::string>&) { return std::vector<int>{}; };
+  const Result<PointMotion> motion = ReadPointMotion(path, format, none);
+  if (!motion.ok()) return motion.error();
+  return WholeFrameRate(motion.value().rate_hz);
+}
+
+}  // namespace pushid

@@ -1,0 +1,108 @@
+// datasets: skeletons and points read alike.
+#include "datasets/loading/file_motion.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "datasets/files/number_text.h"
+#include "datasets/formats/bvh.h"
+
+namespace pushid {
+namespace {
+
+// Turns indices into the file's joints to indices into the list of those that are read.
+std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
+  std::vector<int> places;
+  for (int joint : wanted) {
+    const auto found = std::find(read->begin(), read->end(), joint);
+    places.push_back(static_cast<int>(found - read->begin()));
+    if (found == read->end()) read->push_back(joint);
+  }
+  return places;
+}
+
+// Which of the file's `all` joints are read; where the pendulum's stand among those.
+std::vector<int> Wanted(const FileMotionRequest& request, const PendulumJoints& joints,
+                        std::size_t all, FileMotion* motion) {
+  std::vector<int> read(request.keep_all_joints ? all : 0);
+  std::iota(read.begin(), read.end(), 0);
+  motion->places = {Among(joints.hip, &read), Among(joints.left_ankle, &read),
+                    Among(joints.right_ankle, &read)};
+  return read;
+}
+
+Result<FileMotion> ReadSkeleton(const FileMotionRequest& request) {
+  FileMotion motion;
+  motion.unit = request.unit.value_or(motion.unit);
+  BvhPositionOptions options;
+  options.length_unit = motion.unit;
+  options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
+    const Result<PendulumJoints> joints =
+        ChoosePendulumJoints(request.path, skeleton, request.joints);
+    if (!joints.ok()) return joints.error();
+    return Wanted(request, joints.value(), skeleton.joints.size(), &motion);
+  };
+  Result<BvhPositions> bvh = ReadBvhPositions(request.path, options);
+  if (!bvh.ok()) return bvh.error();
+  motion.tracks = std::move(bvh.value().positions);
+  motion.frame_time_s = bvh.value().frame_time_s;
+  motion.content_hash = bvh.value().content_hash;
+  for (int joint : bvh.value().joints) {
+    motion.names.push_back(bvh.value().skeleton.joints[joint].name);
+    motion.parents.push_back(bvh.value().skeleton.joints[joint].parent);
+  }
+  return motion;
+}
+
+// An Error where a file gives a unit that is not known and nothing else says one.
+MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
+                   FileMotion* motion) {
+  motion->unit = request.unit.value_or(points.unit.value_or(motion->unit));
+  if (!points.unit && !Trimmed(points.unit_text).empty() && !request.unit) {
+    return Error{"says its lengths are in " + Quoted(points.unit_text) +
+                     ", which is not known here; give length_unit (mm, cm or m) in the manifest",
+                 request.path};
+  }
+  if (points.unit && *points.unit != motion->unit) {
+    request.warn("says its lengths are " + Name(*points.unit) + "; they are read as " +
+                 Name(motion->unit));
+  }
+  return std::nullopt;
+}
+
+Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
+  FileMotion motion;
+  PointReadOptions options;
+  options.columns = request.mapping.columns;
+  options.time_column = request.mapping.time_column;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    const Result<PendulumJoints> joints = ChoosePendulumPoints(request.path, names, request.joints);
+    if (!joints.ok()) return joints.error();
+    return Wanted(request, joints.value(), names.size(), &motion);
+  };
+  Result<PointMotion> read = ReadPointMotion(request.path, request.format, options);
+  if (!read.ok()) return read.error();
+  PointMotion& points = read.value();
+  if (MaybeError failed = SetUnit(request, points, &motion)) return *std::move(failed);
+  motion.tracks = std::move(points.positions);
+  for (auto& track : motion.tracks) {
+    for (Eigen::Vector3d& position : track) position *= MetresPer(motion.unit);
+  }
+  const double rate =
+      request.mapping.frame_rate > 0.0 ? request.mapping.frame_rate : points.rate_hz;
+  motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
+  motion.first_time_s = points.first_time_s;
+  motion.content_hash = points.content_hash;
+  for (int point : points.chosen) motion.names.push_back(points.names[point]);
+  motion.parents.assign(motion.names.size(), -1);
+  return motion;
+}
+
+}  // namespace
+
+Result<FileMotion> ReadFileMotion(const FileMotionRequest& request) {
+  return HasSkeleton(request.format) ? ReadSkeleton(request) : ReadPoints(request);
+}
+
+}  // namespace pushid

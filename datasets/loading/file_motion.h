@@ -1,0 +1,43 @@
+// datasets: the joints or points of one motion file that a person is read from, whatever its
+// format.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
+#include "datasets/formats/motion_formats.h"
+#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/joint_choice.h"
+
+namespace pushid {
+
+struct FileMotionRequest {
+  const std::string& path;
+  MotionFormat format;
+  std::optional<LengthUnit> unit;  // whatever the file says; unset: the file's own, else mm
+  const JointMapping& joints;
+  const ColumnMapping& mapping;
+  bool keep_all_joints;  // otherwise hip and ankles alone
+  std::function<void(const std::string& warning)> warn;
+};
+
+struct FileMotion {
+  std::vector<std::vector<Eigen::Vector3d>> tracks;  // of what is read, file's axes, metres
+  PendulumJoints places;                             // indices into tracks
+  std::vector<std::string> names;
+  std::vector<int> parents;   // of BVH joints; otherwise -1 each
+  double frame_time_s = 0.0;  // 0: neither file nor mapping says it
+  double first_time_s = 0.0;  // by the file's clock
+  LengthUnit unit = LengthUnit::kMillimetre;
+  std::string content_hash;
+};
+
+// Errors besides those of the readers: joints that cannot be found, an unknown unit.
+Result<FileMotion> ReadFileMotion(const FileMotionRequest& request);
+
+}  // namespace pushid

@@ -1,0 +1,82 @@
+// Scores written and read back; what is damaged is refused with the key's name.
+#include "ident/validation/scores_json.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// Two scored recordings, one of two people, and a failure.
+ScoreSummary SampleScores() {
+  ScoreSummary s;
+  s.recordings.resize(3);
+  const char* ids[] = {"a", "b", "c"};
+  for (int i = 0; i < 3; ++i) {
+    s.recordings[i].id = ids[i];
+    s.recordings[i].frames = 90 + i;
+  }
+  s.recordings[0].hip_ade = 0.1;
+  s.recordings[0].hip_fde = 1.0 / 3.0;
+  s.recordings[1].hip_ade = 0.3;
+  s.recordings[1].fell = true;
+  s.recordings[2].failure = "theta of person 0 leaves the model's domain at frame 7";
+  s.mean.hip_ade = 0.2;
+  s.mean.hip_fde = 1.0 / 7.0;
+  s.mean.error = {0.1, 1.0 / 9.0};
+  s.mean.recordings = 2;
+  s.frame_weighted = s.mean;
+  s.frame_weighted.hip_ade = 0.21;
+  s.by_magnitude["weak"] = s.mean;
+  s.by_subject["Sa"].hip_fde = 0.5;
+  s.by_setting["row_1"].recordings = 1;
+  s.propagation.recordings = 1;
+  s.propagation.movers = 2.5;
+  s.propagation.figures[kOnsetError] = {3.0, 0.5, 4.0};
+  s.propagation_by_setting["row_1"] = s.propagation;
+  return s;
+}
+
+TEST(ScoresJsonTest, ThereAndBack) {
+  const nlohmann::ordered_json json = ToJson(SampleScores(), true);
+  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), true), json);
+  EXPECT_EQ(read.value().mean.hip_fde, 1.0 / 7.0);
+  EXPECT_EQ(read.value().mean.error.hip_ade, 0.1);
+  EXPECT_EQ(read.value().recordings[2].failure, SampleScores().recordings[2].failure);
+  EXPECT_EQ(read.value().propagation.figures[kOnsetError].error, 0.5);
+  EXPECT_FALSE(read.value().propagation.figures[kOnsetBias].known());
+}
+
+// A row in the table of metrics is all that files need.
+TEST(ScoresJsonTest, EveryMetricIsWritten) {
+  const nlohmann::ordered_json json = ToJson(SampleScores(), true);
+  for (const HipMetric& metric : kHipMetrics) {
+    EXPECT_TRUE(json["recordings"][0].contains(metric.Key())) << metric.name;
+    EXPECT_TRUE(json["mean"].contains(metric.ErrorKey())) << metric.name;
+  }
+  EXPECT_EQ(kHipMetrics[0].Key(), "hipADE_m");
+  EXPECT_EQ(kHipMetrics[1].ErrorKey(), "hipFDE_standard_error_m");
+  EXPECT_EQ(MetricsText(SampleScores().recordings[0], 2), "hipADE 0.1 m, hipFDE 0.33 m");
+}
+
+TEST(ScoresJsonTest, DamageIsNamed) {
+  const auto message = [](const char* key, const nlohmann::ordered_json& value) {
+    nlohmann::ordered_json json = ToJson(SampleScores(), true);
+    json["mean"][key] = value;
+    if (value.is_null()) json["mean"].erase(key);
+    const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
+    return read.ok() ? std::string("no error") : read.error().ToString();
+  };
+  EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "scores.json: "));
+  EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "hipADE_m"));
+  EXPECT_TRUE(Contains(message("hipADE_m", "0.1"), "must be number"));
+  EXPECT_TRUE(Contains(message("recordings", nullptr), "evaluate again"));
+  EXPECT_FALSE(ScoresFromJson(nlohmann::ordered_json::array(), "x").ok());
+}
+
+}  // namespace
+}  // namespace pushid
