@@ -5,7 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/crossvalidate_flags.h"
-#include "apps/flags/fit_flags.h"
+#include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"

@@ -6,7 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/confidence_flags.h"
 #include "apps/flags/fit_flags.h"
-#include "apps/flags/fit_program_flags.h"
+#include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -70,7 +70,7 @@ MaybeError WriteModel(const std::string& path, const FittedModel& model, Clock::
 
 int Run() {
   const auto begin = Clock::now();
-  const Result<FitProgramFlags> flags = FitProgramFlagsFromCommandLine();
+  const Result<FitFlags> flags = FitFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
   if (flags.value().list_parameters) {
     std::printf("%s", ParameterGlossaryMarkdown().c_str());

@@ -135,8 +135,6 @@ TEST(RoomsTest, LibTorchStaysInItsFiles) {
 
 // What a program does is readable without the command line: flags are read in one folder.
 TEST(RoomsTest, FlagsStayInTheirFolder) {
-  // Not yet moved.
-  const std::set<std::string> still = {"pushid_crossvalidate.cc", "pushid_fit.cc"};
   const std::regex flag(R"(\b(FLAGS|DEFINE_[a-z0-9]+|DECLARE_[a-z0-9]+)(_\w+|\())");
   int found = 0;
   for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / "apps")) {
@@ -147,8 +145,7 @@ TEST(RoomsTest, FlagsStayInTheirFolder) {
       ++number;
       if (!std::regex_search(line, flag)) continue;
       ++found;
-      EXPECT_TRUE(may || still.count(file.filename().string()) == 1)
-          << file << ":" << number << ": flags are read in apps/flags: " << line;
+      EXPECT_TRUE(may) << file << ":" << number << ": flags are read in apps/flags: " << line;
     }
   }
   EXPECT_GT(found, 50) << "the flags were not found";

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/fit_flags.h"
+#include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/report/design_text.h"

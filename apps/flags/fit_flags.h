@@ -1,22 +1,19 @@
-// apps: the flags that say what to fit and how: the rows of the option table
-// (ident/parameters/option_table.h) as gflags; shared by pushid-fit and pushid-crossvalidate.
+// apps: the flags of pushid-fit alone.
 #pragma once
 
-#include <cstdint>
+#include <string>
 
 #include "datasets/files/error.h"
-#include "ident/results/fit_setup.h"
 
 namespace pushid {
 
-// Those that the command line gave, even with their defaults' values.
-GivenOptions GivenFitFlags();
+struct FitFlags {
+  std::string model_out;         // empty: the model is not kept
+  int resample = 0;              // replica of a bootstrap; 0: the recordings as they are
+  bool check = false;            // only check the flags
+  bool list_parameters = false;  // only print the glossary of every parameter
+};
 
-// The given flags over the preset's settings. recordings: what --preset=auto looks at; null while
-// they are not known. Errors also where a given flag acts on nothing.
-Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings = nullptr);
-
-int NumThreads();
-uint64_t Seed();
+Result<FitFlags> FitFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -1,0 +1,78 @@
+// apps: fit flags, registered from the option table.
+#include "apps/flags/fit_option_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <list>
+#include <string>
+
+#include "ident/parameters/option_table.h"
+
+namespace pushid {
+namespace {
+
+// gflags keeps pointers to names, helps and values for good.
+template <typename T>
+void Register(const FitOptionRow& row, const std::string& help, const T& value) {
+  static std::list<std::string> words;
+  static std::list<T> values;
+  words.push_back(help);
+  values.push_back(value);
+  T* const current = &values.back();
+  values.push_back(value);
+  gflags::FlagRegisterer(row.name.c_str(), words.back().c_str(), __FILE__, current, &values.back());
+}
+
+// Values are read by the rows, which say more than gflags does where one is wrong.
+bool RegisterFitFlags() {
+  const FitOptions defaults;
+  for (const FitOptionRow& row : FitOptionRows()) {
+    if (row.is_bool) {
+      Register<bool>(row, row.help, row.text(defaults) == "true");
+    } else if (row.preset_decides) {
+      Register<std::string>(row, row.help + " (default: the preset's)", "");
+    } else {
+      Register<std::string>(row, row.help, row.text ? row.text(defaults) : "");
+    }
+  }
+  return true;
+}
+
+const bool registered = RegisterFitFlags();
+
+}  // namespace
+
+GivenOptions GivenFitFlags() {
+  GivenOptions given;
+  for (const FitOptionRow& row : FitOptionRows()) {
+    const gflags::CommandLineFlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(row.name.c_str());
+    // No value, as --fix= gives it, is nothing given.
+    if (!flag.is_default && !flag.current_value.empty()) {
+      given.emplace_back(row.name, flag.current_value);
+    }
+  }
+  return given;
+}
+
+Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings) {
+  const GivenOptions given = GivenFitFlags();
+  Result<FitOptions> options = MakeFitOptions(given, recordings);
+  if (!options.ok()) return options;
+  if (MaybeError error = CheckGivenAct(given, options.value())) return *error;
+  return options;
+}
+
+namespace {
+
+// Of a flag that has been checked with all the others.
+std::int64_t WholeNumber(const char* flag) {
+  return std::stoll(gflags::GetCommandLineFlagInfoOrDie(flag).current_value);
+}
+
+}  // namespace
+
+int NumThreads() { return static_cast<int>(WholeNumber("num_threads")); }
+
+uint64_t Seed() { return static_cast<uint64_t>(WholeNumber("seed")); }
+
+}  // namespace pushid

@@ -1,0 +1,22 @@
+// apps: the flags that say what to fit and how: the rows of the option table
+// (ident/parameters/option_table.h) as gflags; shared by pushid-fit and pushid-crossvalidate.
+#pragma once
+
+#include <cstdint>
+
+#include "datasets/files/error.h"
+#include "ident/results/fit_setup.h"
+
+namespace pushid {
+
+// Those that the command line gave, even with their defaults' values.
+GivenOptions GivenFitFlags();
+
+// The given flags over the preset's settings. recordings: what --preset=auto looks at; null while
+// they are not known. Errors also where a given flag acts on nothing.
+Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings = nullptr);
+
+int NumThreads();
+uint64_t Seed();
+
+}  // namespace pushid
