@@ -10,6 +10,7 @@
 #include "apps/simulate_formation.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/presets.h"
 
 namespace {
 

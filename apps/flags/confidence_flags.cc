@@ -10,6 +10,7 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/design_text.h"
 #include "ident/results/confidence.h"
 
