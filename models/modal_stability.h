@@ -72,7 +72,11 @@ ModePolynomial<T> FreeModes(const ModelOptions& options, const Body& body, const
   const Vector4<double> upright = Vector4<double>::Zero();
   constexpr double kStep = 1.0;  // s; any: K does not depend on it
   const SelfForce self(options, body, upright, kStep);
-  const RestJacobian<T> rest = LinearizeAtRest(self, p);
+  // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
+  // derivatives, is nothing to rely on.
+  ParameterSet<T> linear = p;
+  linear[kCq] = linear[kDq] = T(0.0);
+  const RestJacobian<T> rest = LinearizeAtRest(self, linear);
   const Matrix4<double> mass = MassMatrix<double>(body, upright);
   const int cart = plane, angle = 2 + plane;                   // rows
   const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns

@@ -86,6 +86,7 @@ TEST(FreeModes, AreThoseOfTheEquationsOnPaper) {
     const Body body = RandomBody(&random);
     ParameterSet<double> p = Gains(&random);
     p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
+    p[kCq] = p[kDq] = 1.0;  // vanish at rest
     for (int plane : {0, 1}) {
       const ModePolynomial<double> actual = FreeModes<double>(options, body, p, plane);
       const ModePolynomial<double> expected = OnPaper(options, body, p, plane);

@@ -118,7 +118,8 @@ TEST_F(FittedLaw, RecoversWhatWasPlanted) {
   EXPECT_NEAR(model_.fit.parameters[kMu], PublishedTailParameters()[kMu], 1e-4);
   const Estimate* estimate = FindEstimate(model_.fit.estimates, "brake");
   ASSERT_NE(estimate, nullptr);
-  EXPECT_EQ(estimate->status, EstimateStatus::kIdentified);
+  EXPECT_EQ(estimate->value, result_.parameters[brake_]);
+  EXPECT_EQ(estimate->unit, "m/s^2");
   // The free modes know it.
   ModelOptions without = model_.fit.options.model;
   without.own_laws.clear();

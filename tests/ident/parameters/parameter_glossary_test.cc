@@ -12,7 +12,8 @@ namespace pushid {
 namespace {
 
 TEST(ParameterGlossary, HasARowForEveryParameter) {
-  const auto& rows = ParameterGlossary().rows();
+  const TextTable table = ParameterGlossary();
+  const auto& rows = table.rows();
   ASSERT_EQ(rows.size(), 1u + kFirstOwnParameter);
   EXPECT_EQ(rows[1], (std::vector<std::string>{
                          "mu", "mu", "N s/m", "100", "-2000 to 2000", "ground friction",
