@@ -231,7 +231,8 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
   result.rms_m = std::sqrt(residual.squaredNorm() / n);
   result.gain = fit.Gain(result.offset_s);
   if (!(result.standard_error_s <= 0.25 * max_offset_s)) {
-    return Error{"recording " + recording.id + ": the sensor's time cannot be found from the motion (" +
+    return Error{"recording " + recording.id +
+                 ": the sensor's time cannot be found from the motion (" +
                  Rounded(result.offset_s, 3) + " +- " + Rounded(result.standard_error_s, 2) +
                  " s); is the force in N?"};
   }
