@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_result.h"

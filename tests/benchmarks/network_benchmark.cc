@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "datasets/files/random.h"
+#include "ident/parameters/presets.h"
 #include "ident/parameters/self_network_io.h"
 #include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"

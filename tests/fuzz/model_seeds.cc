@@ -6,6 +6,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/parameters/network_json.h"
+#include "ident/parameters/presets.h"
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/result_json.h"
 

@@ -11,6 +11,7 @@
 #include "datasets/files/random.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit_result.h"
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "ident/results/result_json.h"
 #include "residuals/autodiff_force_law.h"

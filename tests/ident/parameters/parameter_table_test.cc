@@ -6,6 +6,7 @@
 #include <set>
 
 #include "ident/parameters/option_names.h"
+#include "ident/parameters/presets.h"
 #include "tests/test_support.h"
 
 namespace pushid {

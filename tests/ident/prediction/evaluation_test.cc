@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ident/parameters/presets.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

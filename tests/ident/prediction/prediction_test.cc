@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "ident/parameters/presets.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -9,6 +9,7 @@
 #include "datasets/files/random.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/parameters/presets.h"
 #include "ident/report/report_tables.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_result.h"

@@ -2,6 +2,7 @@
 // within their intervals with it.
 #include <gtest/gtest.h>
 
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_result.h"

@@ -1,6 +1,7 @@
 // Parameters by subject, tied to a shared value; initial velocities that are fitted.
 #include <gtest/gtest.h>
 
+#include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"

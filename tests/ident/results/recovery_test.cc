@@ -1,6 +1,7 @@
 // Known parameters come back from noise-free synthetic recordings, and what the defaults add.
 #include <gtest/gtest.h>
 
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_result.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/diagnostics/diagnostics.h"
+#include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"

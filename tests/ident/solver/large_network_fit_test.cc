@@ -2,6 +2,7 @@
 // point is kept, and the same start gives the same bits.
 #include "ident/solver/large_network_fit.h"
 
+#include "ident/parameters/presets.h"
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
