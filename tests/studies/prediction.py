@@ -1,5 +1,6 @@
 """Prediction of single people who were not in the fit: schemes of folds, changes of the model, bands.
 
+summary  the row of `tail` and its baselines (README.md)
 schemes  `tail` and `ldp` beside baselines, three ways of holding out (ident/validation/README.md); two minutes
 changes  what was tried on top of `tail`, paired differences (ident/validation/README.md); one minute
 networks learned forces and rods on top of `tail` (ident/validation/README.md); ten minutes
@@ -35,6 +36,17 @@ def settle(p):
     return f"{p['fits_that_settle']} of {p['fits']}" if "fits" in p else None
 
 
+def summary():
+    scores, _ = validate(LDP, "--scheme=subject")
+    rows = []
+    for name in ("static", "constant velocity", "ridge", "tail"):
+        mean = scores[name]["mean"]
+        rows.append([name, with_error(mean["hipADE_m"], mean["hipADE_standard_error_m"]),
+                     with_error(mean["hipFDE_m"], mean["hipFDE_standard_error_m"])])
+    return studies.table(["predicting a person who was not in the fit", "mean error of the hip, m",
+                          "error at the end, m"], rows)
+
+
 def schemes():
     scores, differences = {}, {}
     for scheme, _ in SCHEMES:
@@ -55,11 +67,12 @@ def schemes():
 
 
 def on_top(candidates):
-    scores, differences = validate([(flags, flags) for flags in candidates], "--yardsticks=false")
+    names = {flags: flags.replace(":", " ") for flags in candidates}  # a colon ends a name
+    scores, differences = validate([(name, flags) for flags, name in names.items()], "--yardsticks=false")
     rows = []
-    for flags in candidates:
-        p = scores[flags]
-        rows.append([f"`{flags}`", difference(differences[flags]), f"{p['falls']}; {p['falls_when_pushed_harder']}",
+    for flags, name in names.items():
+        p = scores[name]
+        rows.append([f"`{flags}`", difference(differences[name]), f"{p['falls']}; {p['falls_when_pushed_harder']}",
                      settle(p)])
     return studies.table(["on top of `--preset=tail`", "difference of hipADE, m",
                           "leave the model's domain, of 160; pushed 1.4 times as hard", "settle"], rows)
@@ -80,5 +93,5 @@ def bands():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"schemes": schemes, "changes": changes, "networks": networks,
+    studies.main(__file__, {"summary": summary, "schemes": schemes, "changes": changes, "networks": networks,
                             "bands": bands})

@@ -55,7 +55,7 @@ def offsets_at(noise):
             sensor = os.path.join(folder, "sensor.csv")
             see_at_60_hz(os.path.join(folder, r["bvh"][0]))
             write_sensor(os.path.join(folder, r.pop("push_csv")), 0, 1440, sensor)
-            r["fps"] = FPS / EVERY
+            r.update(fps=FPS / EVERY, frames=1440 // EVERY)
             with open(manifest, "w", encoding="utf-8") as file:
                 json.dump({"recordings": [r]}, file)
             told = studies.run("pushid-push", f"--recordings={manifest}", f"--id={r['id']}", f"--sensor={sensor}",

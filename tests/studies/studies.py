@@ -58,6 +58,8 @@ def run(program, *arguments, out="json_out", keep=True):
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
         if done.returncode != 0:
             sys.exit(f"{program} ended with exit code {done.returncode}")
+        if not keep:
+            return Output(done.stdout, path)
         with tempfile.NamedTemporaryFile("w", dir=KEPT, delete=False) as file:
             file.write(done.stdout)
         os.replace(file.name, text_file)
@@ -117,7 +119,7 @@ def readmes():
 def write_block(marker, text):
     for path in readmes():
         with open(path, encoding="utf-8") as file:
-            before, found, rest = file.read().partition(marker + "\n")
+            before, found, rest = file.read().partition(f"\n{marker}\n")
         if not found:
             continue
         _, end, after = rest.partition(END)

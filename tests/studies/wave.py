@@ -5,6 +5,8 @@ pushes      how far it goes by push and parameters (ident/formations/README.md)
 
 Half a minute on one core for the fit, seconds for the rest.
 """
+import re
+
 import studies
 
 LINE = ["--formation=line", "--people=10", "--spacing=0.45"]
@@ -26,7 +28,7 @@ def pushes():
         for push in (30, 80, 157):
             text = simulate(f"--push={push}", *([f"--as_setting={setting}"] if setting else []))
             moved, _, wave = text.rstrip().splitlines()[-1].partition("; ")
-            outcomes = [line.split()[-1] for line in text.splitlines() if line[:7].strip().isdigit()]
+            outcomes = [re.split(r"\s{2,}", line)[-1] for line in text.splitlines() if line[:7].strip().isdigit()]
             counts = [f"{outcomes.count(o)} {o}" for o in sorted(set(outcomes))]
             rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), wave.split(": ")[-1]])
     return studies.table(["parameters of", "push, N s", "people moved by 2 cm", "outcome", "speed of the onset"], rows)
