@@ -76,6 +76,21 @@ TEST(ReadmeTest, LinksLeadSomewhere) {
   EXPECT_GT(links, 10) << "the READMEs were not found";
 }
 
+// Files are named from the top or from the README's own folder.
+TEST(ReadmeTest, FilesNamedExist) {
+  int files = 0;
+  for (const fs::path& readme : Readmes()) {
+    ForEachMatch(ReadFile(readme), std::regex(R"(`([\w./]+\.(h|cc|py|sh))`)"),
+                 [&](const std::smatch& file) {
+                   ++files;
+                   EXPECT_TRUE(fs::exists(kSource / file[1].str()) ||
+                               fs::exists(readme.parent_path() / file[1].str()))
+                       << readme << ": no " << file[1];
+                 });
+  }
+  EXPECT_GT(files, 10);
+}
+
 // A block of a README names its script, a block of a script has its place in exactly one README,
 // and it is filled.
 TEST(ReadmeTest, EveryBlockOfNumbersHasItsStudy) {

@@ -7,7 +7,7 @@ intervals are those of the first data sets only, which is why they are known to 
 """
 import studies
 
-UNBIASED = ["--datasets=400", "--refined=40", "--num_threads=1"]
+UNBIASED = ["--datasets=400", "--refined=20", "--num_threads=1"]
 DEFAULTS = ["--datasets=400", "--refined=0", "--defaults", "--num_threads=1"]
 
 
