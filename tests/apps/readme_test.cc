@@ -80,7 +80,7 @@ TEST(ReadmeTest, LinksLeadSomewhere) {
 TEST(ReadmeTest, FilesNamedExist) {
   int files = 0;
   for (const fs::path& readme : Readmes()) {
-    ForEachMatch(ReadFile(readme), std::regex(R"(`([\w./]+\.(h|cc|py|sh))`)"),
+    ForEachMatch(ReadFile(readme), std::regex(R"(`([a-z0-9_./]+\.(h|cc|py|sh))`)"),
                  [&](const std::smatch& file) {
                    ++files;
                    EXPECT_TRUE(fs::exists(kSource / file[1].str()) ||
