@@ -5,8 +5,6 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 glossary=$("${PUSHID_BIN:-build/release/bin}/pushid-fit" --list_parameters)
-# A table in Markdown as it is, plain text as such.
-case $glossary in "|"*) ;; *) glossary=$(printf '```\n%s\n```' "$glossary") ;; esac
 if [ "${1:-}" = --print ]; then printf '%s\n' "$glossary" && exit; fi
 
 readme=ident/README.md
