@@ -22,7 +22,7 @@ generator=()
 if [ ! -f build/quickstart/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset quickstart "${generator[@]}" >/dev/null
 cmake --build --preset quickstart --parallel "$(nproc)" --target \
-  pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict
+  pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict pushid-inspect pushid-manifest pushid-push
 
 say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1
@@ -51,5 +51,5 @@ echo "  model.json       the identified model"
 echo "  report.txt       the whole report: status, errors, what the data cannot tell apart"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
-printf '\nYour own recordings (README.md, Data format):\n'
+printf '\nYour own recordings (README.md, Your own recordings):\n'
 echo "  $PWD/$bin/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"

@@ -9,9 +9,8 @@
 // (variable projection); a grid over the range, then Gauss-Newton. Positions rather than
 // accelerations, because their noise is white and is not differentiated. The standard error is that
 // of least squares times sqrt((1 + r) / (1 - r)), r the residuals' correlation from frame to frame.
-// No bias on motion simulated at 960 Hz and seen at 60 Hz (0.5 +- 0.6 ms over 12 pushes);
-// simulations at 60 Hz themselves hold a force for a frame, whose middle comes half a frame later
-// (8.5 +- 1.7 ms). Rejected: cross-correlation with the inverse-dynamics force, which takes the
+// No bias on motion simulated at 960 Hz and seen at 60 Hz but half a step of the simulation, which
+// holds a force for a step (tests/studies/sensors.py; of simulations at 60 Hz half a frame is 8 ms). Rejected: cross-correlation with the inverse-dynamics force, which takes the
 // person's reaction for a later push.
 #pragma once
 

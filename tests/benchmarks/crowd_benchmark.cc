@@ -3,7 +3,7 @@
 //
 // People stand 0.45 m apart on a square grid, each with a small velocity, so that
 // contacts are loaded everywhere; the parameters are those identified from the published group
-// recordings (README).
+// recordings.
 #include <benchmark/benchmark.h>
 
 #include <cmath>

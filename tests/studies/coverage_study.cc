@@ -5,8 +5,8 @@
 // Every data set holds 32 recordings (4 people, 8 pushes each) whose gains vary from recording to
 // recording by the factor exp(spread N), so that all frames of a recording err together and naive
 // intervals fail. Priors, settling and stability are off. All data sets get clustered and naive
-// intervals, the first `refined` also profile and bootstrap ones. A run of half an hour, not a unit
-// test; README.md states what it found.
+// intervals, the first `refined` also profile and bootstrap ones. A run of many minutes, not a unit
+// test; tests/studies/coverage.py makes a table of what it found.
 #include <gflags/gflags.h>
 
 #include <cmath>

@@ -1,0 +1,104 @@
+"""The 32 recordings of single people: what the fit says, and three kinds of intervals of the same parameters.
+
+summary     the drag of the feet in a sentence (README.md)
+transcript  the report of pushid-fit (ident/README.md)
+depends     the same fit with other assumptions and without one person (ident/README.md)
+intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); two minutes
+coupled     mu, Kp_x and Kp_y all free (ident/uncertainty/README.md); a second
+starts      another optimum from other starts? (ident/README.md); ten seconds
+
+Times are those of one core; without one, seconds.
+"""
+import json
+
+import studies
+from studies import number, with_error
+
+FREE = ["--preset_priors=false", "--settling_weight=0"]
+
+
+def fit(*flags):
+    return studies.fit("single", *flags)
+
+
+def transcript():
+    text = fit().text.split("\n\nexplained least")[0]  # the diagnostics name recordings
+    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
+
+
+def interval(bounds):
+    return f"{number(bounds[0])} to {number(bounds[1])}"
+
+
+def estimates(model):
+    """By name; parameters and what is derived from them."""
+    return {p["name"]: p for p in model["derived"] + model["parameters"]}
+
+
+def estimate(p):
+    return with_error(p["value"], p["standard_error"]) if "standard_error" in p else number(p["value"])
+
+
+def summary():
+    told = estimates(fit().json)
+    free = estimates(fit(*FREE).json)
+    return (f"On the 32 published recordings of four people the drag of the stepping feet, c_x = mu + Kp_x, is "
+            f"{estimate(told['c_x'])} N s/m for 85 kg (95 %: {interval(told['c_x']['interval_95'])}); without priors "
+            f"and settling simulations the same data say {estimate(free['c_x'])}.")
+
+
+def without(subject):
+    with open(studies.MANIFEST, encoding="utf-8") as file:
+        recordings = json.load(file)["recordings"]
+    ids = [r["id"] for r in recordings if r["setting"] == "single" and r["subjects"][0]["id"] == subject]
+    return f"--leave_out={','.join(ids)}"
+
+
+def depends():
+    variants = [("all 32 recordings, default flags", []), ("`--preset_priors=false`", ["--preset_priors=false"]),
+                ("`--settling_weight=0`", ["--settling_weight=0"]), ("both", FREE)]
+    variants += [(f"without {s}", [without(s)]) for s in fit().json["subjects"]]
+    rows = []
+    for title, flags in variants:
+        model = fit(*flags).json
+        told = estimates(model)
+        names = ("c_x", "Kp_theta/(m g l)", "a_x", "tail_gain", "tail_exponent")
+        rows.append([title] + [estimate(told[n]) for n in names] + ["yes" if model["behaviour"]["settles"] else "no"])
+    return studies.table(["", "c_x, N s/m", "Kp_theta/(m g l)", "a_x, m/s^2/rad", "tail_gain", "tail_exponent",
+                          "settles"], rows)
+
+
+def intervals():
+    model = fit("--profile", "--bootstrap=199").json
+    profiles = {p["name"]: p for p in model["profiles"]}
+    resampled = {p["name"]: p for p in model["bootstrap"]["parameters"]}
+    rows = []
+    for p in model["parameters"]:
+        if p["status"] == "fixed":
+            continue
+        name = p["name"]
+        rows.append([f"`{name}`", p["unit"], with_error(p["value"], p["standard_error"]),
+                     number(p["standard_error_naive"], 2), interval(p["interval_95"]),
+                     interval(profiles[name]["interval_95"]), interval(resampled[name]["interval_95"])])
+    return studies.table(["parameter", "unit", "estimate, clustered error", "naive error", "clustered 95 %",
+                          "profile 95 %", "bootstrap 95 %, 199 replicas"], rows)
+
+
+def coupled():
+    lines = fit("--free=Kp_x,Kp_y").text.splitlines()
+    told = [line for line in lines if line.startswith("unidentifiable")]
+    return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --free=Kp_x,Kp_y",
+                              "...\n" + "\n".join(told))
+
+
+def starts():
+    found = fit("--starts=32").json["fit"]["starts"]
+    best = min(s["cost"] for s in found if s["usable"])
+    same = sum(1 for s in found if s["usable"] and s["cost"] - best <= 1e-6 * best)
+    return (f"`pushid-fit --setting=single --starts=32`, every gain wrong by up to 5 times either way: {same} of "
+            f"{len(found)} starts end at the same cost, {number(best, 6)}, to a relative 1e-6.")
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"summary": summary, "transcript": transcript, "depends": depends, "intervals": intervals,
+                            "coupled": coupled, "starts": starts})

@@ -1,0 +1,109 @@
+"""What takes how long: the benchmarks, in the words of a table, and whole processes by the clock.
+
+benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
+processes   tests/benchmarks/README.md; five minutes
+batch       tests/benchmarks/README.md; a batch of 1,001 fits; three minutes
+
+Times on one core, busy with nothing else if they are to be compared.
+"""
+import json
+import os
+import statistics
+import subprocess
+import tempfile
+import time
+
+import studies
+from studies import number
+
+# Row of the table, and the benchmarks whose times stand in it.
+ROWS = [
+    ("one step of the model / one rollout of 72 frames", ["IpmStep", "RolloutOfDoubles"]),
+    ("Jacobian of the 32 recordings by forward sensitivities, P = 6 / 12 / 64",
+     [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
+    ("the same by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
+    ("the same by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
+    ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
+    ("fit with uncertainty and behaviour, `tail` / `ldp`", ["WholeFit/tail", "WholeFit/ldp"]),
+    ("Jacobian of the 49 recordings of groups: contact / with linear self forces / and drive",
+     [f"GroupJacobian/{c}" for c in ("contact", "linear_and_contact", "linear_contact_drive")]),
+    ("bodies of 13 people, a frame: `rigid` / `window` / `cvae`", ["RestoreRigid", "RestoreWindow", "RestoreCvae"]),
+    ("Jacobian of the 32 recordings with a network: `mlp:4` / `gru:4`", ["NetworkJacobian/mlp:4", "NetworkJacobian/gru:4"]),
+    ("one second of a crowd of 1,000 / 10,000 people who touch",
+     [f"CrowdSecond/people:{n}/threads:1/real_time" for n in (1000, 10000)]),
+    ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
+]
+
+
+def benchmarks():
+    names = "|".join(name for _, needed in ROWS for name in needed)
+    report = studies.run("pushid-benchmarks", f"--benchmark_filter=^({names})$", "--benchmark_format=json", out=None)
+    times = {b["name"]: b for b in json.loads(report.text)["benchmarks"]}
+    rows = []
+    for title, needed in ROWS:
+        cells = []
+        for name in needed:
+            found = times[name]
+            rate = f", {number(found['bytes_per_second'] / 1e6)} MB/s" if "bytes_per_second" in found else ""
+            cells.append(f"{number(found['cpu_time'])} {found['time_unit']}{rate}")
+        rows.append([title, " / ".join(cells)])
+    return studies.table(["what", "processor time"], rows)
+
+
+def clock(*command):
+    """Median wall-clock seconds of five runs."""
+    seconds = []
+    for _ in range(5):
+        before = time.monotonic()
+        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True,
+                       env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+        seconds.append(time.monotonic() - before)
+    return f"{number(statistics.median(seconds), 2)} s"
+
+
+def processes():
+    fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
+    report = [os.path.join(studies.BIN, "pushid-report"), f"--model={studies.fit('single').path}",
+              f"--recordings={studies.MANIFEST}"]
+    with tempfile.TemporaryDirectory() as folder:
+        page = os.path.join(folder, "report.html")
+        rows = [["`pushid-fit --setting=single`", clock(*fit)],
+                ["... `--preset=ldp`", clock(*fit, "--preset=ldp")],
+                ["... `--profile`", clock(*fit, "--profile")],
+                ["... `--bootstrap=199`", clock(*fit, "--bootstrap=199")],
+                ["`pushid-report --html_out`", clock(*report, f"--html_out={page}")]]
+        size = os.path.getsize(page) / 1e6
+    text = studies.table(["the 32 recordings of single people, one thread", "median of five runs"], rows)
+    return f"{text}\n\nThe page has {number(size)} MB."
+
+
+PLAN = """[data]
+recordings = "{manifest}"
+setting = "single"
+[jobs]
+group_by = "none"
+bootstrap = 1000
+[[variant]]
+name = "tail"
+flags = ["--preset=tail"]
+[output]
+dir = "out"
+"""
+
+
+def batch():
+    with tempfile.TemporaryDirectory() as folder:
+        plan = os.path.join(folder, "plan.toml")
+        with open(plan, "w", encoding="utf-8") as file:
+            file.write(PLAN.format(manifest=studies.MANIFEST))
+        before = time.monotonic()
+        subprocess.run([os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", "--jobs=1"], check=True,
+                       stdout=subprocess.DEVNULL, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+        seconds = time.monotonic() - before
+        jobs = len(os.listdir(os.path.join(folder, "out/jobs")))
+    return (f"`pushid-batch --jobs=1` runs {jobs} fits of the 32 recordings of single people (one, and "
+            f"{jobs - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s.")
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch})

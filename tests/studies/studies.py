@@ -1,0 +1,145 @@
+"""What the studies share: running a program, its JSON, numbers with errors, and the READMEs' blocks.
+
+A study is a script that makes blocks of Markdown: tables and transcripts of a README. Every number of a
+README stands in such a block, between the lines
+
+    <!-- tests/studies/NAME.py BLOCK -->
+    <!-- end -->
+
+    python3 tests/studies/NAME.py [BLOCK ...]            prints the blocks
+    python3 tests/studies/NAME.py [BLOCK ...] --write    puts them into the README that has their place
+
+PUSHID_RECORDINGS is the folder of the published recordings (default ../shared/fzj_push beside the source),
+PUSHID_BIN that of the programs (default build/release/bin). What a program printed is kept in
+build/studies under a hash of its command and of the program itself, so that a table's wording can be
+changed without running again; remove the folder to measure times anew. Standard library alone.
+"""
+import hashlib
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+BIN = os.path.abspath(os.environ.get("PUSHID_BIN", os.path.join(SOURCE, "build/release/bin")))
+RECORDINGS = os.path.abspath(os.environ.get("PUSHID_RECORDINGS", os.path.join(SOURCE, "../shared/fzj_push")))
+MANIFEST = os.path.join(RECORDINGS, "manifest.json")
+KEPT = os.path.join(SOURCE, "build/studies")
+END = "<!-- end -->"
+
+
+class Output:
+    """What a program printed, and the file it wrote (`path`), which `json` parses."""
+
+    def __init__(self, text, path):
+        self.text, self.path = text, path
+
+    @property
+    def json(self):
+        with open(self.path, encoding="utf-8") as file:
+            return json.load(file)
+
+
+def run(program, *arguments, out="json_out", keep=True):
+    """Runs a program with --OUT=FILE added (out=None: without) unless it was run so before and keep is true."""
+    executable = os.path.join(BIN, program)
+    if not os.path.exists(executable):
+        sys.exit(f"{executable} is missing: build the programs, or name their folder by PUSHID_BIN")
+    with open(executable, "rb") as file:
+        key = hashlib.sha256(file.read() + "\0".join(arguments).encode()).hexdigest()[:16]
+    os.makedirs(KEPT, exist_ok=True)
+    text_file, path = (os.path.join(KEPT, f"{program}-{key}.{ending}") for ending in ("txt", "json"))
+    if not (keep and os.path.exists(text_file)):
+        command = [executable, *arguments] + ([f"--{out}={path}"] if out else [])
+        print(f"{program} {' '.join(arguments)}", file=sys.stderr, flush=True)
+        environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")  # results repeat to the bit
+        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
+        if done.returncode != 0:
+            sys.exit(f"{program} ended with exit code {done.returncode}")
+        if not keep:
+            return Output(done.stdout, path)
+        with tempfile.NamedTemporaryFile("w", dir=KEPT, delete=False) as file:
+            file.write(done.stdout)
+        os.replace(file.name, text_file)
+    with open(text_file, encoding="utf-8") as file:
+        return Output(file.read(), path)
+
+
+def on_recordings(program, setting, *arguments, **options):
+    """The same with the published recordings of a setting; a lack of them ends the study."""
+    if not os.path.exists(MANIFEST):
+        sys.exit(f"{MANIFEST} is missing: PUSHID_RECORDINGS names the folder of the recordings")
+    return run(program, f"--recordings={MANIFEST}", f"--setting={setting}", *arguments, **options)
+
+
+def fit(setting, *arguments):
+    """A fit; `path` is the model, which --model of the other programs takes."""
+    return on_recordings("pushid-fit", setting, *arguments, out="model_out")
+
+
+def number(value, digits=3):
+    """To so many significant digits, without an exponent: 2860, 0.409, -0.24."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    decimals = digits - 1 - math.floor(math.log10(abs(value)))
+    return f"{round(value, decimals):.{max(0, decimals)}f}"
+
+
+def with_error(value, error, sign=False):
+    """The error to two digits, the value to the same place: 0.096 +- 0.021, 2860 +- 310."""
+    if not error > 0.0:
+        return number(value)
+    decimals = 1 - math.floor(math.log10(error))
+    decimals = 1 - math.floor(math.log10(round(error, decimals)))  # 0.0996 is 0.10
+    places = max(0, decimals)
+    return f"{round(value, decimals):{'+' if sign else ''}.{places}f} +- {round(error, decimals):.{places}f}"
+
+
+def table(header, rows):
+    """A Markdown table; a cell that is None is empty."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join("" if cell is None else str(cell) for cell in line) + " |" for line in lines)
+
+
+def transcript(command, text):
+    """A command and what it printed; the path of the recordings reads M."""
+    text = text.replace(RECORDINGS, "M").rstrip("\n")
+    return f"```\n$ {command}\n{text}\n```"
+
+
+def readmes():
+    for folder, folders, files in os.walk(SOURCE):
+        folders[:] = sorted(f for f in folders if f not in ("build", ".git"))
+        if "README.md" in files:
+            yield os.path.join(folder, "README.md")
+
+
+def write_block(marker, text):
+    for path in readmes():
+        with open(path, encoding="utf-8") as file:
+            before, found, rest = file.read().partition(f"\n{marker}\n")
+        if not found:
+            continue
+        _, end, after = rest.partition(END)
+        if not end:
+            sys.exit(f"{path}: no line '{END}' after '{marker}'")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(before + found + text + "\n" + end + after)
+        return
+    sys.exit(f"no README.md has the line '{marker}'")
+
+
+def main(script, blocks):
+    """blocks: name -> function that returns Markdown."""
+    name = os.path.basename(script)
+    asked = [a for a in sys.argv[1:] if a != "--write"]
+    for block in asked:
+        if block not in blocks:
+            sys.exit(f"{name}: no block '{block}'; there are {', '.join(blocks)}")
+    for block in asked or blocks:
+        marker, text = f"<!-- tests/studies/{name} {block} -->", blocks[block]()
+        print(f"{marker}\n{text}\n{END}\n", flush=True)
+        if "--write" in sys.argv[1:]:
+            write_block(marker, text)

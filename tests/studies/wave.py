@@ -1,0 +1,38 @@
+"""A push that travels through ten people in a line, by the model fitted to the recordings of groups.
+
+transcript  the run of pushid-simulate --formation (ident/formations/README.md)
+pushes      how far it goes by push and parameters (ident/formations/README.md)
+
+Half a minute on one core for the fit, seconds for the rest.
+"""
+import re
+
+import studies
+
+LINE = ["--formation=line", "--people=10", "--spacing=0.45"]
+
+
+def simulate(*flags):
+    model = studies.fit("groups", "--preset=group").path
+    return studies.run("pushid-simulate", f"--model={model}", *LINE, *flags, out=None).text
+
+
+def transcript():
+    return studies.transcript("pushid-simulate --model=group.json " + " ".join(LINE) + " --push=80",
+                              simulate("--push=80"))
+
+
+def pushes():
+    rows = []
+    for setting in ("", "row_1"):
+        for push in (30, 80, 157):
+            text = simulate(f"--push={push}", *([f"--as_setting={setting}"] if setting else []))
+            moved, _, wave = text.rstrip().splitlines()[-1].partition("; ")
+            outcomes = [re.split(r"\s{2,}", line)[-1] for line in text.splitlines() if line[:7].strip().isdigit()]
+            counts = [f"{outcomes.count(o)} {o}" for o in sorted(set(outcomes))]
+            rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), wave.split(": ")[-1]])
+    return studies.table(["parameters of", "push, N s", "people moved by 2 cm", "outcome", "speed of the onset"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"transcript": transcript, "pushes": pushes})
