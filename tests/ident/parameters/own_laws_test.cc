@@ -5,6 +5,7 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
+#include "ident/results/fit.h"
 #include "ident/results/result_json.h"
 #include "residuals/autodiff_force_law.h"
 #include "tests/ident/fit_samples.h"
@@ -119,7 +120,7 @@ TEST_F(FittedLaw, RecoversWhatWasPlanted) {
   EXPECT_NEAR(model_.fit.parameters[kMu], PublishedTailParameters()[kMu], 1e-4);
   const Estimate* estimate = FindEstimate(model_.fit.estimates, "brake");
   ASSERT_NE(estimate, nullptr);
-  EXPECT_EQ(estimate->value, result_.parameters[brake_]);
+  EXPECT_EQ(estimate->value, model_.fit.parameters[brake_]);
   EXPECT_EQ(estimate->unit, "m/s^2");
   // The free modes know it.
   ModelOptions without = model_.fit.options.model;

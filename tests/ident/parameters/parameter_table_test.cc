@@ -7,6 +7,8 @@
 
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
+#include "ident/problem/folds.h"
+#include "ident/uncertainty/uncertainty.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -172,12 +174,13 @@ void ExpectRoundTrip() {
     EXPECT_EQ(NameOf(value), name);
     EXPECT_TRUE(names.insert(name).second) << name;
   }
-  E untouched = Names(E{}).back().second;
+  E untouched = Names(E{}).back().value;
   const MaybeError error = ParseName("--flag", "no such name", &untouched);
   ASSERT_TRUE(error);
   EXPECT_TRUE(Contains(error->ToString(),
-                       "--flag is 'no such name'; it must be one of " + Names(E{}).front().first));
-  EXPECT_EQ(untouched, Names(E{}).back().second);
+                       std::string("--flag is 'no such name'; it must be one of ") +
+                           Names(E{}).front().name));
+  EXPECT_EQ(untouched, Names(E{}).back().value);
 }
 
 TEST(OptionNames, RoundTrip) {

@@ -36,7 +36,8 @@ std::string Said(const Behaviour& b, const ModelOptions& options) {
 
 std::string Advised(const FitResult& result) {
   std::string text;
-  for (const Advice& advice : Advise(result)) text += advice.sentence + advice.command + "\n";
+  for (const Advice& advice : Advise({result, {}, {}, {}, {}}))
+    text += advice.sentence + advice.command + "\n";
   return text;
 }
 

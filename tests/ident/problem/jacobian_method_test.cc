@@ -1,6 +1,7 @@
 // One fit, its Jacobian by sensitivities and by Jets through the whole rollout.
 #include <gtest/gtest.h>
 
+#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

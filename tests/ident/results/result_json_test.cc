@@ -146,27 +146,9 @@ TEST(ResultJson, SameSeedSameBytes) {
   EXPECT_EQ(a.dump(), b.dump());
 }
 
-void ExpectClose(const Json& a, const Json& b, const std::string& where) {
-  ASSERT_EQ(a.is_number(), b.is_number()) << where;
-  if (a.is_number_float()) {
-    const double x = a.get<double>(), y = b.get<double>();
-    EXPECT_NEAR(x, y, 1e-9 * std::max({std::abs(x), std::abs(y), 1e-9})) << where;
-  } else if (a.is_structured()) {
-    ASSERT_EQ(a.size(), b.size()) << where;
-    auto other = b.begin();
-    int index = 0;
-    for (const Json& value : a) ExpectClose(value, *other++, where + "/" + std::to_string(index++));
-  } else {
-    EXPECT_EQ(a, b) << where;
-  }
-}
-
+// Evaluations run ahead over threads, and Ceres adds up in one order: not a bit differs.
 TEST(ResultJson, ThreadsDoNotMatter) {
-  const Json a = ToJson(SampleModel({}, 1), kRun), b = ToJson(SampleModel({}, 2), kRun);
-  for (const char* part : {"parameters", "derived", "values", "behaviour"}) {
-    ExpectClose(a.at(part), b.at(part), part);
-  }
-  ExpectClose(a.at("fit").at("cost"), b.at("fit").at("cost"), "cost");
+  EXPECT_EQ(ToJson(SampleModel({}, 1), kRun).dump(), ToJson(SampleModel({}, 2), kRun).dump());
 }
 
 TEST(ResultJson, DamageIsNamed) {

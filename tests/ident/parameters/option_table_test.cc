@@ -1,0 +1,108 @@
+// The options of a fit: one row drives flag, check and JSON.
+#include "ident/parameters/option_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/presets.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// By hand: one option from its words to the file and back.
+TEST(OptionTable, ARowByHand) {
+  const FitOptionRow& row = *FindFitOption("sigma_hip");
+  FitOptions options;
+  EXPECT_EQ(row.text(options), "0.1");
+  ASSERT_FALSE(row.apply("0.05", &options));
+  EXPECT_EQ(options.sigmas.hip, 0.05);
+  EXPECT_EQ(OptionsJson(options)["sigmas"]["hip_m"], 0.05);
+  FitOptions read;
+  row.read(0.07, &read);
+  EXPECT_EQ(read.sigmas.hip, 0.07);
+  EXPECT_EQ(FindFitOption("sigma_hop"), nullptr);
+}
+
+TEST(OptionTable, NamesAndPlacesAreTheirOwn) {
+  std::set<std::string> names, places;
+  for (const FitOptionRow& row : FitOptionRows()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_FALSE(row.help.empty()) << row.name;
+    EXPECT_TRUE(row.json.empty() || places.insert(row.json).second) << row.name;
+    EXPECT_EQ(row.json.empty(), !row.write) << row.name;
+    EXPECT_EQ(row.json.empty(), !row.read) << row.name;
+  }
+}
+
+// What a row says of the defaults can be said to it.
+TEST(OptionTable, TextsReadBack) {
+  const FitOptions defaults;
+  for (const FitOptionRow& row : FitOptionRows()) {
+    if (!row.text || !row.apply) continue;
+    FitOptions options;
+    const std::string text = row.text(defaults);
+    ASSERT_FALSE(row.apply(text, &options)) << row.name;
+    EXPECT_EQ(row.text(options), text) << row.name;
+  }
+}
+
+TEST(OptionTable, EveryPresetComesBackFromJson) {
+  for (const char* name : {"tail", "ldp", "group"}) {
+    const FitOptions options = MakePreset(name).value();
+    const auto json = OptionsJson(options);
+    EXPECT_EQ(OptionsJson(OptionsFrom(json)).dump(), json.dump()) << name;
+  }
+}
+
+TEST(OptionTable, JsonOfOtherTypesAndNamesThrows) {
+  const auto good = OptionsJson(MakePreset("tail").value());
+  for (const char* key : {"posture", "settling_weight", "horizons", "seed"}) {
+    auto json = good;
+    json[key] = nlohmann::ordered_json::array({"no", "such"});
+    EXPECT_THROW(OptionsFrom(json), std::exception) << key;
+    json.erase(key);
+    EXPECT_THROW(OptionsFrom(json), std::exception) << key;
+  }
+  auto older = good;  // than these options
+  for (const char* key : {"ensemble", "jacobian", "network_prior"}) older.erase(key);
+  EXPECT_NO_THROW(OptionsFrom(older));
+}
+
+TEST(FitOptions, IsValidSaysOptionValueAndConstraint) {
+  struct Case {
+    void (*spoil)(FitOptions*);
+    std::string says;
+  };
+  const Case cases[] = {
+      {[](FitOptions* o) { o->sigmas.hip = 0.0; }, "--sigma_hip is 0; it must be positive"},
+      {[](FitOptions* o) { o->sigmas.rate = std::nan(""); },
+       "--sigma_rate is nan; it must be positive"},
+      {[](FitOptions* o) { o->settling_weight = -3.0; },
+       "--settling_weight is -3; it must be a number of at least 0"},
+      {[](FitOptions* o) { o->start_spread = 0.5; },
+       "--start_spread is 0.5; it must lie between 1 and 1000"},
+      {[](FitOptions* o) { o->num_starts = 0; }, "--starts is 0; it must be positive"},
+      {[](FitOptions* o) { o->early_stopping = 0.6; },
+       "--early_stopping is 0.6; it must lie between 0 and 0.5"},
+      {[](FitOptions* o) {
+         for (ParameterSpec& spec : o->table.specs) spec.free = false;
+       },
+       "every parameter is fixed: nothing is left to fit"},
+  };
+  std::string error;
+  EXPECT_TRUE(MakePreset("tail").value().IsValid(&error)) << error;
+  EXPECT_EQ(error, "");
+  for (const Case& one : cases) {
+    FitOptions options = MakePreset("tail").value();
+    one.spoil(&options);
+    EXPECT_FALSE(options.IsValid(&error)) << one.says;
+    EXPECT_EQ(error, one.says);
+  }
+}
+
+}  // namespace
+}  // namespace pushid
