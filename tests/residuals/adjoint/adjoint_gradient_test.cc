@@ -153,7 +153,9 @@ TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
           auto adjoint = AdjointGradient::Create(recordings, options, map, {}, *kernels);
           ASSERT_TRUE(adjoint.ok()) << adjoint.error().ToString();
           const Gradient actual = ByAdjoint(&adjoint.value(), shared, weights);
-          EXPECT_NEAR(actual.cost, expected.cost, 1e-12 * expected.cost);
+          // The kernels' exp and tanh differ from the library's in their last bits, and a rollout
+          // carries that along: up to 4e-12 of the cost here.
+          EXPECT_NEAR(actual.cost, expected.cost, 1e-11 * expected.cost);
           ExpectSameVector(actual.shared, expected.shared, tolerance, "parameter");
           ExpectSameVector(actual.weights, expected.weights, tolerance, "weight");
           const Gradient again = ByAdjoint(&adjoint.value(), shared, weights);
