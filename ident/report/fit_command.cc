@@ -15,7 +15,9 @@ constexpr char kSomeManifest[] = "M/manifest.json";
 std::string Shortest(const std::string& value) {
   double number = 0.0;
   const bool fraction = value.find_first_of(".e") != std::string::npos;
-  return fraction && ParseDouble(value, &number) ? DoubleText(number) : value;
+  if (!fraction || !ParseDouble(value, &number)) return value;
+  const std::string shortest = DoubleText(number);
+  return shortest.size() < value.size() ? shortest : value;
 }
 
 std::string ShellQuoted(const std::string& value) {

@@ -18,7 +18,7 @@ using BatchPlanTest = BatchFixture;
 TEST_F(BatchPlanTest, WrongFlagsAreToldBeforeAnyJob) {
   const std::vector<std::pair<std::string, std::string>> flags = {
       {"--self_froce=none", "there is no flag --self_froce"},
-      {"--max_iterations=many", "illegal value 'many'"},
+      {"--max_iterations=many", "--max_iterations is 'many'"},
       {"--self_force=bogus", "--self_force is 'bogus'"},
       {"--length_unit=inch", "--length_unit is 'inch'"},
       {"--lowpass_hz=-1", "--lowpass_hz is -1"},
