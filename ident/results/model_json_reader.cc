@@ -155,6 +155,157 @@ std::string Reason(const std::exception& exception) {
   return end == std::string::npos ? text : text.substr(end + 2);
 }
 
+// Reads a model part by part, and knows which one it is at.
+class ModelReader {
+ public:
+  explicit ModelReader(const Json& json) : json_(json) {}
+
+  // Errors: a law that is not here. Everything else that is wrong is thrown, and part() says where.
+  MaybeError Read(const ForceLaws& laws) {
+    if (MaybeError error = ReadOptions(laws)) return error;
+    ReadLearned();
+    ReadEstimates();
+    ReadPooled();
+    ReadValues();
+    ReadJudgement();
+    ReadSolve();
+    ReadProvenance();
+    CheckConsistent(result_);
+    return std::nullopt;
+  }
+
+  const std::string& part() const { return part_; }
+  FittedModel& model() { return model_; }
+
+ private:
+  const Json& At(const char* key) {
+    part_ = key;
+    return json_.at(key);
+  }
+
+  MaybeError ReadOptions(const ForceLaws& laws) {
+    ParameterTable known = BaseTable();
+    result_.options = OptionsFrom(At("model"));
+    if (json_.contains("force_laws")) {
+      const auto names = At("force_laws").get<std::vector<std::string>>();
+      if (MaybeError error = AddNamedLaws(names, laws, &result_.options.model, &known)) {
+        return error;
+      }
+    }
+    result_.options.table = TableFrom(At("table"), known);
+    return std::nullopt;
+  }
+
+  void ReadLearned() {
+    ModelOptions& options = result_.options.model;
+    if (json_.contains("self_network")) {
+      options.self_network = SelfNetworkFromJson(At("self_network"));
+      result_.options.hold_network = true;  // what is read is not fitted on
+    }
+    const std::string learned = At("model").at("self_force");
+    if (SelfForceText(result_.options.self_force, options.self_network.get()) != learned) {
+      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+    }
+    if (json_.contains("network_takeover")) {
+      const Json& t = At("network_takeover");
+      result_.takeover =
+          Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
+                   NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
+    }
+    if (json_.contains("interaction_network")) {
+      options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));
+    }
+  }
+
+  void ReadEstimates() {
+    for (const Json& e : At("parameters")) result_.estimates.push_back(EstimateFrom(e));
+    for (const Json& e : At("nuisance")) result_.nuisance.push_back(EstimateFrom(e));
+    for (const Json& c : At("derived")) result_.derived.push_back(CombinationFrom(c));
+    Uncertainty& u = result_.uncertainty;
+    u = UncertaintyFrom(At("uncertainty"));
+    for (const Estimate& e : result_.estimates) {
+      if (e.status != EstimateStatus::kFixed) u.estimates.push_back(e);
+    }
+    u.estimates.insert(u.estimates.end(), result_.nuisance.begin(), result_.nuisance.end());
+  }
+
+  void ReadPooled() {
+    for (const auto& [setting, pooled] : At("settings").items()) {
+      for (const auto& [name, estimate] : pooled.items()) {
+        result_.settings[setting][name] = EstimateFrom(estimate);
+      }
+    }
+    for (const auto& [id, subject] : At("subjects").items()) {
+      result_.subjects[id].mass_kg = subject.at("mass_kg");
+      for (const auto& [name, estimate] : subject.at("pooled").items()) {
+        result_.subjects[id].pooled[name] = EstimateFrom(estimate);
+      }
+    }
+  }
+
+  void ReadValues() {
+    const ParameterTable& table = result_.options.table;
+    for (const ParameterSpec& spec : table.specs) {
+      const Json& values = At("values");
+      part_ = "values/" + spec.name;
+      result_.parameters[spec.id] = ValueFrom(values, json_.at("table"), spec);
+    }
+    if (!json_.contains("ensemble")) return;
+    const auto& network = result_.options.model.self_network;
+    for (const Json& one : At("ensemble")) {
+      result_.others.push_back(MemberFrom(one, json_.at("table"), table));
+      if (network == nullptr ||
+          LearnedName(*result_.others.back().network) != LearnedName(*network)) {
+        throw std::runtime_error("a member's network is not that of self_network");
+      }
+    }
+  }
+
+  // Not all of it is in every model: asked for, or written before there was any.
+  void ReadJudgement() {
+    result_.behaviour = BehaviourFrom(At("behaviour"));
+    if (json_.contains("profiles")) model_.profiles = ProfilesFromJson(At("profiles"));
+    if (json_.contains("bootstrap")) model_.bootstrap = BootstrapFromJson(At("bootstrap"));
+    if (json_.contains("diagnostics")) {
+      result_.diagnostics = DiagnosticsFromJson(At("diagnostics"));
+      model_.advice = AdviceFrom(At("diagnostics").at("advice"));
+    }
+    result_.warnings = At("warnings").get<std::vector<std::string>>();
+  }
+
+  void ReadSolve() {
+    const Json& fit = At("fit");
+    result_.converged = fit.at("converged");
+    result_.cost = NumberFrom(fit.at("cost"));
+    result_.message = fit.at("message");
+    result_.best_start = fit.at("best_start");
+    result_.starts = StartsFrom(fit.at("starts"));
+    for (const Json& r : At("data").at("recordings")) {
+      result_.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
+                                    r.value("people", 1), NumberFrom(r.at("cost")),
+                                    r.at("failure")});
+    }
+    result_.solve_seconds = At("run").at("solve_seconds");
+  }
+
+  void ReadProvenance() {
+    Provenance& from = model_.provenance;
+    from.version = At("version");
+    from.manifest_hash = At("data").at("manifest_hash");
+    from.setting = At("data").at("setting");
+    from.configuration = At("configuration").get<std::map<std::string, std::string>>();
+    if (json_.contains("changed_flags")) {
+      from.changed_flags = At("changed_flags").get<std::vector<std::string>>();
+    }
+    from.manifest = At("run").at("manifest");
+  }
+
+  const Json& json_;
+  std::string part_;
+  FittedModel model_;
+  FitResult& result_ = model_.fit;
+};
+
 }  // namespace
 
 Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
@@ -166,112 +317,15 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
   if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
   }
-  std::string part;  // the one being read
-  const auto at = [&json, &part](const char* key) -> const Json& {
-    part = key;
-    return json.at(key);
-  };
+  ModelReader reader(json);
   try {
-    FittedModel model;
-    FitResult& result = model.fit;
-    Provenance& from = model.provenance;
-    ParameterTable known = BaseTable();
-    result.options = OptionsFrom(at("model"));
-    if (json.contains("force_laws")) {
-      const auto names = at("force_laws").get<std::vector<std::string>>();
-      if (auto error = AddNamedLaws(names, laws, &result.options.model, &known)) {
-        error->file = file;
-        return *error;
-      }
+    if (MaybeError error = reader.Read(laws)) {
+      error->file = file;
+      return *error;
     }
-    result.options.table = TableFrom(at("table"), known);
-    if (json.contains("self_network")) {
-      result.options.model.self_network = SelfNetworkFromJson(at("self_network"));
-      result.options.hold_network = true;  // what is read is not fitted on
-    }
-    const SelfNetwork* network = result.options.model.self_network.get();
-    const std::string learned = at("model").at("self_force");
-    if (SelfForceText(result.options.self_force, network) != learned) {
-      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
-    }
-    if (json.contains("network_takeover")) {
-      const Json& t = at("network_takeover");
-      result.takeover =
-          Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
-                   NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
-    }
-    if (json.contains("interaction_network")) {
-      result.options.model.interaction_network =
-          InteractionNetworkFromJson(at("interaction_network"));
-    }
-    from.version = at("version");
-    for (const Json& e : at("parameters")) result.estimates.push_back(EstimateFrom(e));
-    for (const Json& e : at("nuisance")) result.nuisance.push_back(EstimateFrom(e));
-    for (const Json& c : at("derived")) result.derived.push_back(CombinationFrom(c));
-    for (const auto& [setting, pooled] : at("settings").items()) {
-      for (const auto& [name, estimate] : pooled.items()) {
-        result.settings[setting][name] = EstimateFrom(estimate);
-      }
-    }
-    for (const auto& [id, subject] : at("subjects").items()) {
-      result.subjects[id].mass_kg = subject.at("mass_kg");
-      for (const auto& [name, estimate] : subject.at("pooled").items()) {
-        result.subjects[id].pooled[name] = EstimateFrom(estimate);
-      }
-    }
-    for (const ParameterSpec& spec : result.options.table.specs) {
-      const Json& values = at("values");
-      part = "values/" + spec.name;
-      result.parameters[spec.id] = ValueFrom(values, json.at("table"), spec);
-    }
-    if (json.contains("ensemble")) {
-      for (const Json& one : at("ensemble")) {
-        result.others.push_back(MemberFrom(one, json.at("table"), result.options.table));
-        if (network == nullptr ||
-            LearnedName(*result.others.back().network) != LearnedName(*network)) {
-          throw std::runtime_error("a member's network is not that of self_network");
-        }
-      }
-    }
-    result.behaviour = BehaviourFrom(at("behaviour"));
-    result.uncertainty = UncertaintyFrom(at("uncertainty"));
-    for (const Estimate& e : result.estimates) {
-      if (e.status == EstimateStatus::kFixed) continue;
-      result.uncertainty.estimates.push_back(e);
-    }
-    result.uncertainty.estimates.insert(result.uncertainty.estimates.end(), result.nuisance.begin(),
-                                        result.nuisance.end());
-    // Not in every model: asked for, or written before there were any.
-    if (json.contains("profiles")) model.profiles = ProfilesFromJson(at("profiles"));
-    if (json.contains("bootstrap")) model.bootstrap = BootstrapFromJson(at("bootstrap"));
-    if (json.contains("diagnostics")) {
-      result.diagnostics = DiagnosticsFromJson(at("diagnostics"));
-      model.advice = AdviceFrom(at("diagnostics").at("advice"));
-    }
-    result.warnings = at("warnings").get<std::vector<std::string>>();
-    const Json& fit = at("fit");
-    result.converged = fit.at("converged");
-    result.cost = NumberFrom(fit.at("cost"));
-    result.message = fit.at("message");
-    result.best_start = fit.at("best_start");
-    result.starts = StartsFrom(fit.at("starts"));
-    from.manifest_hash = at("data").at("manifest_hash");
-    from.setting = at("data").at("setting");
-    for (const Json& r : at("data").at("recordings")) {
-      result.recordings.push_back({r.at("id"), r.at("content_hash"), r.at("frames"),
-                                   r.value("people", 1), NumberFrom(r.at("cost")),
-                                   r.at("failure")});
-    }
-    from.configuration = at("configuration").get<std::map<std::string, std::string>>();
-    if (json.contains("changed_flags")) {
-      from.changed_flags = at("changed_flags").get<std::vector<std::string>>();
-    }
-    from.manifest = at("run").at("manifest");
-    result.solve_seconds = at("run").at("solve_seconds");
-    CheckConsistent(result);
-    return model;
+    return std::move(reader.model());
   } catch (const std::exception& exception) {
-    return Error{"incomplete or damaged model, at '" + part + "': " + Reason(exception) +
+    return Error{"incomplete or damaged model, at '" + reader.part() + "': " + Reason(exception) +
                      "; take another copy or fit again",
                  file};
   }

@@ -119,23 +119,34 @@ Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
   return values;
 }
 
-}  // namespace
-
-nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
-  const FitResult& result = model.fit;
-  const Provenance& from = model.provenance;
-  Json derived = Json::array(), recordings = Json::array();
-  Json subjects = Json::object(), settings = Json::object();
-  const Json values = ValuesJson(result.options.table, result.parameters);
+Json DerivedJson(const FitResult& result) {
+  Json derived = Json::array();
   for (const Combination& c : result.derived) derived.push_back(CombinationJson(c));
-  for (const auto& [setting, pooled] : result.settings) {
-    for (const auto& [name, estimate] : pooled) settings[setting][name] = EstimateJson(estimate);
-  }
+  return derived;
+}
+
+Json PooledJson(const std::map<std::string, Estimate>& estimates) {
+  Json pooled = Json::object();
+  for (const auto& [name, estimate] : estimates) pooled[name] = EstimateJson(estimate);
+  return pooled;
+}
+
+Json SubjectsJson(const FitResult& result) {
+  Json subjects = Json::object();
   for (const auto& [id, subject] : result.subjects) {
-    Json pooled = Json::object();
-    for (const auto& [name, estimate] : subject.pooled) pooled[name] = EstimateJson(estimate);
-    subjects[id] = {{"mass_kg", subject.mass_kg}, {"pooled", pooled}};
+    subjects[id] = {{"mass_kg", subject.mass_kg}, {"pooled", PooledJson(subject.pooled)}};
   }
+  return subjects;
+}
+
+Json SettingsPooledJson(const FitResult& result) {
+  Json settings = Json::object();
+  for (const auto& [setting, pooled] : result.settings) settings[setting] = PooledJson(pooled);
+  return settings;
+}
+
+Json RecordingsJson(const FitResult& result) {
+  Json recordings = Json::array();
   for (const FittedRecording& r : result.recordings) {
     recordings.push_back({{"id", r.id},
                           {"frames", r.frames},
@@ -144,6 +155,36 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                           {"failure", r.failure},
                           {"content_hash", r.content_hash}});
   }
+  return recordings;
+}
+
+// What only some models have.
+void AddLearned(const FitResult& result, Json* json) {
+  if (const auto& network = result.options.model.self_network) {
+    (*json)["self_network"] = ToJson(*network);
+    if (const auto& t = result.takeover) {
+      (*json)["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},
+                                     {"Kp_theta_N_m_rad", NumberJson(t->kp_theta)},
+                                     {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
+                                     {"rms_force_m_s2", NumberJson(t->rms_force)}};
+    }
+    for (const EnsembleMember& member : result.others) {
+      (*json)["ensemble"].push_back(
+          {{"values", ValuesJson(result.options.table, member.parameters)},
+           {"self_network", ToJson(*member.network)}});
+    }
+  }
+  AddLawNames(result.options.model, json);
+  if (const auto& network = result.options.model.interaction_network) {
+    (*json)["interaction_network"] = ToJson(*network);
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
+  const FitResult& result = model.fit;
+  const Provenance& from = model.provenance;
   Json diagnostics = ToJson(result.diagnostics);
   diagnostics["advice"] = AdviceJson(model.advice);
   Json json = {{"format", "pushid model"},
@@ -151,11 +192,11 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                {"version", from.version},
                {"model", OptionsJson(result.options)},
                {"parameters", EstimatesJson(result.estimates)},
-               {"derived", derived},
+               {"derived", DerivedJson(result)},
                {"nuisance", EstimatesJson(result.nuisance)},
-               {"subjects", subjects},
-               {"settings", settings},
-               {"values", values},
+               {"subjects", SubjectsJson(result)},
+               {"settings", SettingsPooledJson(result)},
+               {"values", ValuesJson(result.options.table, result.parameters)},
                {"behaviour", ToJson(result.behaviour)},
                {"uncertainty", UncertaintyJson(result.uncertainty)},
                {"diagnostics", diagnostics},
@@ -170,7 +211,7 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                {"data",
                 {{"manifest_hash", from.manifest_hash},
                  {"setting", from.setting},
-                 {"recordings", recordings}}},
+                 {"recordings", RecordingsJson(result)}}},
                {"configuration", from.configuration},
                {"changed_flags", from.changed_flags},
                {"run",
@@ -181,23 +222,7 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                  {"solve_seconds", result.solve_seconds},
                  {"total_seconds", run.total_seconds},
                  {"num_threads", run.num_threads}}}};
-  if (const auto& network = result.options.model.self_network) {
-    json["self_network"] = ToJson(*network);
-    if (const auto& t = result.takeover) {
-      json["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},
-                                  {"Kp_theta_N_m_rad", NumberJson(t->kp_theta)},
-                                  {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
-                                  {"rms_force_m_s2", NumberJson(t->rms_force)}};
-    }
-    for (const EnsembleMember& member : result.others) {
-      json["ensemble"].push_back({{"values", ValuesJson(result.options.table, member.parameters)},
-                                  {"self_network", ToJson(*member.network)}});
-    }
-  }
-  AddLawNames(result.options.model, &json);
-  if (const auto& network = result.options.model.interaction_network) {
-    json["interaction_network"] = ToJson(*network);
-  }
+  AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);
   return json;

@@ -6,6 +6,85 @@
 
 namespace pushid {
 
+namespace {
+
+// Each recording's scores summed over the folds that held it out, and how often one was there.
+struct Sums {
+  std::vector<RecordingScore> scores;
+  std::vector<int> counts;
+
+  explicit Sums(size_t recordings) : scores(recordings), counts(recordings, 0) {}
+};
+
+// One fold's scores, added to the sums too.
+FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums) {
+  FoldScore result;
+  result.name = fold.name;
+  result.held_out = static_cast<int>(fold.held_out.size());
+  result.behaviour = prediction.behaviour;
+  int scored = 0;
+  std::vector<const PropagationScore*> propagation;
+  for (size_t k = 0; k < prediction.scores.size(); ++k) {
+    const RecordingScore& score = prediction.scores[k];
+    RecordingScore& sum = sums->scores[fold.held_out[k]];
+    sum.id = score.id;
+    sum.frames = score.frames;
+    sum.fell = sum.fell || score.fell;
+    result.falls += score.fell;
+    result.falls_harder += score.fell_harder;
+    if (!score.failure.empty()) {
+      ++result.failures;
+      sum.failure = score.failure;
+      continue;
+    }
+    ++scored;
+    ++sums->counts[fold.held_out[k]];
+    for (const HipMetric& metric : kHipMetrics) {
+      sum.*metric.value += score.*metric.value;
+      result.*metric.value += score.*metric.value;
+    }
+    sum.propagation.Add(score.propagation);
+    propagation.push_back(&score.propagation);
+  }
+  for (const HipMetric& metric : kHipMetrics) result.*metric.value /= std::max(1, scored);
+  result.propagation = SummarizePropagation(propagation);
+  return result;
+}
+
+void AddFold(const FoldScore& fold, CrossValidation* result) {
+  if (fold.behaviour) {
+    ++result->fits;
+    result->settling += fold.behaviour->settles;
+    result->harder_farther += fold.behaviour->harder_moves_farther;
+    for (const SettlingSimulation& d : fold.behaviour->simulations) {
+      result->slowest_to_settle = std::max(result->slowest_to_settle, d.speed);
+    }
+  }
+  result->failures += fold.failures;
+  result->falls += fold.falls;
+  result->falls_harder += fold.falls_harder;
+  result->folds.push_back(fold);
+}
+
+// Of the recordings that were held out, each averaged over its folds.
+ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, Sums sums) {
+  std::vector<PendulumRecording> held;
+  std::vector<RecordingScore> means;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    RecordingScore& mean = sums.scores[i];
+    if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
+    if (sums.counts[i] > 0) {
+      for (const HipMetric& metric : kHipMetrics) mean.*metric.value /= sums.counts[i];
+      mean.propagation.Divide(sums.counts[i]);
+    }
+    held.push_back(recordings[i]);
+    means.push_back(mean);
+  }
+  return Summarize(held, means);
+}
+
+}  // namespace
+
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress) {
@@ -18,68 +97,13 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
             predictor.FitAndScore(recordings, Others(folds[f].held_out, total), folds[f].held_out);
       },
       progress);
-
   CrossValidation result;
   result.predictor = predictor.name;
-  std::vector<RecordingScore> mean(total);
-  std::vector<int> count(total, 0);
+  Sums sums(recordings.size());
   for (size_t f = 0; f < folds.size(); ++f) {
-    FoldScore fold;
-    fold.name = folds[f].name;
-    fold.held_out = static_cast<int>(folds[f].held_out.size());
-    int scored = 0;
-    std::vector<const PropagationScore*> propagation;
-    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
-      const RecordingScore& score = predictions[f].scores[k];
-      RecordingScore& sum = mean[folds[f].held_out[k]];
-      sum.id = score.id;
-      sum.frames = score.frames;
-      sum.fell = sum.fell || score.fell;
-      fold.falls += score.fell;
-      fold.falls_harder += score.fell_harder;
-      if (!score.failure.empty()) {
-        ++fold.failures;
-        sum.failure = score.failure;
-        continue;
-      }
-      ++scored;
-      ++count[folds[f].held_out[k]];
-      for (const HipMetric& metric : kHipMetrics) {
-        sum.*metric.value += score.*metric.value;
-        fold.*metric.value += score.*metric.value;
-      }
-      sum.propagation.Add(score.propagation);
-      propagation.push_back(&score.propagation);
-    }
-    for (const HipMetric& metric : kHipMetrics) fold.*metric.value /= std::max(1, scored);
-    fold.propagation = SummarizePropagation(propagation);
-    fold.behaviour = predictions[f].behaviour;
-    if (fold.behaviour) {
-      ++result.fits;
-      result.settling += fold.behaviour->settles;
-      result.harder_farther += fold.behaviour->harder_moves_farther;
-      for (const SettlingSimulation& d : fold.behaviour->simulations) {
-        result.slowest_to_settle = std::max(result.slowest_to_settle, d.speed);
-      }
-    }
-    result.failures += fold.failures;
-    result.falls += fold.falls;
-    result.falls_harder += fold.falls_harder;
-    result.folds.push_back(fold);
+    AddFold(ScoreOf(folds[f], predictions[f], &sums), &result);
   }
-
-  std::vector<PendulumRecording> held;
-  std::vector<RecordingScore> held_scores;
-  for (int i = 0; i < total; ++i) {
-    if (count[i] == 0 && mean[i].failure.empty()) continue;  // never held out
-    if (count[i] > 0) {
-      for (const HipMetric& metric : kHipMetrics) mean[i].*metric.value /= count[i];
-      mean[i].propagation.Divide(count[i]);
-    }
-    held.push_back(recordings[i]);
-    held_scores.push_back(mean[i]);
-  }
-  result.summary = Summarize(held, held_scores);
+  result.summary = SummaryOf(recordings, std::move(sums));
   return result;
 }
 
