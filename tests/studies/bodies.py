@@ -1,6 +1,6 @@
 """From the pendulum to the body: restorations cross-validated as a whole chain, four folds, one seed.
 
-single   the 32 recordings of single people (models/restoration/README.md); two minutes
+single   the 32 recordings of single people (models/restoration/README.md); one minute
 groups   two settings of groups (models/restoration/README.md); three minutes
 
 Times are those of one core. `cvae` takes many minutes of processor time a fold and is left out.

@@ -1,6 +1,6 @@
 """How often 95 % intervals hold the truth where gains vary from recording to recording, and what the defaults cost.
 
-coverage  ident/uncertainty/README.md; 20 minutes on one core
+coverage  ident/uncertainty/README.md; 7 minutes on one core
 
 32 synthetic recordings a data set; tests/studies/coverage_study.cc says what varies. The profile and bootstrap
 intervals are those of the first data sets only, which is why they are known to a few per cent.

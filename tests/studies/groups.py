@@ -2,8 +2,8 @@
 
 values      contact by setting (ident/results/README.md); one fit, half a minute
 settling    where people end up two seconds after a push (ident/results/README.md); the same fit
-candidates  errors on held-out recordings beside settling (ident/validation/README.md); 15 minutes
-schemes     strong pushes, and whole settings, held out (ident/validation/README.md); 5 minutes
+candidates  errors on held-out recordings beside settling (ident/validation/README.md); 10 minutes
+schemes     strong pushes, and whole settings, held out (ident/validation/README.md); 2 minutes
 travel      how the push travels (ident/prediction/README.md); with what the others ran, seconds
 
 Times are those of one core.

@@ -1,10 +1,10 @@
 """Prediction of single people who were not in the fit: schemes of folds, changes of the model, bands.
 
 summary  the row of `tail` and its baselines (README.md)
-schemes  `tail` and `ldp` beside baselines, three ways of holding out (ident/validation/README.md); two minutes
-changes  what was tried on top of `tail`, paired differences (ident/validation/README.md); one minute
-networks learned forces and rods on top of `tail` (ident/validation/README.md); ten minutes
-bands    how often predictive bands hold what was not fitted (ident/validation/README.md); one minute
+schemes  `tail` and `ldp` beside baselines, three ways of holding out (ident/validation/README.md); half a minute
+changes  what was tried on top of `tail`, paired differences (ident/validation/README.md); half a minute
+networks learned forces and rods on top of `tail` (ident/validation/README.md); four minutes
+bands    how often predictive bands hold what was not fitted (ident/validation/README.md); ten seconds
 
 Times are those of one core. All on the 32 recordings, 5 x 4 folds unless the scheme says otherwise.
 """

@@ -3,7 +3,7 @@
 summary     the drag of the feet in a sentence (README.md)
 transcript  the report of pushid-fit (ident/README.md)
 depends     the same fit with other assumptions and without one person (ident/README.md)
-intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); two minutes
+intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); half a minute
 coupled     mu, Kp_x and Kp_y all free (ident/uncertainty/README.md); a second
 starts      another optimum from other starts? (ident/README.md); ten seconds
 
