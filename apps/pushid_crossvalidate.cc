@@ -26,11 +26,9 @@ MaybeError AddCandidates(const CrossvalidateFlags& flags, const FitOptions& opti
                          const std::vector<PendulumRecording>* recordings, Predictors* predictors) {
   predictors->push_back(std::make_unique<ModelPredictor>(options.preset, options));
   for (const auto& [name, more] : flags.candidates) {
-    const Result<FitOptions> candidate = MakeFitOptions(Merged(GivenFitFlags(), more), recordings);
+    const Result<FitOptions> candidate =
+        MakeFitOptions(Merged(GivenFitFlags(), more), recordings, more);
     if (!candidate.ok()) return Error{"--compare, '" + name + "': " + candidate.error().message};
-    if (MaybeError error = CheckGivenAct(more, candidate.value())) {
-      return Error{"--compare, '" + name + "': " + error->message};
-    }
     predictors->push_back(std::make_unique<ModelPredictor>(name, candidate.value()));
   }
   return std::nullopt;
@@ -60,6 +58,8 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
   Predictors predictors;
   if (MaybeError error = AddCandidates(flags, options, recordings, &predictors)) return *error;
   if (flags.baselines) AddBaselines(&predictors);
+  // What the preset auto is called is known with the recordings.
+  if (recordings == nullptr) return predictors;
   if (MaybeError error = CheckNames(predictors)) return *error;
   return predictors;
 }

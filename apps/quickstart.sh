@@ -22,7 +22,8 @@ generator=()
 if [ ! -f build/quickstart/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset quickstart "${generator[@]}" >/dev/null
 cmake --build --preset quickstart --parallel "$(nproc)" --target \
-  pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict pushid-inspect pushid-manifest pushid-push
+  pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict pushid-inspect pushid-manifest pushid-push \
+  pushid-crossvalidate
 
 say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1

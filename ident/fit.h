@@ -2,10 +2,12 @@
 //
 //   auto recordings = pushid::LoadRecordings("manifest.json", {});
 //   auto pendulums = pushid::MakePendulumRecordings(recordings.value(), {});
-//   pushid::FitOptions options = pushid::MakePreset("tail").value();
+//   pushid::FitOptions options =
+//       pushid::MakePreset(pushid::PresetFor("auto", pendulums)).value();  // or "tail", ...
 //   options.model.friction = pushid::FrictionKind::kAnisotropic;   // any field, or a parameter:
 //   options.table[pushid::kKpTheta].nominal = 1200;                // where the fit starts
 //   pushid::FreeTerms(&options);                                   // after a change of the terms
+//   options.table[pushid::kMuY].free = true;                       // what no term frees
 //   if (auto error = pushid::PrepareFit(pendulums, &options)) ...  // what is wrong, in words
 //   pushid::FittedModel model{pushid::Fit(pendulums, options)};
 //   std::cout << pushid::ReportText(model);
@@ -16,6 +18,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/parameters/own_laws.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 
 #include "models/options.h"
@@ -22,6 +23,9 @@ struct ParameterFacts {
   std::string_view meaning = {};       // one line for people
   std::string_view when_to_free = {};  // another
 };
+
+// What makes a row unfit for a fit, as in "must start within its bounds"; empty: nothing.
+std::string Violation(const ParameterFacts& facts);
 
 // In the order of Parameter.
 const std::array<ParameterFacts, kFirstOwnParameter>& AllParameterFacts();

@@ -24,11 +24,11 @@
   /* friction and balance: the cart's gains may turn negative, the data must be able to say so */ \
   X(kMu, "mu", "mu", "N s/m", 100, -2000, 2000, 100, kIdentity, \
     true, false, \
-    "ground friction", \
+    "drag of the stepping feet (no floor's friction)", \
     "always: with Kp_x and Kp_y held it is the whole drag of the stepping feet") \
   X(kMuY, "mu_y", "mu_y", "N s/m", 100, -2000, 2000, 100, kIdentity, \
     m.friction == FrictionKind::kAnisotropic, false, \
-    "ground friction along y", \
+    "drag of the stepping feet along y", \
     "with pushes to the side, and anisotropic friction") \
   X(kKpX, "Kp_x", "Kp_x", "N s/m", 0, -2000, 2000, 100, kIdentity, \
     true, false, \

@@ -225,7 +225,8 @@ class PlanReader {
     if (IsOutputFlag(name)) {
       Fail(table, "--" + name + " would be written by every job of the variant; leave it out");
     }
-    if (name.rfind("help", 0) == 0 || name == "version" || name == "check") {
+    if (name.rfind("help", 0) == 0 || name == "version" || name == "check" ||
+        name == "list_parameters") {
       Fail(table, "--" + name + " makes no fit; leave it out");
     }
   }

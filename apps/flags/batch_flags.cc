@@ -7,7 +7,7 @@
 
 #include "apps/flags/command_line.h"
 
-DEFINE_string(plan, "", "the plan (TOML); batch_plan.h and the README give its keys");
+DEFINE_string(plan, "", "the plan (TOML); apps/README.md gives its keys");
 DEFINE_bool(
     list, false,
     "only list the jobs (CSV): id, variant, group, replica, numbers of recordings fitted and "

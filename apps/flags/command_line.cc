@@ -148,7 +148,10 @@ std::vector<std::string> ChangedFlags() {
   std::vector<std::string> names;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
     // By value: a default that is given is no change, `none` over a preset's value is one.
-    const bool changed = flag.current_value != flag.default_value;
+    double now = 0.0, before = 0.0;
+    const bool numbers =
+        ParseDouble(flag.current_value, &now) && ParseDouble(flag.default_value, &before);
+    const bool changed = numbers ? now != before : flag.current_value != flag.default_value;
     if (changed && IsPartOfResult(flag)) names.push_back(flag.name);
   }
   return names;

@@ -5,11 +5,12 @@
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(
-    resample, 0,
+    resample, pushid::FitFlags{}.resample,
     "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
     "k; 0: the recordings as they are");
-DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
-DEFINE_bool(list_parameters, false,
+DEFINE_bool(check, pushid::FitFlags{}.check,
+            "only check the flags: nothing is read, fitted or written");
+DEFINE_bool(list_parameters, pushid::FitFlags{}.list_parameters,
             "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
 
 namespace pushid {

@@ -46,20 +46,16 @@ GivenOptions GivenFitFlags() {
   GivenOptions given;
   for (const FitOptionRow& row : FitOptionRows()) {
     const gflags::CommandLineFlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(row.name.c_str());
-    // No value, as --fix= gives it, is nothing given.
-    if (!flag.is_default && !flag.current_value.empty()) {
-      given.emplace_back(row.name, flag.current_value);
-    }
+    // No value, as --fix= gives it, is the default of an option that has none of its own.
+    const bool nothing = flag.current_value.empty() && flag.default_value.empty();
+    if (!flag.is_default && !nothing) given.emplace_back(row.name, flag.current_value);
   }
   return given;
 }
 
 Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings) {
   const GivenOptions given = GivenFitFlags();
-  Result<FitOptions> options = MakeFitOptions(given, recordings);
-  if (!options.ok()) return options;
-  if (MaybeError error = CheckGivenAct(given, options.value())) return *error;
-  return options;
+  return MakeFitOptions(given, recordings, given);
 }
 
 namespace {

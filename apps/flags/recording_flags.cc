@@ -106,7 +106,7 @@ MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty()) continue;
     return Error{"recording " + recording.id +
-                     " has no push: estimate one with pushid-push, or leave it out (--ids)",
+                     " has no push: estimate one with pushid-push, or leave it out (--leave_out)",
                  FLAGS_recordings};
   }
   return std::nullopt;

@@ -11,7 +11,8 @@
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
               "with --sensor_column");
-DEFINE_string(sensors, "", "several force sensors that push together: a JSON list, see README");
+DEFINE_string(sensors, "",
+              "several force sensors that push together: a JSON list, see datasets/README.md");
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");

@@ -7,6 +7,31 @@
 namespace pushid {
 namespace {
 
+// What options of networks ask for that there is not; empty: nothing.
+std::string MissingNetwork(const FitOptions& o) {
+  const auto& network = o.model.self_network;
+  const char* asks = o.ensemble > 1            ? "--ensemble"
+                     : o.takeover_weight > 0.0 ? "--takeover_weight"
+                     : o.early_stopping > 0.0  ? "--early_stopping"
+                                               : nullptr;
+  if (network == nullptr && asks != nullptr) {
+    return std::string(asks) +
+           " acts on networks, but there is none; add one, as in --self_force=mlp:4";
+  }
+  if (network != nullptr && !network->shape.any() && o.takeover_weight > 0.0) {
+    return "--takeover_weight acts on a network's force, but only the rod has a network";
+  }
+  if (network != nullptr && network->shape.rod_input &&
+      !(network->shape.any() && network->rod.moves())) {
+    return "--rod_input is for a network beside a rod that moves, as in --self_force=mlp:4 "
+           "--rod=linear";
+  }
+  if (o.model.interaction.network && o.model.interaction_network == nullptr) {
+    return "--interaction names network: --interaction_network must name its JSON file";
+  }
+  return "";
+}
+
 // What a network cannot do together with the rest; empty: nothing.
 std::string NetworkViolation(const FitOptions& o) {
   const auto& network = o.model.self_network;
@@ -38,7 +63,8 @@ bool FitOptions::IsValid(std::string* error) const {
     *error = "--" + row.name + " is " + row.text(*this) + "; it " + violated;
     return false;
   }
-  *error = NetworkViolation(*this);
+  *error = MissingNetwork(*this);
+  if (error->empty()) *error = NetworkViolation(*this);
   if (error->empty() && table.Free().empty()) {
     *error = "every parameter is fixed: nothing is left to fit";
   }

@@ -8,8 +8,8 @@
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
 #include "models/skeleton_mapping.h"
-#include "residuals/cost_functions/rollout_autodiff.h"
 #include "residuals/frame_residual.h"
+#include "residuals/jacobian_method.h"
 
 namespace pushid {
 
@@ -32,8 +32,8 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
 }
 
 struct FitOptions {
-  std::string preset = "tail";  // it was made from (presets.h)
-  SelfForceKind self_force = SelfForceKind::kNone;
+  std::string preset = "tail";                      // it was made from (presets.h)
+  SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
   SkeletonMapping mapping = SkeletonMapping::kExact;
   ModelOptions model;
   ParameterTable table;

@@ -44,8 +44,7 @@ Row SelfForceRow() {
       [](const std::string& text, FitOptions* o) -> MaybeError {
         const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", text);
         if (!choice.ok()) return choice.error();
-        o->self_force = choice.value().kind;
-        o->mode_weight = DefaultModeWeight(o->self_force);
+        SetSelfForce(choice.value().kind, o);
         SelfNetwork network = Learned(*o);
         network.shape = choice.value().network;
         SetLearned(network, o);

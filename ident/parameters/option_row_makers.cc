@@ -84,11 +84,16 @@ Row WordsRow(const char* name, OptionStage stage, const char* help,
 
 Row BoolRow(const char* name, const char* help, std::function<bool(const FitOptions&)> value,
             std::function<void(bool, FitOptions*)> set) {
-  Row row = WordsRow(name, OptionStage::kModel, help,
-                     [set](const std::string& text, FitOptions* o) -> MaybeError {
-                       set(text == "true", o);
-                       return std::nullopt;
-                     });
+  Row row = WordsRow(
+      name, OptionStage::kModel, help, [=](const std::string& text, FitOptions* o) -> MaybeError {
+        for (const auto& [yes, no] :
+             {std::pair("true", "false"), std::pair("1", "0"), std::pair("yes", "no")}) {
+          if (text != yes && text != no) continue;
+          set(text == yes, o);
+          return std::nullopt;
+        }
+        return BadOption(name, text, "must be true or false");
+      });
   row.is_bool = true;
   row.text = [value](const FitOptions& o) { return value(o) ? "true" : "false"; };
   return row;

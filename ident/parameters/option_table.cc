@@ -1,6 +1,8 @@
 // ident: the rows of weights, solver and table.
 #include "ident/parameters/option_table.h"
 
+#include <algorithm>
+#include <charconv>
 #include <sstream>
 
 #include "datasets/files/number_text.h"
@@ -38,6 +40,11 @@ Row HorizonsRow() {
     }
     return text;
   };
+  row.violation = [](const FitOptions& o) {
+    const bool sound = std::all_of(o.horizons.begin(), o.horizons.end(),
+                                   [](int frames) { return frames == 0 || frames >= 2; });
+    return sound ? "" : "must hold numbers of frames of at least 2";
+  };
   row.json = "/horizons";
   row.write = [](const FitOptions& o) { return Json(o.horizons); };
   row.read = [](const Json& json, FitOptions* o) { o->horizons = json.get<std::vector<int>>(); };
@@ -47,11 +54,11 @@ Row HorizonsRow() {
 Row SeedRow() {
   Row row = WordsRow("seed", OptionStage::kModel, "seed of everything random",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
-                       std::int64_t value = 0;
-                       if (!ParseInteger(text, &value) || value < 0) {
+                       const char* const end = text.data() + text.size();
+                       const auto read = std::from_chars(text.data(), end, o->seed);
+                       if (read.ec != std::errc() || read.ptr != end) {
                          return BadOption("seed", text, "must be a whole number of at least 0");
                        }
-                       o->seed = static_cast<uint64_t>(value);
                        return std::nullopt;
                      });
   row.text = [](const FitOptions& o) { return std::to_string(o.seed); };
@@ -101,7 +108,7 @@ std::vector<Row> WeightRows() {
       Decided(NumberRow(
           "mode_weight", "/mode_weight", [](O & o) -> auto& { return o.mode_weight; }, kNotNegative,
           "weight of the hinge that makes a person's free modes at rest decay (it sees no "
-          "network); 0: off; 30 with a linear self force, else 0")),
+          "network); 0: off; set with a linear self force")),
       NumberRow(
           "mode_margin", "/mode_margin_per_s", [](O & o) -> auto& { return o.mode_margin; },
           kNumber, "slowest decay the hinge allows, 1/s"),

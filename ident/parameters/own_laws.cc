@@ -24,6 +24,9 @@ MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
       return Error{who + ": there is a parameter '" + std::string(facts.name) +
                    "' already; rename the law's"};
     }
+    if (const std::string violated = Violation(facts); !violated.empty()) {
+      return Error{who + ": its parameter '" + std::string(facts.name) + "' " + violated};
+    }
     with.Add(facts).free = true;
   }
   *table = std::move(with);

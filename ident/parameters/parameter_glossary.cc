@@ -7,8 +7,9 @@
 namespace pushid {
 
 TextTable ParameterGlossary() {
-  TextTable table({"name", "symbol", "unit", "default", "bounds", "meaning", "when to free it"},
-                  {true, true, true, false, true, true, true});
+  TextTable table(
+      {"name", "symbol", "unit", "without preset", "bounds", "meaning", "when to free it"},
+      {true, true, true, false, true, true, true});
   for (const ParameterFacts& facts : AllParameterFacts()) {
     table.Add({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),
                Rounded(facts.nominal), Rounded(facts.lower) + " to " + Rounded(facts.upper),

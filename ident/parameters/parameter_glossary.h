@@ -7,8 +7,8 @@
 
 namespace pushid {
 
-// Name, symbol (in the equation that heads the file of its term), unit, default, bounds, meaning,
-// and when to free it; a row each.
+// Name, symbol (in the equation that heads the file of its term), unit, value where no preset sets
+// one, bounds, meaning, and when to free it; a row each.
 TextTable ParameterGlossary();
 
 // The same as a table in Markdown.

@@ -39,8 +39,7 @@ FitOptions GroupPreset() {
   FitOptions o = TailPreset();
   o.preset = "group";
   o.model.interaction.spring = o.model.interaction.damping = true;
-  o.self_force = SelfForceKind::kLinear;
-  o.mode_weight = DefaultModeWeight(o.self_force);
+  SetSelfForce(SelfForceKind::kLinear, &o);
   o.settling_weight = 20.0;
   o.pool = "all";
   o.pool_by = PoolBy::kSetting;
@@ -94,6 +93,11 @@ double DefaultModeWeight(SelfForceKind self_force) {
   return self_force == SelfForceKind::kLinear ? kLinearModeWeight : 0.0;
 }
 
+void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
+  options->self_force = self_force;
+  options->mode_weight = DefaultModeWeight(self_force);
+}
+
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {
   if (name != kAutoPreset) return name;
   const bool groups =
@@ -106,6 +110,9 @@ Result<FitOptions> StartPreset(const std::string& name) {
   if (name == "tail") return TailPreset();
   if (name == "ldp") return LdpPreset();
   if (name == "group") return GroupPreset();
+  if (name == kAutoPreset) {
+    return Error{"the preset auto looks at recordings: ask PresetFor what it stands for"};
+  }
   return Error{"--preset is '" + name + "'; it must be auto, tail, ldp or group"};
 }
 
@@ -124,9 +131,12 @@ void FreeTerms(FitOptions* o) {
     if (!o->preset_priors) spec.prior.reset();
     if (!Acts(spec.id, o->model)) spec.free = spec.pooled = false;
   }
+  // These two cannot fail; names can.
+  if (o->pool == "all" || o->pool == "none") (void)PoolParameters(o);
 }
 
 MaybeError PoolParameters(FitOptions* o) {
+  for (ParameterSpec& spec : o->table.specs) spec.pooled = false;
   TableEdits edits;
   edits.pool = o->pool;
   edits.pool_by = o->pool_by;

@@ -8,7 +8,8 @@
 //
 //   FitOptions options = MakePreset("tail").value();
 //   options.model.friction = FrictionKind::kAnisotropic;
-//   FreeTerms(&options);  // the terms have changed
+//   FreeTerms(&options);                  // the terms have changed
+//   options.table[kMuY].free = true;      // held otherwise
 #pragma once
 
 #include <string>
@@ -33,14 +34,16 @@ Result<FitOptions> StartPreset(const std::string& name);
 
 // Frees the parameters of the terms that the options have, with weak priors as wide as their
 // centres (none without preset_priors), and holds those of terms that they do not have. What was
-// free before and acts stays free.
+// free before and acts stays free. Pools all or none of them where options->pool says so.
 void FreeTerms(FitOptions* options);
 
-// Marks what options->pool names as pooled. Errors: unknown, fixed, or shared by two people.
+// Pools what options->pool names, and nothing else. Errors: unknown, fixed, or shared by two
+// people.
 MaybeError PoolParameters(FitOptions* options);
 
-// Of the hinge on the free modes: a linear self force can feed a mode that the settling simulations
-// do not excite.
+// The self force together with the hinge on the free modes that goes with it: a linear self force
+// can feed a mode that the settling simulations do not excite.
+void SetSelfForce(SelfForceKind self_force, FitOptions* options);
 double DefaultModeWeight(SelfForceKind self_force);
 
 }  // namespace pushid

@@ -13,10 +13,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kMasses[] = {60.0, 80.0, 100.0};
-constexpr double kImpulses[] = {4.0, 25.0, 80.0};
-constexpr double kLineMass = 80.0;
-constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};
+constexpr double kMasses[] = {60.0, 80.0, 100.0};  // kg
 
 SettlingSimulation SimulateSettling(const ModelOptions& options,
                                     const ParameterSet<double>& parameters, double mass,
@@ -151,14 +148,14 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   Behaviour behaviour;
   std::vector<SettlingSimulation>& all = behaviour.simulations;
   for (double mass : kMasses) {
-    for (double impulse : kImpulses) {
+    for (double impulse : kSettlingImpulses) {
       all.push_back(SimulateSettling(options, parameters, mass, impulse, 1));
     }
   }
   if (options.interaction.Any()) {
     const size_t first = all.size();
     for (double impulse : kLineImpulses) {
-      all.push_back(SimulateSettling(options, parameters, kLineMass, impulse, kLinePeople));
+      all.push_back(SimulateSettling(options, parameters, kSettlingMass, impulse, kLinePeople));
     }
     for (size_t i = first + 1; i < all.size(); ++i) {
       behaviour.harder_moves_farther =

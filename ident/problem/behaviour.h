@@ -10,7 +10,12 @@
 
 namespace pushid {
 
-inline constexpr int kLinePeople = 5;  // in a line, where people touch
+// The settling simulations that a fit is held to, and (the one person with two more masses) judged
+// by.
+inline constexpr double kSettlingMass = 80.0;                     // kg
+inline constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
+inline constexpr int kLinePeople = 5;                             // in a line, where people touch
+inline constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
 
 // Settled: so slow and so near the rest posture, so long after the last push.
 inline constexpr double kWaitSeconds = 2.0;

@@ -41,14 +41,17 @@ Simulated SimulatedOf(const Behaviour& behaviour, bool lines) {
   return of;
 }
 
+// One that is unstable at rest does not settle, whatever the simulations show by then.
 std::string AllSettleText(const Behaviour& behaviour) {
   const Simulated alone = SimulatedOf(behaviour, false), line = SimulatedOf(behaviour, true);
   std::string text = "after a push of " + ListText(alone.impulses) + " N s, people of " +
-                     ListText(alone.masses) + " kg settle within " + WaitText();
+                     ListText(alone.masses) + " kg " +
+                     (behaviour.unstable() ? "stand still after " : "settle within ") + WaitText();
   if (line.people > 0) {
     text += "; so do lines of " + std::to_string(line.people) + " after " +
             ListText(line.impulses) + " N s";
   }
+  if (behaviour.unstable()) text += ", but not for long: they are unstable at rest";
   return text;
 }
 
@@ -79,6 +82,7 @@ std::string VerdictName(Verdict verdict) {
 
 std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour) {
   const std::string settles = "the fitted person settles within " + WaitText();
+  const std::string stands = "the fitted person stands still after " + WaitText();
   switch (verdict) {
     case Verdict::kSettles:
       return settles + " after every push of the settling simulations";
@@ -90,10 +94,10 @@ std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour) {
       }
       return "the fitted forces drive the person after a push";
     case Verdict::kUnstableThoughSettled:
-      return settles + ", but is unstable at rest: the slightest deviation grows at " +
+      return stands + ", but is unstable at rest: the slightest deviation grows at " +
              GrowthText(behaviour);
     case Verdict::kRodRunsAway:
-      return settles + ", but the rod or the person with it runs away from rest at " +
+      return stands + ", but the rod or the person with it runs away from rest at " +
              GrowthText(behaviour);
     case Verdict::kNegativeDrag:
       return settles +
@@ -109,6 +113,12 @@ std::string Capitalized(std::string text) {
 }
 
 std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
+  const bool driven = verdict == Verdict::kSelfPropelling ||
+                      verdict == Verdict::kUnstableThoughSettled ||
+                      verdict == Verdict::kNegativeDrag;
+  if (driven && options.push_tail == PushTail::kNone) {
+    return "--push_tail=exponential carries what the recorded push leaves out";
+  }
   switch (verdict) {
     case Verdict::kSettles:
       return "";
@@ -143,10 +153,7 @@ std::string SettlingText(const Behaviour& behaviour) {
 }
 
 std::string FreeModeText(const Behaviour& behaviour) {
-  std::string verdict = behaviour.unstable() ? "UNSTABLE" : "stable";
-  if (behaviour.unstable() && behaviour.settles) {
-    verdict += ": it grows too slowly, or is excited too little, to show within " + WaitText();
-  }
+  const std::string verdict = behaviour.unstable() ? "UNSTABLE" : "stable";
   return "fastest free mode at rest: " + Rounded(behaviour.fastest_growth, 3) + " 1/s (" + verdict +
          ")\n";
 }

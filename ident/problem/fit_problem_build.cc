@@ -13,9 +13,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kSettlingMass = 80.0;                     // kg
-constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
-constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 }  // namespace

@@ -17,7 +17,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     jacobians_.resize(blocks_.size());
   }
 
-  // At the blocks' present values. constant: blocks without derivatives.
+  // At the blocks' present values; constant blocks get no derivatives.
   void Prepare(bool with_jacobians, const ceres::Problem& problem) {
     if (Holds(blocks_.data(), with_jacobians)) return;
     std::vector<double*> jacobians(blocks_.size(), nullptr);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/parameters/presets.h"
 #include "ident/parameters/self_network_io.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
@@ -19,7 +20,6 @@ constexpr double kDisagreement = 1.5;    // of interval widths
 constexpr int kFewRecordings = 10;
 constexpr double kPushDependence = 0.15;  // mean correlation that is more than a detail
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
-constexpr double kModeWeight = 30.0;
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
@@ -122,7 +122,9 @@ FitCommand Adviser::DecayingModes() const {
     const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
     return Same().Set("network_prior", Rounded(prior, 6));
   }
-  return Same().Set("mode_weight", Rounded(std::max(kModeWeight, 2.0 * o.mode_weight), 6));
+  return Same().Set(
+      "mode_weight",
+      Rounded(std::max(DefaultModeWeight(SelfForceKind::kLinear), 2.0 * o.mode_weight), 6));
 }
 
 void Adviser::Person() {

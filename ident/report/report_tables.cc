@@ -132,7 +132,7 @@ TextTable LinesTable(const FitResult& result) {
 }
 
 TextTable BehaviourTable(const FitResult& result) {
-  TextTable table({"demonstration", WaitText() + " after the push", "m/s", "rad from rest",
+  TextTable table({"settling simulation", WaitText() + " after the push", "m/s", "rad from rest",
                    "m moved on", "the pushed, m"},
                   {true, true, false, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);

@@ -73,14 +73,16 @@ std::string NetworkText(const FitResult& result) {
 std::string ReportText(const FittedModel& model) {
   const FitResult& result = model.fit;
   const FitOptions& o = result.options;
-  std::string text = "pushid " + model.provenance.version + ", preset " + o.preset + ": " +
-                     Count(static_cast<int>(result.recordings.size()), "recording") + " (" +
-                     model.provenance.setting + "), posture " + NameOf(o.model.posture) +
-                     ", push " + NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
-                     ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
-                     (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") +
-                     ", interaction " + NameOf(o.model.interaction) + PoolingText(o) +
-                     SelfFromText(model.provenance) + "\n\n";
+  const Provenance& from = model.provenance;  // empty where no program fitted
+  std::string text =
+      (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " + o.preset + ": " +
+      Count(static_cast<int>(result.recordings.size()), "recording") +
+      (from.setting.empty() ? "" : " (" + from.setting + ")") + ", posture " +
+      NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
+      NameOf(o.model.push_tail) + ", self force " +
+      SelfForceText(o.self_force, o.model.self_network.get()) +
+      (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") + ", interaction " +
+      NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(model.provenance) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {

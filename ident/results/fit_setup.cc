@@ -38,23 +38,6 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
   return std::nullopt;
 }
 
-// The rows' own rules see one option; these see several.
-MaybeError FinishModel(FitOptions* o) {
-  if (const auto network = o->model.self_network) {
-    const bool sees_rod = network->shape.any() && network->rod.moves();
-    if (network->shape.rod_input && !sees_rod) {
-      return Error{
-          "--rod_input is for a network beside a rod that moves, as in --self_force=mlp:4 "
-          "--rod=linear"};
-    }
-    o->model.self_network = InitialNetwork(network->shape, o->seed, network->rod);
-  }
-  if (o->model.interaction.network && o->model.interaction_network == nullptr) {
-    return Error{"--interaction names network: --interaction_network must name its JSON file"};
-  }
-  return std::nullopt;
-}
-
 MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* options) {
   for (const FitOptionRow& row : FitOptionRows()) {
     const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
@@ -66,6 +49,46 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
     }
   }
   return std::nullopt;
+}
+
+// Options that were given but act on nothing: an error that says what is missing.
+MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
+  const auto& network = options.model.self_network;
+  for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+    if (network != nullptr || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
+    return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
+  }
+  for (const char* name : {"pool_by", "pooling_sigma"}) {
+    if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " says how parameters differ, but none does; name some with --pool"};
+  }
+  return std::nullopt;
+}
+
+Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& given,
+                              const GivenOptions& must_act) {
+  Result<FitOptions> made = StartPreset(preset);
+  if (!made.ok()) return made.error();
+  FitOptions o = std::move(made.value());
+  if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
+  FreeTerms(&o);
+  for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
+    if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
+  }
+  if (MaybeError error = PoolParameters(&o)) return *error;
+  // Its shape is known now, and so is the seed.
+  if (const auto network = o.model.self_network) {
+    o.model.self_network = InitialNetwork(network->shape, o.seed, network->rod);
+  }
+  std::string invalid;
+  if (!o.IsValid(&invalid)) return Error{invalid};
+  if (MaybeError error = CheckGivenAct(must_act, o)) return *error;
+  return o;
 }
 
 }  // namespace
@@ -98,41 +121,16 @@ Result<GivenOptions> ParseOptionWords(const std::string& words) {
 }
 
 Result<FitOptions> MakeFitOptions(const GivenOptions& given,
-                                  const std::vector<PendulumRecording>* recordings) {
+                                  const std::vector<PendulumRecording>* recordings,
+                                  const GivenOptions& must_act) {
   const std::string* named = Find(given, "preset");
   const std::string preset = named != nullptr ? *named : kAutoPreset;
-  const std::vector<PendulumRecording> none;
-  Result<FitOptions> made = StartPreset(PresetFor(preset, recordings ? *recordings : none));
-  if (!made.ok()) return made.error();
-  FitOptions o = std::move(made.value());
-  if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
-  if (MaybeError error = FinishModel(&o)) return *error;
-  FreeTerms(&o);
-  for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
-    if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
-  }
-  if (MaybeError error = PoolParameters(&o)) return *error;
-  std::string invalid;
-  if (!o.IsValid(&invalid)) return Error{invalid};
-  return o;
-}
-
-MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
-  const auto& network = options.model.self_network;
-  for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
-    if (network != nullptr || Find(given, name) == nullptr) continue;
-    return Error{std::string("--") + name +
-                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
-  }
-  if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
-    return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
-  }
-  for (const char* name : {"pool_by", "pooling_sigma"}) {
-    if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
-    return Error{std::string("--") + name +
-                 " says how parameters differ, but none does; name some with --pool"};
-  }
-  return std::nullopt;
+  if (recordings != nullptr) return OverPreset(PresetFor(preset, *recordings), given, must_act);
+  if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
+  const Result<FitOptions> single = OverPreset("tail", given, must_act);
+  if (single.ok()) return single;
+  const Result<FitOptions> group = OverPreset("group", given, must_act);
+  return group.ok() ? group : single;
 }
 
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {

@@ -23,13 +23,12 @@ GivenOptions Merged(GivenOptions given, const GivenOptions& more);
 Result<GivenOptions> ParseOptionWords(const std::string& words);
 
 // The preset, the given options over it, the parameters that the model's terms free, and the edits
-// of the table. recordings: what `auto` looks at; null: none are known yet, and it means tail.
-// Errors name the option, its value and what it must be.
+// of the table. recordings: what `auto` looks at; null: none are known yet, and it is whichever of
+// tail and group can take the options. must_act: those of the given options that must act on
+// something. Errors name the option, its value and what it must be, or what is missing.
 Result<FitOptions> MakeFitOptions(const GivenOptions& given,
-                                  const std::vector<PendulumRecording>* recordings = nullptr);
-
-// Options that were given but act on nothing in `options`: an error that says what is missing.
-MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options);
+                                  const std::vector<PendulumRecording>* recordings = nullptr,
+                                  const GivenOptions& must_act = {});
 
 // Options that are taken but do nothing, or not what they seem to.
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options);

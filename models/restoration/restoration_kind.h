@@ -17,7 +17,7 @@ struct RestorationKindRow {
   const char* name;  // in files and on the command line
   const char* what;
   bool trained;           // it has weights, and stands in a folder
-  bool follows_pendulum;  // otherwise it continues recorded bodies, and is a peer of restorations
+  bool follows_pendulum;  // otherwise it continues recorded bodies, to compare with
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {

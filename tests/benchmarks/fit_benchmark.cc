@@ -61,11 +61,11 @@ BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond)
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
 
 FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
-  FitOptions options = StartPreset("group").value();  // not pooled
-  options.self_force = self_force;
+  FitOptions options = MakePreset("group").value();
+  options.pool = "none";
+  SetSelfForce(self_force, &options);
   options.model.interaction.drive = drive;
   FreeTerms(&options);
-  options.mode_weight = DefaultModeWeight(self_force);
   return options;
 }
 

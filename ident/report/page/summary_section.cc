@@ -88,7 +88,7 @@ ReportSection ProvenanceSection(const FittedModel& model) {
                         ")"};
   TextTable flags({"flag", "value"}, {true, true});
   for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
-  section.tables.push_back({"flags of the fit (what is empty or negative is the preset's)", flags});
+  section.tables.push_back({"flags of the fit (what is empty is the preset's)", flags});
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
   for (const FittedRecording& r : result.recordings) {
     files.Add({r.id, std::to_string(r.frames), r.content_hash});

@@ -49,6 +49,26 @@ TEST(OptionTable, TextsReadBack) {
   }
 }
 
+// A row drives its own place in the file, and no other.
+TEST(OptionTable, NumbersGoWhereTheirRowSays) {
+  const auto defaults = OptionsJson(FitOptions());
+  int numbers = 0;
+  for (const FitOptionRow& row : FitOptionRows()) {
+    if (row.json.empty() || !row.apply) continue;
+    const nlohmann::ordered_json::json_pointer place(row.json);
+    if (!defaults.at(place).is_number()) continue;
+    ++numbers;
+    FitOptions options;
+    ASSERT_FALSE(row.apply("7", &options)) << row.name;
+    auto expected = defaults;
+    expected[place] = OptionsJson(options).at(place);
+    EXPECT_EQ(expected[place], 7) << row.name;
+    EXPECT_EQ(OptionsJson(options).dump(), expected.dump()) << row.name;
+    EXPECT_EQ(OptionsJson(OptionsFrom(expected)).dump(), expected.dump()) << row.name;
+  }
+  EXPECT_GT(numbers, 15);
+}
+
 TEST(OptionTable, EveryPresetComesBackFromJson) {
   for (const char* name : {"tail", "ldp", "group"}) {
     const FitOptions options = MakePreset(name).value();
@@ -84,6 +104,14 @@ TEST(FitOptions, IsValidSaysOptionValueAndConstraint) {
        "--settling_weight is -3; it must be a number of at least 0"},
       {[](FitOptions* o) { o->start_spread = 0.5; },
        "--start_spread is 0.5; it must lie between 1 and 1000"},
+      {[](FitOptions* o) {
+         o->horizons = {1, 0};
+       },
+       "--horizons is 1; it must hold numbers of frames of at least 2"},
+      {[](FitOptions* o) { o->ensemble = 2; },
+       "--ensemble acts on networks, but there is none; add one, as in --self_force=mlp:4"},
+      {[](FitOptions* o) { o->model.interaction.network = true; },
+       "--interaction names network: --interaction_network must name its JSON file"},
       {[](FitOptions* o) { o->num_starts = 0; }, "--starts is 0; it must be positive"},
       {[](FitOptions* o) { o->early_stopping = 0.6; },
        "--early_stopping is 0.6; it must lie between 0 and 0.5"},

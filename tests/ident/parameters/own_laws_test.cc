@@ -114,6 +114,20 @@ class FittedLaw : public TempDirTest {
   static inline FittedModel model_;
 };
 
+TEST(OwnLaws, RowsThatCannotBeFittedAreRefused) {
+  const auto refused = [](const ParameterFacts& facts, const std::string& why) {
+    Given given;
+    const MaybeError error = given.Add(MakeForceLaw("brake", {facts}, Brake{}));
+    EXPECT_TRUE(error && Contains(error->ToString(), why)) << why;
+    EXPECT_TRUE(given.model.own_laws.empty());
+  };
+  refused({"drag", "d", "1/m", 0.1}, "must have a lower bound below its upper one");
+  refused({"drag", "d", "1/m", 3.0, 0.0, 2.0}, "must start within its bounds");
+  refused({"drag", "d", "1/m", 1.0, 0.0, 2.0, 0.0}, "must have a positive scale");
+  refused({"drag", "d", "1/m", 1.0, 0.0, 2.0, 1.0, Transform::kLog}, "positive lower bound");
+  refused({"drag", "d", "", 1.0, 0.0, 2.0}, "must have a name and a unit");
+}
+
 TEST_F(FittedLaw, RecoversWhatWasPlanted) {
   ASSERT_TRUE(model_.fit.ok());
   EXPECT_NEAR(model_.fit.parameters[brake_], 0.35, 1e-6);

@@ -16,7 +16,8 @@ TEST(ParameterGlossary, HasARowForEveryParameter) {
   const auto& rows = table.rows();
   ASSERT_EQ(rows.size(), 1u + kFirstOwnParameter);
   EXPECT_EQ(rows[1], (std::vector<std::string>{
-                         "mu", "mu", "N s/m", "100", "-2000 to 2000", "ground friction",
+                         "mu", "mu", "N s/m", "100", "-2000 to 2000",
+                         "drag of the stepping feet (no floor's friction)",
                          "always: with Kp_x and Kp_y held it is the whole drag of the stepping "
                          "feet"}));
   for (int i = 0; i < kFirstOwnParameter; ++i) EXPECT_EQ(rows[1 + i][0], kParameterNames[i]);
@@ -24,9 +25,10 @@ TEST(ParameterGlossary, HasARowForEveryParameter) {
 
 TEST(ParameterGlossary, IsATableInMarkdown) {
   const std::string text = ParameterGlossaryMarkdown();
-  EXPECT_EQ(text.find("| name | symbol | unit | default | bounds | meaning | when to free it |\n"
-                      "|---|---|---|--:|---|---|---|\n| mu | mu | N s/m | 100 |"),
-            0u);
+  EXPECT_EQ(
+      text.find("| name | symbol | unit | without preset | bounds | meaning | when to free it |\n"
+                "|---|---|---|--:|---|---|---|\n| mu | mu | N s/m | 100 |"),
+      0u);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2 + kFirstOwnParameter);
 }
 

@@ -60,17 +60,20 @@ TEST(BehaviourText, SettledAndUnstableIsSaidInOneSentence) {
   result.behaviour = Simulated(true, kGrows);
   const ModelOptions& options = result.options.model;
   const std::string sentence = Said(result.behaviour, options);
-  EXPECT_TRUE(Contains(sentence, "settles within 2 s, but is unstable at rest")) << sentence;
+  EXPECT_TRUE(Contains(sentence, "stands still after 2 s, but is unstable at rest")) << sentence;
   EXPECT_TRUE(Contains(sentence, "1.5 1/s")) << sentence;
   EXPECT_FALSE(
       Contains(VerdictRemedy(VerdictOf(result.behaviour, options), options), "settling_weight"));
   const std::string text = BehaviourText(result);
-  EXPECT_TRUE(Contains(text, "settle within 2 s")) << text;
-  EXPECT_TRUE(Contains(text, "UNSTABLE: it grows too slowly")) << text;
+  EXPECT_FALSE(Contains(text, "settle within")) << text;
+  EXPECT_TRUE(Contains(text, "stand still after 2 s, but not for long")) << text;
+  EXPECT_TRUE(Contains(text, "(UNSTABLE)")) << text;
   EXPECT_TRUE(Contains(Advised(result), "--mode_weight=30")) << Advised(result);
   EXPECT_FALSE(Contains(Advised(result), "settling_weight")) << Advised(result);
   result.options.model.push_tail = PushTail::kNone;
   EXPECT_TRUE(Contains(Advised(result), "--push_tail=exponential")) << Advised(result);
+  EXPECT_TRUE(Contains(VerdictRemedy(VerdictOf(result.behaviour, options), options),
+                       "--push_tail=exponential"));
 }
 
 TEST(BehaviourText, AFallWithStableModesIsNoDrive) {
@@ -100,7 +103,8 @@ TEST(BehaviourText, NoVerdictContradictsTheSimulations) {
         Behaviour b = Simulated(settled, growth);
         b.self_propelling = b.self_propelling || driven;
         const Verdict verdict = VerdictOf(b, {});
-        EXPECT_EQ(Contains(VerdictSentence(verdict, b), "settles within"), settled);
+        EXPECT_EQ(Contains(VerdictSentence(verdict, b), "settles within"),
+                  settled && !b.unstable());
         EXPECT_EQ(Contains(VerdictRemedy(verdict, {}), "settling_weight"), !settled);
         EXPECT_EQ(VerdictName(verdict) == "self-propelling", b.self_propelling);
         EXPECT_EQ(VerdictName(verdict).empty(), VerdictRemedy(verdict, {}).empty());

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ident/parameters/fit_options_json.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -12,10 +13,8 @@ namespace pushid {
 namespace {
 
 std::string Complaint(const GivenOptions& given) {
-  const Result<FitOptions> options = MakeFitOptions(given);
-  if (!options.ok()) return options.error().ToString();
-  const MaybeError error = CheckGivenAct(given, options.value());
-  return error ? error->ToString() : "";
+  const Result<FitOptions> options = MakeFitOptions(given, nullptr, given);
+  return options.ok() ? "" : options.error().ToString();
 }
 
 TEST(FitSetup, OptionsOverThePreset) {
@@ -77,7 +76,12 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"interaction", "network"}}, "--interaction_network must name"},
       {{{"interaction_network", "n.json"}}, "--interaction does not name network"},
       {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
-      {{{"pooling_sigma", "0.3"}}, "--pooling_sigma says how parameters differ"},
+      {{{"ensemble", "2"}}, "--ensemble acts on networks"},
+      {{{"preset_priors", "of course"}},
+       "--preset_priors is 'of course'; it must be true or false"},
+      {{{"seed", "2x"}}, "--seed is '2x'"},
+      {{{"preset", "tail"}, {"pooling_sigma", "0.3"}},
+       "--pooling_sigma says how parameters differ"},
       {{{"rod", "linear"}, {"takeover_weight", "1"}}, "only the rod has a network"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
       {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
@@ -86,6 +90,59 @@ TEST(FitSetup, BadOptionsAreNamed) {
   };
   for (const auto& [given, says] : cases) EXPECT_TRUE(Contains(Complaint(given), says)) << says;
   EXPECT_EQ(Complaint({{"self_force", "mlp:4"}, {"network_prior", "0.5"}}), "");
+}
+
+// Before the recordings are known auto may be either preset: what one of them takes is no error.
+TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
+  for (const GivenOptions& given :
+       {GivenOptions{{"pooling_sigma", "0.4"}}, GivenOptions{{"pool", "contact_stiffness"}},
+        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"}}}) {
+    EXPECT_EQ(Complaint(given), "") << given[0].first;
+    EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
+  }
+}
+
+// What a candidate takes over from the flags given need not act in it; what it is given itself
+// must.
+TEST(FitSetup, OnlyACandidatesOwnOptionsMustAct) {
+  const GivenOptions given = {{"self_force", "mlp:2"}, {"network_prior", "0.5"}};
+  EXPECT_TRUE(MakeFitOptions(Merged(given, {{"self_force", "none"}})).ok());
+  const GivenOptions more = {{"self_force", "none"}, {"network_prior", "1"}};
+  EXPECT_FALSE(MakeFitOptions(Merged(given, more), nullptr, more).ok());
+  // An ensemble of nothing is no fit at all.
+  EXPECT_FALSE(
+      MakeFitOptions({{"self_force", "mlp:2"}, {"ensemble", "2"}, {"preset", "group"}}).ok());
+  EXPECT_FALSE(
+      MakeFitOptions(Merged({{"self_force", "mlp:2"}, {"ensemble", "2"}}, {{"self_force", "none"}}))
+          .ok());
+}
+
+TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
+  EXPECT_EQ(MakeFitOptions({{"seed", "18446744073709551615"}}).value().seed, UINT64_MAX);
+  for (const char* yes : {"true", "1", "yes"}) {
+    EXPECT_TRUE(MakeFitOptions({{"preset_priors", yes}}).value().preset_priors) << yes;
+  }
+  EXPECT_FALSE(MakeFitOptions({{"preset_priors", "0"}}).value().preset_priors);
+  EXPECT_EQ(MakeFitOptions({{"horizons", ""}}).value().horizons, std::vector<int>{0});
+}
+
+// The way of the library and that of the flags are one.
+TEST(FitSetup, TermsChangedByHandAreTheSameProblem) {
+  FitOptions by_hand = MakePreset("group").value();
+  by_hand.model.interaction.drive = true;
+  FreeTerms(&by_hand);
+  const FitOptions by_flags =
+      MakeFitOptions({{"preset", "group"}, {"interaction", "spring,damping,drive"}}).value();
+  EXPECT_EQ(SettingsJson(by_hand).dump(), SettingsJson(by_flags).dump());
+  by_hand.pool = "none";
+  FreeTerms(&by_hand);
+  EXPECT_FALSE(AnyPooled(by_hand.table));
+  FitOptions linear = MakePreset("tail").value();
+  SetSelfForce(SelfForceKind::kLinear, &linear);
+  FreeTerms(&linear);
+  EXPECT_EQ(
+      SettingsJson(linear).dump(),
+      SettingsJson(MakeFitOptions({{"preset", "tail"}, {"self_force", "linear"}}).value()).dump());
 }
 
 TEST(FitSetup, WordsOfACandidate) {

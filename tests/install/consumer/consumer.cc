@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <vector>
 
-#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/fit.h"
 
 int main() {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/fit.h"
 
 using namespace pushid;
