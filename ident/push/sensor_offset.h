@@ -10,8 +10,9 @@
 // accelerations, because their noise is white and is not differentiated. The standard error is that
 // of least squares times sqrt((1 + r) / (1 - r)), r the residuals' correlation from frame to frame.
 // No bias on motion simulated at 960 Hz and seen at 60 Hz but half a step of the simulation, which
-// holds a force for a step (tests/studies/sensors.py; of simulations at 60 Hz half a frame is 8 ms). Rejected: cross-correlation with the inverse-dynamics force, which takes the
-// person's reaction for a later push.
+// holds a force for a step (tests/studies/sensors.py; of simulations at 60 Hz half a frame is 8
+// ms). Rejected: cross-correlation with the inverse-dynamics force, which takes the person's
+// reaction for a later push.
 #pragma once
 
 #include <vector>

@@ -1,17 +1,17 @@
-"""What takes how long: the benchmarks, in the words of a table, and whole processes by the clock.
+"""What takes how long: the benchmarks, in the words of a table, and whole processes.
 
 benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
-processes   tests/benchmarks/README.md; five minutes
-batch       tests/benchmarks/README.md; a batch of 201 fits; a minute
+processes   tests/benchmarks/README.md; a minute
+batch       tests/benchmarks/README.md; a batch of 101 fits; a minute
 
 Times on one core, busy with nothing else if they are to be compared.
 """
 import json
 import os
+import resource
 import statistics
 import subprocess
 import tempfile
-import time
 
 import studies
 from studies import number
@@ -55,30 +55,35 @@ def benchmarks():
     return studies.table(["what", "processor time"], rows)
 
 
-def clock(*command):
-    """Median wall-clock seconds of five runs."""
+def processor_seconds(*command):
+    """Of a process and its children, median of three runs."""
     seconds = []
-    for _ in range(5):
-        before = time.monotonic()
+    for _ in range(3):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True,
                        env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
-        seconds.append(time.monotonic() - before)
-    return f"{number(statistics.median(seconds), 2)} s"
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    return statistics.median(seconds)
 
 
 def processes():
     fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
     report = [os.path.join(studies.BIN, "pushid-report"), f"--model={studies.fit('single').path}",
               f"--recordings={studies.MANIFEST}"]
+
+    def told(*command):
+        return f"{number(processor_seconds(*command), 2)} s"
+
     with tempfile.TemporaryDirectory() as folder:
         page = os.path.join(folder, "report.html")
-        rows = [["`pushid-fit --setting=single`", clock(*fit)],
-                ["... `--preset=ldp`", clock(*fit, "--preset=ldp")],
-                ["... `--profile`", clock(*fit, "--profile")],
-                ["... `--bootstrap=199`", clock(*fit, "--bootstrap=199")],
-                ["`pushid-report --html_out`", clock(*report, f"--html_out={page}")]]
+        rows = [["`pushid-fit --setting=single`", told(*fit)],
+                ["... `--preset=ldp`", told(*fit, "--preset=ldp")],
+                ["... `--profile`", told(*fit, "--profile")],
+                ["... `--bootstrap=199`", told(*fit, "--bootstrap=199")],
+                ["`pushid-report --html_out`", told(*report, f"--html_out={page}")]]
         size = os.path.getsize(page) / 1e6
-    text = studies.table(["the 32 recordings of single people, one thread", "median of five runs"], rows)
+    text = studies.table(["the 32 recordings of single people, one thread", "processor time"], rows)
     return f"{text}\n\nThe page has {number(size)} MB."
 
 
@@ -87,7 +92,7 @@ recordings = "{manifest}"
 setting = "single"
 [jobs]
 group_by = "none"
-bootstrap = 200
+bootstrap = 100
 [[variant]]
 name = "tail"
 flags = ["--preset=tail"]
@@ -101,13 +106,11 @@ def batch():
         plan = os.path.join(folder, "plan.toml")
         with open(plan, "w", encoding="utf-8") as file:
             file.write(PLAN.format(manifest=studies.MANIFEST))
-        before = time.monotonic()
-        subprocess.run([os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", "--jobs=1"], check=True,
-                       stdout=subprocess.DEVNULL, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
-        seconds = time.monotonic() - before
+        command = [os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", "--jobs=1"]
+        seconds = processor_seconds(*command, "--resume=false")
         jobs = len(os.listdir(os.path.join(folder, "out/jobs")))
     return (f"`pushid-batch --jobs=1` runs {jobs} fits of the 32 recordings of single people (one, and "
-            f"{jobs - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s.")
+            f"{jobs - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s of processor time.")
 
 
 if __name__ == "__main__":
