@@ -1,7 +1,7 @@
 """People who touch: what the 49 recordings of groups identify, and how candidates of contact predict.
 
-values      contact by setting (ident/results/README.md); one fit, half a minute
-settling    where people end up two seconds after a push (ident/results/README.md); the same fit
+values      contact by setting (ident/README.md); one fit, half a minute
+settling    where people end up two seconds after a push (ident/README.md); the same fit
 candidates  errors on held-out recordings beside settling (ident/validation/README.md); 10 minutes
 schemes     strong pushes, and whole settings, held out (ident/validation/README.md); 2 minutes
 travel      how the push travels (ident/prediction/README.md); with what the others ran, seconds
