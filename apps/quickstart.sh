@@ -17,7 +17,7 @@ install_packages "${build_packages[@]}"
 skip_unusable_ccache
 echo "nothing is missing"
 
-say "Building the programs into $bin (a minute or two the first time)"
+say "Building the programs into $bin (some minutes the first time)"
 generator=()
 if [ ! -f build/quickstart/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset quickstart "${generator[@]}" >/dev/null
