@@ -2,6 +2,8 @@
 // pushed.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "models/ipm.h"
@@ -25,6 +27,8 @@ struct Scene {
     for (const ScenePush& push : pushes) end = std::max(end, push.EndFrame());
     return end;
   }
+  // The frame at which whoever settles has settled.
+  int SettledFrame() const;
 };
 
 // The same scene with every push multiplied by `factor`.
@@ -36,7 +40,16 @@ inline Scene ScalePushes(Scene scene, double factor) {
   return scene;
 }
 
+// Settled: so slow and so near the rest posture, so long after the last push.
+inline constexpr double kWaitSeconds = 2.0;
+inline constexpr double kSettledSpeed = 0.1;  // m/s
+inline constexpr double kSettledLean = 0.05;  // rad
+
 inline constexpr double kSettlingSpacing = 0.45;  // m
+
+inline int Scene::SettledFrame() const {
+  return LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / dt));
+}
 
 // People in a line along +x, upright, the first pushed along +x at the hip by a half-sine of 12
 // frames (0.2 s at 60 Hz) with the named impulse (N s): the settling simulations by which a fit is

@@ -60,6 +60,24 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
+// A frame's rows of the Jacobian of w r, made those whose J'J is the robust cost's own Hessian but
+// for the model's second derivatives (Triggs et al. 2000, section 4.3): the Jacobian of w r counts
+// the loss as steeper than it is. With c = sqrt(1 + |r|^2 / d^2):
+//   J <- (1 - u u') J sqrt((1 + c) / 2c) + u u' J sqrt(2 / (c (1 + c))),   u = r / |r|
+// residual: w r times `weight`.
+template <typename Rows>
+void CorrectForRobustLoss(const FrameVector<double>& residual, double weight, double robust,
+                          Rows&& jacobian) {
+  const double squared = residual.squaredNorm();
+  if (robust <= 0.0 || weight <= 0.0 || squared <= 0.0) return;
+  const double c = 1.0 + squared / (2.0 * weight * weight * robust * robust);
+  const double across = std::sqrt((1.0 + c) / (2.0 * c)), along = std::sqrt(2.0 / (c * (1.0 + c)));
+  const FrameVector<double> u = residual / std::sqrt(squared);
+  const Eigen::Matrix<double, 1, Eigen::Dynamic> by_u = u.transpose() * jacobian;
+  jacobian *= across;
+  jacobian += (along - across) * u * by_u;
+}
+
 template <typename T, typename L>
 FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                              const MeasuredFrame& measured, const ResidualSigmas& sigmas) {

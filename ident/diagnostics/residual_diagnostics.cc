@@ -163,7 +163,7 @@ Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
       const bool known = uncertainty.estimates[i].status != EstimateStatus::kUnidentifiable;
       in_errors.push_back(known && error > 0.0 ? move / error : 0.0);
     }
-    l.recordings.push_back(problem.recordings()[covariance.clusters[g]].id);
+    l.recordings.push_back(problem.recordings()[covariance.recordings[g]].id);
     l.change.push_back(change);
     l.in_errors.push_back(in_errors);
   }

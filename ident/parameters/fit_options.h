@@ -15,11 +15,23 @@ namespace pushid {
 
 // How much a recording counts.
 enum class RecordingWeight {
-  kFrame,     // every frame counts the same: long recordings count more
-  kRecording  // every recording counts the same, as in the recording mean of hipADE
+  kEffective,  // as many frames as are independent (uncertainty/data_weight.h)
+  kFrame,      // every frame counts as one: errors that last are taken for many
+  kRecording   // every recording counts as one frame
 };
-constexpr EnumNames<RecordingWeight, 2> Names(RecordingWeight) {
-  return {{{"frame", RecordingWeight::kFrame}, {"recording", RecordingWeight::kRecording}}};
+constexpr EnumNames<RecordingWeight, 3> Names(RecordingWeight) {
+  return {{{"effective", RecordingWeight::kEffective},
+           {"frame", RecordingWeight::kFrame},
+           {"recording", RecordingWeight::kRecording}}};
+}
+
+// Where the standard deviations of the residuals come from.
+enum class SigmaSource {
+  kEstimate,  // from the residuals' own robust scale, component by component
+  kFixed      // as they are given
+};
+constexpr EnumNames<SigmaSource, 2> Names(SigmaSource) {
+  return {{{"estimate", SigmaSource::kEstimate}, {"fixed", SigmaSource::kFixed}}};
 }
 
 // Where the first start of a fit comes from.
@@ -31,6 +43,18 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
   return {{{"nominal", FitStart::kNominal}, {"equation_error", FitStart::kEquationError}}};
 }
 
+// Whose errors are independent of each other.
+enum class ClusterBy {
+  kAuto,      // people where some were recorded more than once, otherwise recordings
+  kSubject,   // people; where several share a recording, people and recordings (two-way)
+  kRecording  // recordings, whoever is in them
+};
+constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
+  return {{{"auto", ClusterBy::kAuto},
+           {"subject", ClusterBy::kSubject},
+           {"recording", ClusterBy::kRecording}}};
+}
+
 struct FitOptions {
   std::string preset = "tail";                      // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
@@ -39,10 +63,17 @@ struct FitOptions {
   ParameterTable table;
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
+  // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;
-  RecordingWeight recording_weight = RecordingWeight::kRecording;
-  // Weight of the settling simulations (80 kg after 4, 25, 80 N s) in the cost; 0 where recovery of
-  // known parameters is measured, more where a fit keeps walking.
+  SigmaSource sigma_source = SigmaSource::kEstimate;
+  double marker_noise = 0.001;  // m, of hip and ankles: no residual is taken for more exact
+  RecordingWeight recording_weight = RecordingWeight::kEffective;
+  // Independent frames per frame, where recording_weight is effective: found by the fit; 0: not yet,
+  // every recording counts as one frame.
+  double effective_weight = 0.0;
+  ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
+  // Weight of the demand that people settle (settling_residual.h): 0 where nobody need settle, more
+  // where a fit keeps walking all the same.
   double settling_weight = 0.0;
   // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
   // for models with no term that could feed a mode.

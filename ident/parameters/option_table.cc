@@ -93,13 +93,30 @@ std::vector<Row> WeightRows() {
       NumberRow(
           "sigma_rate", "/sigmas/rate_rad_s", [](O & o) -> auto& { return o.sigmas.rate; },
           kPositive, "standard deviation of the angular rates, rad/s"),
+      MayBeAbsent(NameRow<SigmaSource>(
+          "sigmas", "/sigmas/source", [](O & o) -> auto& { return o.sigma_source; },
+          "the residuals' standard deviations: estimate (from the residuals, starting at --sigma_*), "
+          "or fixed (as --sigma_* say)")),
+      MayBeAbsent(NumberRow(
+          "marker_noise", "/sigmas/marker_noise_m", [](O & o) -> auto& { return o.marker_noise; },
+          kPositive, "standard deviation of a marker's position, m: estimated sigmas are no less")),
       NumberRow(
           "robust", "/sigmas/robust", [](O & o) -> auto& { return o.sigmas.robust; }, kNotNegative,
           "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
       NameRow<RecordingWeight>(
           "recording_weight", "/recording_weight",
           [](O & o) -> auto& { return o.recording_weight; },
-          "what counts the same: every recording, or every frame"),
+          "effective (a recording counts as many frames as are independent), frame (every frame "
+          "counts as one) or recording (every recording counts as one frame)"),
+      MayBeAbsent(NumberRow(
+          "effective_weight", "/effective_weight",
+          [](O & o) -> auto& { return o.effective_weight; }, {0.0, 1e6, false, "must be a number of at least 0"},
+          "independent frames per frame, with --recording_weight=effective: where their estimation "
+          "starts; 0: at one frame a recording")),
+      MayBeAbsent(NameRow<ClusterBy>(
+          "cluster", "/cluster", [](O & o) -> auto& { return o.cluster; },
+          "whose errors are independent: subject, recording, or auto (subject where people were "
+          "recorded more than once)")),
       Decided(NumberRow(
           "settling_weight", "/settling_weight", [](O & o) -> auto& { return o.settling_weight; },
           kNotNegative,

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "models/cart_damping.h"
 #include "models/modal_stability.h"
@@ -13,8 +14,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kMasses[] = {60.0, 80.0, 100.0};  // kg
-
 SettlingSimulation SimulateSettling(const ModelOptions& options,
                                     const ParameterSet<double>& parameters, double mass,
                                     double impulse, int people) {
@@ -23,8 +22,7 @@ SettlingSimulation SimulateSettling(const ModelOptions& options,
   result.mass = mass;
   result.impulse = impulse;
   const Scene scene = SettlingScene(mass, impulse, people);
-  const int frames =
-      scene.LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / scene.dt)) + 1;
+  const int frames = scene.SettledFrame() + 1;
   RolloutPath<double> path;
   const RolloutStatus status =
       Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
@@ -124,6 +122,31 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 }  // namespace
 
+double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters) {
+  constexpr double kLongest = 10.0;  // s
+  double slowest = 0.0;
+  for (double impulse : kSettlingImpulses) {
+    const Scene scene = SettlingScene(kSettlingMasses[0], impulse);
+    const int end = scene.LastPushEnd();
+    const int frames = end + static_cast<int>(std::lround(kLongest / scene.dt));
+    RolloutPath<double> path;
+    if (!Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path)
+             .ok) {
+      return std::numeric_limits<double>::infinity();
+    }
+    int last_moving = end;
+    for (int t = end; t < frames; ++t) {
+      const PendulumState<double>& state = path.At(t, 0);
+      const bool still = state.qd.head<2>().norm() < kSettledSpeed &&
+                         state.q.tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
+      if (!still) last_moving = t + 1;
+    }
+    if (last_moving >= frames) return std::numeric_limits<double>::infinity();
+    slowest = std::max(slowest, (last_moving - end) * scene.dt);
+  }
+  return slowest;
+}
+
 const SettlingSimulation* Behaviour::FarthestBehind() const {
   const SettlingSimulation* farthest = nullptr;
   for (const SettlingSimulation& d : simulations) {
@@ -147,7 +170,7 @@ void Behaviour::Add(const Behaviour& other, const std::string& setting) {
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
   Behaviour behaviour;
   std::vector<SettlingSimulation>& all = behaviour.simulations;
-  for (double mass : kMasses) {
+  for (double mass : kSettlingMasses) {
     for (double impulse : kSettlingImpulses) {
       all.push_back(SimulateSettling(options, parameters, mass, impulse, 1));
     }

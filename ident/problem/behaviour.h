@@ -7,20 +7,17 @@
 
 #include "models/options.h"
 #include "models/parameters.h"
+#include "models/scene.h"
 
 namespace pushid {
 
-// The settling simulations that a fit is held to, and (the one person with two more masses) judged
-// by.
-inline constexpr double kSettlingMass = 80.0;                     // kg
+// The settling simulations that a fit is judged by, and (of the single people the lightest, whom a
+// push moves most) held to.
+inline constexpr double kSettlingMasses[] = {60.0, 80.0, 100.0};  // kg, of one person
+inline constexpr double kSettlingMass = 80.0;                     // kg, of everybody in a line
 inline constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one person
 inline constexpr int kLinePeople = 5;                             // in a line, where people touch
 inline constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
-
-// Settled: so slow and so near the rest posture, so long after the last push.
-inline constexpr double kWaitSeconds = 2.0;
-inline constexpr double kSettledSpeed = 0.1;  // m/s
-inline constexpr double kSettledLean = 0.05;  // rad
 
 inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
 
@@ -62,6 +59,10 @@ struct Behaviour {
   // Adds what people do in one setting.
   void Add(const Behaviour& other, const std::string& setting);
 };
+
+// How long after a push the slowest of the single people whom a fit is held to settles for good, s;
+// infinite: not within 10 s, or they fall.
+double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters);
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);
 

@@ -129,6 +129,9 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
 double FitProblem::Weight(int recording, int horizon) const {
   const double counted = std::sqrt(static_cast<double>(Count(recording)));
   if (options_.recording_weight == RecordingWeight::kFrame) return counted;
+  if (options_.recording_weight == RecordingWeight::kEffective && options_.effective_weight > 0.0) {
+    return counted * std::sqrt(options_.effective_weight);
+  }
   // A recording's frames are far from independent: together they count as one.
   const PendulumRecording& r = recordings_[recording];
   const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();

@@ -77,7 +77,7 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
   }
   if (map_.num_weights > 0 && options_.network_prior > 0.0) {
     built->Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
-               {point->weights.data()}, kPoolingCluster);
+               {point->weights.data()}, kNetworkCluster);
   }
   if (map_.num_weights > 0 && options_.takeover_weight > 0.0) {
     built->Add(
@@ -103,14 +103,14 @@ void FitProblem::AddStagePriors(FitPoint* point, Built* built) const {
 }
 
 void FitProblem::AddRest(FitPoint* point, Built* built) const {
-  auto add = [built](RestProblem rest, const std::vector<double*>& blocks) {
-    auto residual = std::make_unique<RestResidual>(std::move(rest));
+  auto add = [built](std::unique_ptr<ceres::CostFunction> residual,
+                     const std::vector<double*>& blocks) {
     std::vector<double> values(residual->num_residuals());
     if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) {
       ++built->rests_left_out;  // Ceres cannot start from a block that fails
       return;
     }
-    built->AddRollout(std::move(residual), blocks, kPriorCluster);
+    built->AddRollout(std::move(residual), blocks, kSettlingCluster);
   };
   // Where settings differ, people must settle in each of them.
   std::vector<std::string> units = {""};
@@ -122,16 +122,16 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     if (!unit.empty()) blocks.push_back(point->unit[unit].data());
     std::vector<double*> rollout_blocks = blocks;
     if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
-    const auto settle = [&](double impulse, int people) {
-      const Scene scene = SettlingScene(kSettlingMass, impulse, people);
-      add(SettlingProblem(scene, options_.model, map_, options_.sigmas, options_.settling_weight,
-                          unit),
+    const auto settle = [&](double mass, double impulse, int people) {
+      add(std::make_unique<SettlingResidual>(
+              SettlingProblem(SettlingScene(mass, impulse, people), options_.model, map_,
+                              options_.sigmas, options_.settling_weight, unit)),
           rollout_blocks);
     };
     if (options_.settling_weight > 0.0) {
-      for (double impulse : kSettlingImpulses) settle(impulse, 1);
+      for (double impulse : kSettlingImpulses) settle(kSettlingMasses[0], impulse, 1);
       if (options_.model.interaction.Any()) {
-        for (double impulse : kLineImpulses) settle(impulse, kLinePeople);
+        for (double impulse : kLineImpulses) settle(kSettlingMass, impulse, kLinePeople);
       }
     }
     if (options_.mode_weight > 0.0) {
@@ -139,7 +139,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
       built->Add(
           std::make_unique<ModalStabilityResidual>(options_.model, body, map_, options_.mode_margin,
                                                    options_.mode_weight, !unit.empty()),
-          blocks, kPriorCluster);
+          blocks, kSettlingCluster);
     }
   }
   if (options_.stability_weight > 0.0) {
@@ -147,8 +147,9 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
       if (Count(i) == 0) continue;
       const double weight = options_.stability_weight * std::sqrt(static_cast<double>(Count(i)));
       for (double factor : {1.0, kStrongerPush}) {
-        add(StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
-                             options_.sigmas, weight),
+        add(std::make_unique<StabilityResidual>(
+                StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
+                                 options_.sigmas, weight)),
             RecordingBlocks(point, i));
       }
     }

@@ -39,6 +39,7 @@ JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built) {
       score.jacobian.block(row, column_of.at(blocks[b]), n, jacobians[b].cols()) = jacobians[b];
     }
     score.cluster_of_row.insert(score.cluster_of_row.end(), n, cluster);
+    for (int k = 0; k < n; ++k) score.row_in_block.push_back(k);
     if (cluster >= 0) {
       present.insert(cluster);
       score.num_data_rows += n;
@@ -49,6 +50,25 @@ JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built) {
   score.residuals.conservativeResize(row);
   score.clusters.assign(present.begin(), present.end());
   return score;
+}
+
+void CorrectRobustLoss(const FitProblem& problem, JacobianBlocks* score) {
+  score->robust_jacobian = score->jacobian;
+  const double robust = problem.options().sigmas.robust;
+  for (Eigen::Index row = 0; row < score->jacobian.rows();) {
+    const int recording = score->cluster_of_row[static_cast<size_t>(row)];
+    if (recording < 0) {
+      score->robust_jacobian.row(row++).setZero();
+      continue;
+    }
+    const PendulumRecording& r = problem.recordings()[recording];
+    const int block = score->row_in_block[static_cast<size_t>(row)] / kFrameResiduals;
+    const int frame = 1 + block / r.num_people(), person = block % r.num_people();
+    CorrectForRobustLoss(score->residuals.segment<kFrameResiduals>(row),
+                         problem.Weight(recording, 0) * r.Weight(person, frame), robust,
+                         score->robust_jacobian.middleRows<kFrameResiduals>(row));
+    row += kFrameResiduals;
+  }
 }
 
 std::vector<int> JacobianBlocks::RowsOf(int cluster) const {

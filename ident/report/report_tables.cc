@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
@@ -38,14 +39,25 @@ std::string NoFartherText(const Behaviour& b) {
 
 }  // namespace
 
+std::string SharesText(const Shares& s) {
+  const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
+  return percent(s.data) + "/" + percent(s.prior) + "/" + percent(s.settling);
+}
+
+std::string PullText(const Estimate& e) {
+  if (e.standard_error <= 0.0) return "-";
+  const double pull = (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error;
+  return (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
+}
+
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
-                   "naive error", "prior"},
-                  {true, false, false, true, true, true, false, true});
+                   "data/prior/settling, %", "pull, errors", "prior"},
+                  {true, false, false, true, true, true, true, false, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", ""});
+      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", "-", ""});
       continue;
     }
     const std::string prior =
@@ -55,21 +67,27 @@ TextTable EstimateTable(const FitResult& result) {
     const bool unknown = e.status == EstimateStatus::kUnidentifiable;
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : Rounded(e.standard_error, 3),
                unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
-               unknown ? "infinite" : Rounded(e.standard_error_naive, 3), prior});
+               unknown ? "-" : SharesText(e.shares), unknown ? "-" : PullText(e), prior});
   }
   return table;
 }
 
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
-  if (!u.clustered) return "standard errors: naive (a single recording cannot be clustered)\n";
-  const std::string few = u.too_few_clusters
-                              ? "no more recordings than free parameters: clustered errors are "
-                                "rough, no parameter counts "
-                                "as identified, and correlations are those of independent frames\n"
-                              : "";
-  return few + "standard errors: clustered by recording (" + std::to_string(u.num_clusters) +
-         "; Student's t = " + Rounded(u.t_quantile, 3) + "); naive ones beside them\n";
+  if (!u.clustered) return "standard errors: naive (a single cluster tells no scatter)\n";
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kFixed) continue;
+    least = std::min(least, e.freedom);
+    most = std::max(most, e.freedom);
+  }
+  const bool people = u.clustered_by == ClusterBy::kSubject;
+  return "standard errors: clustered by " +
+         std::string(people ? (u.two_way ? "person and by recording" : "person") : "recording") +
+         " (" + std::to_string(u.num_clusters) + (people ? " people" : " recordings") +
+         "; Student's t with " + Rounded(least, 2) + " to " + Rounded(most, 2) +
+         " degrees of freedom)" +
+         (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n";
 }
 
 TextTable DerivedTable(const FitResult& result) {

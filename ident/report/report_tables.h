@@ -9,6 +9,10 @@
 
 namespace pushid {
 
+// "97/3/0", and what priors and settling together moved the value by, in its standard errors.
+std::string SharesText(const Shares& shares);
+std::string PullText(const Estimate& estimate);
+
 TextTable EstimateTable(const FitResult& result);
 std::string HowSure(const FitResult& result);
 

@@ -6,11 +6,14 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/results/weighted_solve.h"
 #include "ident/solver/large_network_stage.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
 namespace {
+
+constexpr int kFewClusters = 10;
 
 std::string Describe(const RolloutStatus& status) {
   return std::string(status.quantity) + " of person " + std::to_string(status.person) +
@@ -72,13 +75,15 @@ std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitPro
       const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
       const double error = std::sqrt(std::max(0.0, variance));
       Estimate e;
+      e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
+      const double quantile = StudentQuantile95(e.freedom);
       e.name = spec.name;
       e.unit = spec.unit;
       e.value = values[spec.id];
       const double center = ToFitted(spec.transform, e.value);
       e.standard_error = error * TransformSlope(spec.transform, e.value);
-      e.lower95 = ToNatural(spec.transform, center - u.t_quantile * error);
-      e.upper95 = ToNatural(spec.transform, center + u.t_quantile * error);
+      e.lower95 = ToNatural(spec.transform, center - quantile * error);
+      e.upper95 = ToNatural(spec.transform, center + quantile * error);
       pooled[unit][spec.name] = e;
     }
     first += static_cast<int>(deviations.size());
@@ -135,6 +140,17 @@ void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
       VerdictRemedy(verdict, model) + ")");
 }
 
+void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
+  const std::string unit = u.clustered_by == ClusterBy::kSubject ? "person" : "recording";
+  if (!u.clustered) {
+    warnings->push_back("a single " + unit + ": errors cannot be clustered and are too small");
+  } else if (u.num_clusters < kFewClusters) {
+    const std::string many = unit == "person" ? "people" : "recordings";
+    warnings->push_back("the independent units are " + std::to_string(u.num_clusters) + " " + many +
+                        ", fewer than ten: the standard errors are themselves uncertain");
+  }
+}
+
 std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
   std::vector<std::string> warnings;
   for (const FittedRecording& recording : result.recordings) {
@@ -151,9 +167,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
                        Rounded(-d->pushed_advance, 2) + " m behind the start (" +
                        SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
-  if (result.uncertainty.num_clusters == 1) {
-    warnings.push_back("a single recording: errors cannot be clustered and are too small");
-  }
+  AddClusterWarning(result.uncertainty, &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
@@ -190,8 +204,8 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.message = trained.error().ToString();
     return result;
   }
-  const FitProblem problem(recordings, options);
-  const Solution solution = Solve(problem, progress);
+  const Solution solution = SolveWeighted(recordings, &result.options, progress);
+  const FitProblem problem(recordings, result.options);
   result.starts = solution.starts;
   result.best_start = solution.best;
   result.solve_seconds = solution.seconds;
@@ -203,9 +217,9 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.converged = best.converged;
   result.cost = best.cost;
   result.message = best.message;
-  result.options.model = problem.ModelAt(best.to);
   result.parameters = problem.Parameters(best.to, "");
-  if (const auto& network = result.options.model.self_network; network && network->shape.any()) {
+  if (const auto network = problem.ModelAt(best.to).self_network;
+      network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
@@ -219,6 +233,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
+  result.options.model = problem.ModelAt(best.to);
   ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
   return result;
 }

@@ -12,11 +12,11 @@ std::vector<Agreement> ClusteredRows(const FitResult& result) {
   std::vector<Agreement> rows;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
-    rows.push_back({e.name, e.unit, e.value, {e.standard_error, e.lower95, e.upper95}, {}, {}, {}});
+    rows.push_back({e.name, e.unit, e.value, e.freedom, {e.standard_error, e.lower95, e.upper95}, {}, {}, {}});
   }
   for (const Combination& c : result.derived) {
     if (c.standard_error == 0.0) continue;
-    rows.push_back({c.name, c.unit, c.value, {c.standard_error, c.lower95, c.upper95}, {}, {}, {}});
+    rows.push_back({c.name, c.unit, c.value, c.freedom, {c.standard_error, c.lower95, c.upper95}, {}, {}, {}});
   }
   return rows;
 }
@@ -36,10 +36,10 @@ double WidthRatio(const Agreement& row) {
 std::vector<Agreement> CompareIntervals(const FittedModel& model) {
   const FitResult& result = model.fit;
   std::vector<Agreement> rows = ClusteredRows(result);
-  const double t = result.uncertainty.t_quantile;
   for (Agreement& row : rows) {
     for (const Profile& p : model.profiles) {
       if (p.name != row.name) continue;
+      const double t = StudentQuantile95(row.freedom);
       row.profile = Interval{(p.upper95 - p.lower95) / (2.0 * t), p.lower95, p.upper95};
       row.classification = p.classification;
     }

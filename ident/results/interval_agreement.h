@@ -18,6 +18,7 @@ struct Interval {
 struct Agreement {
   std::string name, unit;
   double value = 0.0;
+  double freedom = 1.0;  // of the clustered interval's and the profile's Student's t
   Interval clustered;
   std::optional<Interval> profile, bootstrap;
   std::optional<ProfileClass> classification;

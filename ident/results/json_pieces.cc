@@ -53,6 +53,7 @@ Json CombinationJson(const Combination& c) {
           {"value", NumberJson(c.value)},
           {"standard_error", NumberJson(c.standard_error)},
           {"interval_95", {NumberJson(c.lower95), NumberJson(c.upper95)}},
+          {"freedom", NumberJson(c.freedom)},
           {"unit", c.unit}};
 }
 
@@ -63,7 +64,8 @@ Combination CombinationFrom(const Json& json) {
           NumberFrom(json.at("value")),
           NumberFrom(json.at("standard_error")),
           NumberFrom(interval.at(0)),
-          NumberFrom(interval.at(1))};
+          NumberFrom(interval.at(1)),
+          NumberFrom(json.value("freedom", Json(1.0)))};
 }
 
 Json NullDirectionsJson(const std::vector<NullDirection>& directions) {

@@ -24,6 +24,13 @@ Estimate EstimateFrom(const Json& json) {
   e.upper95 = NumberFrom(json.at("interval_95").at(1));
   e.unit = json.at("unit");
   e.status = EnumFrom<EstimateStatus>(json, "status");
+  // Models written before shares were computed say nothing of them.
+  if (!json.contains("shares")) return e;
+  e.freedom = NumberFrom(json.at("freedom"));
+  const Json &shares = json.at("shares"), &pull = json.at("pull");
+  e.shares = {NumberFrom(shares.at("data")), NumberFrom(shares.at("prior")),
+              NumberFrom(shares.at("settling")), NumberFrom(pull.at("prior")),
+              NumberFrom(pull.at("settling"))};
   return e;
 }
 
@@ -79,12 +86,13 @@ Behaviour BehaviourFrom(const Json& json) {
 
 Uncertainty UncertaintyFrom(const Json& json) {
   Uncertainty u;
-  u.clustered = json.at("clustered_by") == "recording";
+  u.clustered = json.at("clustered_by") != "none";
+  if (u.clustered) u.clustered_by = EnumFrom<ClusterBy>(json, "clustered_by");
+  u.two_way = json.value("two_way", false);
   u.num_clusters = json.at("clusters");
   u.num_residuals = json.at("residuals");
   u.full_hessian = json.value("full_hessian", false);
   u.sigma = NumberFrom(json.at("sigma"));
-  u.t_quantile = NumberFrom(json.at("t_quantile"));
   u.freedom = json.at("freedom");
   u.too_few_clusters = json.at("too_few_clusters");
   u.condition_number = NumberFrom(json.at("condition_number"));

@@ -18,6 +18,14 @@ Json EstimateJson(const Estimate& e) {
           {"standard_error", NumberJson(e.standard_error)},
           {"standard_error_naive", NumberJson(e.standard_error_naive)},
           {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
+          {"freedom", NumberJson(e.freedom)},
+          {"shares",
+           {{"data", NumberJson(e.shares.data)},
+            {"prior", NumberJson(e.shares.prior)},
+            {"settling", NumberJson(e.shares.settling)}}},
+          {"pull",
+           {{"prior", NumberJson(e.shares.prior_pull)},
+            {"settling", NumberJson(e.shares.settling_pull)}}},
           {"unit", e.unit},
           {"status", NameOf(e.status)}};
 }
@@ -35,13 +43,13 @@ Json MatrixJson(const Eigen::MatrixXd& matrix) {
 Json UncertaintyJson(const Uncertainty& u) {
   Json names = Json::array();
   for (const Estimate& e : u.estimates) names.push_back(e.name);
-  return {{"clustered_by", u.clustered ? "recording" : "none"},
+  return {{"clustered_by", u.clustered ? NameOf(u.clustered_by) : "none"},
+          {"two_way", u.two_way},
           {"clusters", u.num_clusters},
           {"residuals", u.num_residuals},
           {"full_hessian", u.full_hessian},
           {"sigma", NumberJson(u.sigma)},
           {"freedom", u.freedom},
-          {"t_quantile", NumberJson(u.t_quantile)},
           {"too_few_clusters", u.too_few_clusters},
           {"condition_number", NumberJson(u.condition_number)},
           {"fitted", names},

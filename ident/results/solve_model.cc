@@ -1,6 +1,7 @@
 // ident: a fit as folds need it.
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
+#include "ident/results/weighted_solve.h"
 #include "ident/solver/large_network_stage.h"
 
 namespace pushid {
@@ -14,8 +15,8 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
     if (!trained.ok()) return trained.error();
     options = trained.value();
   }
+  const Solution solution = SolveWeighted(recordings, &options);
   const FitProblem problem(recordings, options);
-  const Solution solution = Solve(problem);
   if (solution.best < 0) return Error{"no usable optimum was found"};
   const FitPoint& best = solution.Best().to;
   SolvedModel solved;

@@ -5,38 +5,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 namespace pushid {
 namespace {
-
-constexpr double kDetermined = 1e-9;  // share of a direction's information that is left
 
 bool IsMinimum(const Eigen::LDLT<Eigen::MatrixXd>& hessian) {
   return hessian.isPositive() && hessian.rcond() > 1e-12;
 }
 
-// In the coordinates of `back`'s columns (a base of the identified subspace), with their Hessian H:
-// H^-1/2 (1 - M)^-1/2 H^-1/2 s_g for each cluster, M = H^-1/2 J_g'J_g H^-1/2.
-Eigen::MatrixXd UnbiasedMoves(const JacobianBlocks& score, const Eigen::MatrixXd& back,
-                              const Eigen::MatrixXd& hessian) {
-  const Eigen::MatrixXd root =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).operatorInverseSqrt();
-  Eigen::MatrixXd moves(back.cols(), score.clusters.size());
-  for (size_t g = 0; g < score.clusters.size(); ++g) {
-    const std::vector<int> rows = score.RowsOf(score.clusters[g]);
-    const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all) * back * root;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(own.transpose() * own);
-    const Eigen::MatrixXd& v = leverage.eigenvectors();
-    const Eigen::ArrayXd rest = 1.0 - leverage.eigenvalues().array();
-    // A direction that is undetermined without the cluster keeps the cluster's full leverage.
-    const Eigen::ArrayXd kept = (rest > kDetermined).select(rest, 1.0);
-    const Eigen::VectorXd gradient = v.transpose() * (own.transpose() * score.residuals(rows));
-    moves.col(g) = root * v * (gradient.array() / kept.sqrt()).matrix();
-  }
-  return moves;
+// The difference of two-way clustering need not be positive: negative eigenvalues become zero.
+Eigen::MatrixXd WithoutNegative(const Eigen::MatrixXd& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  const Eigen::MatrixXd& v = eigen.eigenvectors();
+  return v * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * v.transpose();
 }
 
-// H^-1 s_g G / (G - 1) for each cluster.
+// H^-1 s_g G / (G - 1) for each recording.
 Eigen::MatrixXd LeftOutMoves(const JacobianBlocks& score, const Eigen::MatrixXd& inverse_hessian) {
   const double groups = static_cast<double>(score.clusters.size());
   Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
@@ -47,6 +33,89 @@ Eigen::MatrixXd LeftOutMoves(const JacobianBlocks& score, const Eigen::MatrixXd&
     moves.col(g) = groups / (groups - 1.0) * inverse_hessian * gradient;
   }
   return moves;
+}
+
+// The clusters of both ways together: pairs that occur.
+RowClusters Crossed(const RowClusters& first, const RowClusters& second) {
+  RowClusters both;
+  std::map<std::pair<int, int>, int> index;
+  for (size_t row = 0; row < first.of_row.size(); ++row) {
+    const int a = first.of_row[row], b = second.of_row[row];
+    both.of_row.push_back(
+        a < 0 ? -1 : index.emplace(std::pair(a, b), static_cast<int>(index.size())).first->second);
+  }
+  both.count = static_cast<int>(index.size());
+  return both;
+}
+
+// Variances va and vb with their degrees of freedom, added up (Satterthwaite).
+double Freedom(double va, double fa, double vb, double fb) {
+  const double sum = va * va / fa + vb * vb / fb;
+  return sum > 0.0 ? (va + vb) * (va + vb) / sum : fa;
+}
+
+// The rows of one of FitProblem's clusters, or those of all recordings.
+std::vector<int> RowsWhere(const JacobianBlocks& score, bool data, int cluster) {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+    const int c = score.cluster_of_row[row];
+    if (data ? c >= 0 : c == cluster) rows.push_back(row);
+  }
+  return rows;
+}
+
+Eigen::MatrixXd Information(const JacobianBlocks& score, const std::vector<int>& rows) {
+  const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all);
+  return own.transpose() * own;
+}
+
+Eigen::VectorXd Gradient(const JacobianBlocks& score, const std::vector<int>& rows) {
+  return score.jacobian(rows, Eigen::all).transpose() * score.residuals(rows);
+}
+
+void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Covariance* c) {
+  const auto rows = [&score](int cluster) { return RowsWhere(score, false, cluster); };
+  const std::vector<int> prior = rows(FitProblem::kPriorCluster);
+  const std::vector<int> settling = rows(FitProblem::kSettlingCluster);
+  c->by_data = score.robust_jacobian.size() > 0
+                   ? Eigen::MatrixXd(score.robust_jacobian.transpose() * score.robust_jacobian)
+                   : Information(score, RowsWhere(score, true, 0));
+  c->by_prior = Information(score, prior);
+  c->by_settling = Information(score, settling);
+  c->by_pooling = Information(score, rows(FitProblem::kPoolingCluster)) +
+                  Information(score, rows(FitProblem::kNetworkCluster));
+  const Eigen::MatrixXd sum =
+      back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
+  c->inverse_of_parts = back * sum.ldlt().solve(back.transpose());
+  c->prior_gradient = Gradient(score, prior);
+  c->settling_gradient = Gradient(score, settling);
+}
+
+void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
+                  const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian, Covariance* c) {
+  const ClusterScores first = GatherScores(score, clustering.first, back);
+  if (first.scores.cols() < 2) return;
+  const ClusteredCovariance one = Cr2(first, hessian, back);
+  Eigen::MatrixXd inner = one.covariance;
+  c->freedom = one.freedom;
+  if (clustering.second.count > 1) {
+    const ClusteredCovariance two =
+        Cr2(GatherScores(score, clustering.second, back), hessian, Eigen::MatrixXd(0, back.cols()));
+    const ClusterScores both =
+        GatherScores(score, Crossed(clustering.first, clustering.second), back);
+    const Eigen::MatrixXd moves = hessian.ldlt().solve(both.scores);
+    inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
+  }
+  c->clustered = back * inner * back.transpose();
+  if (clustering.pooled_units < 2) return;
+  const Eigen::MatrixXd scatter =
+      c->inverse_hessian *
+      Information(score, RowsWhere(score, false, FitProblem::kPoolingCluster)) * c->inverse_hessian;
+  for (Eigen::Index i = 0; i < c->freedom.size(); ++i) {
+    c->freedom[i] = Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i),
+                            clustering.pooled_units - 1.0);
+  }
+  c->clustered += scatter;
 }
 
 }  // namespace
@@ -74,7 +143,7 @@ Directions Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
 }
 
 Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
-                             double null_value) {
+                             const Clustering& clustering, double null_value) {
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   Covariance c;
   c.directions = Decompose(scaled, null_value);
@@ -83,8 +152,8 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
   for (int row = 0; row < score.residuals.size(); ++row) {
     if (score.cluster_of_row[row] >= 0) sum += score.residuals[row] * score.residuals[row];
   }
-  c.freedom = std::max(1, score.num_data_rows - rank);
-  c.sigma = std::sqrt(sum / c.freedom);
+  c.naive_freedom = std::max(1, score.num_data_rows - rank);
+  c.sigma = std::sqrt(sum / c.naive_freedom);
 
   // In the base of the identified directions, then back to the columns as they came.
   const Eigen::MatrixXd base = c.directions.v.leftCols(rank);
@@ -92,19 +161,20 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
   const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
   c.naive = c.sigma * c.sigma * back * squared.cwiseInverse().asDiagonal() * back.transpose();
 
-  Eigen::MatrixXd hessian = squared.asDiagonal();
+  SplitHessian(score, back, &c);
+  Eigen::MatrixXd hessian =
+      back.transpose() * (c.by_data + c.by_prior + c.by_settling + c.by_pooling) * back;
   if (score.curvature.size() > 0) {
-    const Eigen::MatrixXd full = hessian + back.transpose() * score.curvature * back;
+    const Eigen::MatrixXd full =
+        Eigen::MatrixXd(squared.asDiagonal()) + back.transpose() * score.curvature * back;
     c.full_hessian = IsMinimum(Eigen::LDLT<Eigen::MatrixXd>(full));
     if (c.full_hessian) hessian = full;
   }
   c.inverse_hessian = back * hessian.ldlt().solve(back.transpose());
+  AddClustered(score, clustering, back, hessian, &c);
   if (score.clusters.size() < 2) return c;
-  c.clusters = score.clusters;
+  c.recordings = score.clusters;
   c.moves = LeftOutMoves(score, c.inverse_hessian);
-  const Eigen::MatrixXd unbiased = back * UnbiasedMoves(score, back, hessian);
-  const Eigen::MatrixXd centred = unbiased.colwise() - unbiased.rowwise().mean().eval();
-  c.clustered = centred * centred.transpose();
   return c;
 }
 

@@ -34,6 +34,7 @@ class Profiler {
   double Value(const ProfileTarget& target, const FitPoint& point) const;
   Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
+  double Freedom(const ProfileTarget& target) const;
   ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const;
 
   const FitProblem& problem_;
@@ -81,6 +82,17 @@ double Profiler::MeanRatio() const {
   return count > 0 ? sum / count : covariance_.sigma * covariance_.sigma;
 }
 
+// Of a combination: that of the parameter in it which is known least.
+double Profiler::Freedom(const ProfileTarget& target) const {
+  const std::vector<Estimate>& estimates = uncertainty_.estimates;
+  if (target.index >= 0) return estimates[target.index].freedom;
+  double freedom = std::max(1, uncertainty_.freedom);
+  for (size_t i = 0; i < target.coefficients.size(); ++i) {
+    if (target.coefficients[i] != 0.0) freedom = std::min(freedom, estimates[i].freedom);
+  }
+  return freedom;
+}
+
 ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {
   const Eigen::VectorXd moved = covariance_.inverse_hessian * gradient;
   const double naive = gradient.dot(moved);
@@ -104,7 +116,7 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
     search.naive_error =
         0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
   }
-  const double t = uncertainty_.t_quantile;
+  const double t = StudentQuantile95(Freedom(target));
   search.threshold = 0.5 * t * t * (known ? clustered / naive : MeanRatio());
   if (target.index >= 0) {
     const ParameterSpec& spec =

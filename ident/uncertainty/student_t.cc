@@ -6,8 +6,7 @@
 
 namespace pushid {
 
-double StudentQuantile95(int degrees_of_freedom) {
-  const double v = degrees_of_freedom;
+double StudentQuantile95(double v) {
   // P(|T| > t) = I_{v / (v + t^2)}(v / 2, 1 / 2), falling in t.
   double low = 0.0, high = 1000.0;
   for (int i = 0; i < 100; ++i) {

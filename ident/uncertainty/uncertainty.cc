@@ -8,8 +8,9 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/null_directions.h"
+#include "ident/uncertainty/settling_pull.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
@@ -84,7 +85,10 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
                               const std::vector<Column>& columns) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-    if (score.cluster_of_row[row] != FitProblem::kPriorCluster) rows.push_back(row);
+    const int cluster = score.cluster_of_row[row];
+    const bool put_in =
+        cluster == FitProblem::kPriorCluster || cluster == FitProblem::kSettlingCluster;
+    if (!put_in) rows.push_back(row);
   }
   const Directions data = Decompose(scaled(rows, Eigen::all));
   const int size = static_cast<int>(columns.size());
@@ -103,21 +107,34 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
   return null_space;
 }
 
+// Limits of EstimateStatus.
+constexpr double kIdentifiedShare = 0.8, kHeldShare = 0.5;
+constexpr double kMostPull = 0.5;       // standard errors
+constexpr double kMostHalfWidth = 0.5;  // of the value
+
 EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
-  const double half_width = 0.5 * (e.upper95 - e.lower95);
-  const bool weak = !std::isfinite(half_width) || half_width > std::max(std::abs(e.value), c.scale);
-  return weak ? EstimateStatus::kWeak : EstimateStatus::kIdentified;
+  if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
+  const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
+  const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
+  const bool narrow = 0.5 * (e.upper95 - e.lower95) < kMostHalfWidth * std::abs(e.value);
+  const bool sign = c.transform == Transform::kIdentity && e.lower95 * e.upper95 > 0.0;
+  return leads && (narrow || sign) ? EstimateStatus::kIdentified : EstimateStatus::kWeak;
 }
 
-Estimate MakeEstimate(const Column& c, double variance, double naive_variance, double quantile,
-                      bool touched) {
+Estimate MakeEstimate(const Column& c, double variance, double naive_variance, double freedom,
+                      const Shares& shares, bool touched) {
+  const double quantile = StudentQuantile95(freedom);
   Estimate e;
+  e.freedom = freedom;
+  e.shares = shares;
   e.name = c.name;
   e.unit = c.unit;
   e.value = c.natural;
   const double slope = TransformSlope(c.transform, c.natural);
+  e.shares.prior_pull *= slope;
+  e.shares.settling_pull *= slope;
   double error = touched ? kInfinity : std::sqrt(std::max(0.0, variance));
   e.standard_error = slope * error;
   e.standard_error_naive = touched ? kInfinity : slope * std::sqrt(std::max(0.0, naive_variance));
@@ -149,17 +166,46 @@ Eigen::VectorXd Units(const std::vector<Column>& columns) {
   return unit;
 }
 
+// Shares of every column, pulls on the fitted scale. What ties units to each other or a network's
+// weights to zero counts as the data's: it is estimated from them, or chosen by them.
+std::vector<Shares> SharesOf(const Covariance& c, const Eigen::VectorXd& settling_pull) {
+  const Eigen::MatrixXd& inverse = c.inverse_of_parts;
+  const auto part = [&inverse](const Eigen::MatrixXd& of) {
+    return (inverse * of * inverse).diagonal().eval();
+  };
+  const Eigen::VectorXd prior = part(c.by_prior), settling = part(c.by_settling);
+  const Eigen::VectorXd prior_pull = -inverse * c.prior_gradient;
+  std::vector<Shares> shares(static_cast<size_t>(inverse.rows()));
+  for (size_t i = 0; i < shares.size(); ++i) {
+    const Eigen::Index k = static_cast<Eigen::Index>(i);
+    const double all = inverse(k, k);
+    if (all <= 0.0) continue;
+    Shares& s = shares[i];
+    s.prior = prior[k] / all;
+    s.settling = settling[k] / all;
+    s.data = 1.0 - s.prior - s.settling;
+    s.prior_pull = prior_pull[k];
+    s.settling_pull = settling_pull[k];
+  }
+  return shares;
+}
+
 // Residuals, Jacobian and, unless there are too many columns, second derivatives.
 struct Evaluated {
   JacobianBlocks score;
   std::vector<Column> columns;
   Eigen::VectorXd unit;
+  Clusters clusters;
+  Clustering clustering;
 };
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateJacobianBlocks(built), Columns(problem, point), {}};
+  Evaluated e{EvaluateJacobianBlocks(built), Columns(problem, point), {}, {}, {}};
+  CorrectRobustLoss(problem, &e.score);
   e.unit = Units(e.columns);
+  e.clusters = MakeClusters(problem.recordings(), problem.options().cluster);
+  e.clustering = ClusterRows(problem, e.clusters, e.score);
   if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
     AddCurvature(built, e.unit, &e.score);
   }
@@ -170,47 +216,61 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
 
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
   const Evaluated e = Evaluate(problem, point, true);
-  return ComputeCovariance(e.score, e.unit);
+  return ComputeCovariance(e.score, e.unit, e.clustering);
 }
 
 Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point) {
   const Evaluated e = Evaluate(problem, point, false);
-  const Covariance c = ComputeCovariance(e.score, e.unit);
+  const Covariance c = ComputeCovariance(e.score, e.unit, e.clustering);
   Uncertainty u;
   u.covariance = c.naive;
-  u.t_quantile = StudentQuantile95(c.freedom);
+  u.freedom = c.naive_freedom;
   const Eigen::MatrixXd scaled = e.score.jacobian * e.unit.asDiagonal();
   return {c.directions.Condition(),
           DescribeNullSpace(problem, point, DataNullSpace(e.score, scaled, e.columns), u)};
 }
 
+double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
+  Evaluated e = Evaluate(problem, point, false);
+  e.clustering = {ClusterByRecording(e.score), {}, 0};
+  const Covariance c = ComputeCovariance(e.score, e.unit, e.clustering);
+  if (c.clustered.size() == 0) return 0.0;
+  // tr(H^-1 V_s) = tr(V H), on the subspace that the rows determine.
+  const Eigen::MatrixXd all = c.by_data + c.by_prior + c.by_settling + c.by_pooling;
+  return (c.clustered * all).trace() / (c.inverse_of_parts * c.by_data).trace();
+}
+
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
-  const auto [score, columns, unit] = Evaluate(problem, point, true);
+  const Evaluated e = Evaluate(problem, point, true);
+  const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
-  const Covariance c = ComputeCovariance(score, unit);
+  const Covariance c = ComputeCovariance(score, unit, clustering);
 
   Uncertainty u;
   u.num_residuals = score.num_data_rows;
-  u.num_clusters = static_cast<int>(score.clusters.size());
-  u.clustered = u.num_clusters > 1;
+  u.num_clusters = clusters.count();
+  u.clustered_by = clusters.by;
+  u.two_way = clusters.two_way;
+  u.clustered = c.clustered.size() > 0;
   u.condition_number = c.directions.Condition();
   u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;
-  u.freedom = u.clustered ? u.num_clusters - 1 : c.freedom;
-  u.t_quantile = StudentQuantile95(u.freedom);
+  u.freedom = u.clustered ? u.num_clusters - 1 : c.naive_freedom;
   u.covariance = u.clustered ? c.clustered : c.naive;
   u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
   u.correlation = Correlation(u.too_few_clusters ? c.naive : u.covariance);
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
+  const SettlingPull settling = ComputeSettlingPull(problem, point, c);
+  u.settling = settling.demand;
+  const std::vector<Shares> shares = SharesOf(c, settling.moved);
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
-    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i), u.t_quantile,
+    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i),
+                                       u.clustered ? c.freedom[i] : c.naive_freedom, shares[i],
                                        touched && !columns[i].at_bound));
-    EstimateStatus& status = u.estimates.back().status;
-    if (u.too_few_clusters && status == EstimateStatus::kIdentified) status = EstimateStatus::kWeak;
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
   return u;
@@ -231,10 +291,18 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
           term.coefficient * TransformSlope(fitted[i].transform, values[term.parameter]);
     }
   }
+  // That of the term which is known least: a lower bound for the sum.
+  double freedom = uncertainty.freedom;
+  for (size_t i = 0; i < std::min(fitted.size(), uncertainty.estimates.size()); ++i) {
+    if (gradient[static_cast<Eigen::Index>(i)] == 0.0) continue;
+    freedom = std::min(freedom, uncertainty.estimates[i].freedom);
+  }
+  result.freedom = std::max(1.0, freedom);
+  const double quantile = StudentQuantile95(result.freedom);
   const double variance = gradient.dot(uncertainty.covariance * gradient);
   result.standard_error = std::sqrt(std::max(0.0, variance));
-  result.lower95 = result.value - uncertainty.t_quantile * result.standard_error;
-  result.upper95 = result.value + uncertainty.t_quantile * result.standard_error;
+  result.lower95 = result.value - quantile * result.standard_error;
+  result.upper95 = result.value + quantile * result.standard_error;
   if (terms.size() == 1) {
     // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
     // log.

@@ -1,15 +1,23 @@
-// ident: how sure: standard errors naive and clustered by recording, null directions, correlations.
+// ident: how sure, and whose word it is: standard errors naive and clustered, what data, priors and
+// settling contribute to each number, null directions, correlations.
 //
-// Covariances as covariance.h defines them, with Student's t of G - 1 degrees of freedom for G
-// recordings. Naive errors are up to 20 times too small here. A null direction of the scaled
-// Jacobian has no finite error: every parameter it touches is unidentifiable, but combinations
-// orthogonal to it are reported.
+// Covariances as covariance.h defines them, with Student's t of Satterthwaite's degrees of freedom,
+// parameter by parameter. Naive errors are up to 20 times too small here. A null direction of the
+// scaled Jacobian has no finite error: every parameter it touches is unidentifiable, but
+// combinations orthogonal to it are reported.
+//
+// With H = H_data + H_prior + H_settling the Hessian of the cost, H^-1 = H^-1 H H^-1 splits exactly
+// into what each of the three says: a parameter's shares are the three parts of its diagonal entry.
+// What the priors pull a parameter by is -H^-1 g of their gradient g, to first order. What the demand
+// to settle moves it by comes from a fit without that demand (settling_pull.h). All assume that the
+// data weigh as much as they know (data_weight.h).
 #pragma once
 
 #include <Eigen/Core>
 #include <string>
 #include <vector>
 
+#include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_point.h"
 #include "models/enum_names.h"
 #include "models/options.h"
@@ -20,14 +28,31 @@ namespace pushid {
 struct Covariance;
 class FitProblem;
 
-enum class EstimateStatus { kIdentified, kWeak, kUnidentifiable, kAtBound, kFixed };
-constexpr EnumNames<EstimateStatus, 5> Names(EstimateStatus) {
+enum class EstimateStatus {
+  // The data's share is above 80 %, priors and settling together pull it by less than half a
+  // standard error, and the interval's half-width is below half the value (where the parameter may take
+  // either sign: or the sign is certain).
+  kIdentified,
+  kWeak,            // neither this nor anything below
+  kPriorHeld,       // the data's share is below 50 %
+  kUnidentifiable,  // a null direction of the data touches it
+  kAtBound,
+  kFixed
+};
+constexpr EnumNames<EstimateStatus, 6> Names(EstimateStatus) {
   return {{{"identified", EstimateStatus::kIdentified},
            {"weak", EstimateStatus::kWeak},
+           {"prior-held", EstimateStatus::kPriorHeld},
            {"unidentifiable", EstimateStatus::kUnidentifiable},
            {"at bound", EstimateStatus::kAtBound},
            {"fixed", EstimateStatus::kFixed}}};
 }
+
+// Whose word a number is: fractions of its variance, and what it was moved by, natural unit.
+struct Shares {
+  double data = 1.0, prior = 0.0, settling = 0.0;
+  double prior_pull = 0.0, settling_pull = 0.0;
+};
 
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.
 struct Estimate {
@@ -37,6 +62,8 @@ struct Estimate {
   double standard_error = 0.0;        // clustered, natural unit; infinity when unidentifiable
   double standard_error_naive = 0.0;  // natural unit
   double lower95 = 0.0, upper95 = 0.0;
+  double freedom = 1.0;  // of Student's t behind the interval
+  Shares shares;
   EstimateStatus status = EstimateStatus::kIdentified;
 };
 
@@ -45,6 +72,7 @@ struct Combination {
   std::string name;  // "mu + Kp_x"
   std::string unit;
   double value = 0.0, standard_error = 0.0, lower95 = 0.0, upper95 = 0.0;
+  double freedom = 1.0;  // of Student's t behind the interval
 };
 
 struct NullDirection {
@@ -54,26 +82,37 @@ struct NullDirection {
   std::string sentence;
 };
 
+// What the demand to settle does to a fit.
+struct SettlingDemand {
+  bool binds = false;          // the fit without it does not settle in time
+  double free_seconds = 0.0;   // in which people settle without it; infinite: they do not
+};
+
 struct Uncertainty {
   int num_residuals = 0;  // of data
   int num_clusters = 0;
-  bool clustered = false;         // false with a single recording: naive errors lead
+  ClusterBy clustered_by = ClusterBy::kRecording;
+  bool two_way = false;           // by people and by recordings
+  bool clustered = false;         // false with a single cluster: naive errors lead
   double sigma = 0.0;             // residual standard deviation, in sigmas
-  int freedom = 1;                // degrees of freedom of Student's t
-  double t_quantile = 0.0;        // of the 95 % interval
+  int freedom = 1;                // of all numbers together: clusters less one
   double condition_number = 0.0;  // of the scaled Jacobian, without null directions
   // Fewer clusters than shared parameters and one: their clustered covariance has no full rank, so
-  // correlations are the naive ones, and nothing is called identified.
+  // correlations are the naive ones.
   bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
   Eigen::MatrixXd correlation;      // of that covariance
   std::vector<NullDirection> null_directions;
+  SettlingDemand settling;
 };
 
 // Fitted scale, in the order of FitPoint::Flat.
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
+
+// lambda of data_weight.h; 0 where it cannot be told.
+double CompositeInflation(const FitProblem& problem, const FitPoint& point);
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point);
 
@@ -102,6 +141,6 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
 
 // Two-sided 95 % quantile of Student's t.
-double StudentQuantile95(int degrees_of_freedom);
+double StudentQuantile95(double degrees_of_freedom);
 
 }  // namespace pushid

@@ -120,7 +120,6 @@ ReportSection IdentifiabilitySection(const FittedModel& model) {
 }
 
 ReportSection ProfileSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
   ReportSection section{"profiles", "Profile likelihood", {}, {}, {}, {}, {}, ""};
   if (model.profiles.empty()) return section;
   section.paragraphs = {

@@ -77,7 +77,7 @@ Score RunSet(const NistSet& set, const std::vector<double>& start) {
   const SolveStage stage = SolveBuilt(&built, SolverOptions(options, *built.problem), 0, &message);
 
   Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(b.data(), b.size()).cwiseAbs();
-  const Covariance covariance = ComputeCovariance(EvaluateJacobianBlocks(built), unit, 1e-13);
+  const Covariance covariance = ComputeCovariance(EvaluateJacobianBlocks(built), unit, {}, 1e-13);
   Score score;
   score.iterations = stage.iterations;
   for (size_t i = 0; i < b.size(); ++i) {

@@ -1,0 +1,79 @@
+// ident: robust scales of residuals, and the composite likelihood's adjustment.
+#include "ident/uncertainty/data_weight.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "ident/uncertainty/uncertainty.h"
+
+namespace pushid {
+namespace {
+
+// Kinds of residuals in a frame (frame_residual.h): first component, how many, and the median of
+// chi-squared with so many degrees of freedom.
+struct Kind {
+  int first, size;
+  double median;
+};
+constexpr Kind kKinds[] = {{0, 3, 2.3660}, {3, 2, 1.3863}, {5, 2, 1.3863}, {7, 2, 1.3863}};
+
+double Median(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// What the markers' noise makes of a residual of each kind: a velocity is the difference of two
+// positions, one frame apart, of the mean of two ankles; an angle is that of a rod.
+std::array<double, 4> Floors(const FitProblem& problem) {
+  const double noise = problem.options().marker_noise;
+  double dt = problem.recordings()[0].scene.dt;
+  for (const PendulumRecording& r : problem.recordings()) dt = std::max(dt, r.scene.dt);
+  return {noise, noise / dt, noise / kReferenceRod, noise / dt / kReferenceRod};
+}
+
+}  // namespace
+
+ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) {
+  ResidualSigmas sigmas = problem.options().sigmas;
+  const std::array<double, 4> floors = Floors(problem);
+  double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
+  std::array<std::vector<double>, 4> squares;
+  for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
+    if (problem.Count(i) == 0) continue;
+    const std::vector<double> residuals = problem.RawResiduals(point, i);
+    for (size_t row = 0; row < residuals.size(); row += kFrameResiduals) {
+      const Eigen::Map<const FrameVector<double>> r(residuals.data() + row);
+      if (r.isZero(0.0)) continue;  // nothing was measured
+      for (size_t k = 0; k < squares.size(); ++k) {
+        squares[k].push_back(r.segment(kKinds[k].first, kKinds[k].size).squaredNorm());
+      }
+    }
+  }
+  for (size_t k = 0; k < squares.size(); ++k) {
+    if (squares[k].empty()) continue;
+    *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median);
+    *scales[k] = std::max(*scales[k], floors[k]);
+  }
+  return sigmas;
+}
+
+double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point) {
+  int frames = 0, counted = 0;
+  double now = 0.0;
+  for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
+    if (problem.Count(i) == 0) continue;
+    const int own = std::max(1, problem.recordings()[i].num_frames() - 1);
+    frames += own;
+    now += own * problem.Weight(i, 0) * problem.Weight(i, 0);
+    ++counted;
+  }
+  const double one_each = static_cast<double>(counted) / frames;
+  if (counted < 2) return one_each;
+  const double lambda = CompositeInflation(problem, point);
+  return lambda > 0.0 ? now / frames / lambda : one_each;
+}
+
+}  // namespace pushid
