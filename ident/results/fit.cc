@@ -14,6 +14,7 @@ namespace pushid {
 namespace {
 
 constexpr int kFewClusters = 10;
+constexpr double kPullToTell = 0.5;  // standard errors
 
 std::string Describe(const RolloutStatus& status) {
   return std::string(status.quantity) + " of person " + std::to_string(status.person) +
@@ -151,6 +152,32 @@ void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings)
   }
 }
 
+// What the demand to settle did, if anything.
+void AddSettlingWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
+  const SettlingDemand& s = u.settling;
+  if (!s.binds) return;
+  const std::string wanted = std::isfinite(s.free_seconds)
+                                 ? "want to settle in " + Rounded(s.free_seconds, 2) + " s"
+                                 : "want not to settle within 10 s";
+  if (s.contradicted) {
+    warnings->push_back("the data " + wanted + ": they contradict the demand to settle within " +
+                        Rounded(kWaitSeconds, 2) + " s (twice the log likelihood would fall by " +
+                        Rounded(s.rise, 2) + "), and it was dropped");
+    return;
+  }
+  std::string moved;
+  for (const Estimate& e : u.estimates) {
+    const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
+    if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
+    moved += (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") +
+             Rounded(pull, 2);
+  }
+  warnings->push_back("the data " + wanted + "; the demand to settle within " +
+                      Rounded(kWaitSeconds, 2) + " s moved " +
+                      (moved.empty() ? "no parameter by half a standard error"
+                                     : moved + " standard errors"));
+}
+
 std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
   std::vector<std::string> warnings;
   for (const FittedRecording& recording : result.recordings) {
@@ -168,6 +195,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
                        SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   AddClusterWarning(result.uncertainty, &warnings);
+  AddSettlingWarning(result.uncertainty, &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
@@ -204,7 +232,8 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.message = trained.error().ToString();
     return result;
   }
-  const Solution solution = SolveWeighted(recordings, &result.options, progress);
+  const WeightedSolution solved = SolveWeighted(recordings, &result.options, progress);
+  const Solution& solution = solved.solution;
   const FitProblem problem(recordings, result.options);
   result.starts = solution.starts;
   result.best_start = solution.best;
@@ -223,7 +252,9 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
-  result.uncertainty = ComputeUncertainty(problem, best.to);
+  result.uncertainty =
+      ComputeUncertainty(problem, best.to, solved.free ? &*solved.free : nullptr);
+  result.uncertainty.settling = solved.settling;
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
                          result.uncertainty.estimates.end());

@@ -99,6 +99,11 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
   u.correlation = MatrixFrom(json.at("correlation"));
   u.null_directions = NullDirectionsFrom(json.at("null_directions"));
+  if (json.contains("settling")) {
+    const Json& s = json.at("settling");
+    u.settling = {s.at("binds"), s.at("contradicted"), NumberFrom(s.at("rise")),
+                  NumberFrom(s.at("free_seconds"))};
+  }
   return u;
 }
 

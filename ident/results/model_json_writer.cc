@@ -55,7 +55,12 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"fitted", names},
           {"covariance_fitted_scale", MatrixJson(u.covariance)},
           {"correlation", MatrixJson(u.correlation)},
-          {"null_directions", NullDirectionsJson(u.null_directions)}};
+          {"null_directions", NullDirectionsJson(u.null_directions)},
+          {"settling",
+           {{"binds", u.settling.binds},
+            {"contradicted", u.settling.contradicted},
+            {"rise", NumberJson(u.settling.rise)},
+            {"free_seconds", NumberJson(u.settling.free_seconds)}}}};
 }
 
 // A network's weights stand once, in the network.

@@ -15,7 +15,7 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
     if (!trained.ok()) return trained.error();
     options = trained.value();
   }
-  const Solution solution = SolveWeighted(recordings, &options);
+  const Solution solution = SolveWeighted(recordings, &options).solution;
   const FitProblem problem(recordings, options);
   if (solution.best < 0) return Error{"no usable optimum was found"};
   const FitPoint& best = solution.Best().to;

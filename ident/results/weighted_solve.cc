@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
+#include "ident/problem/behaviour.h"
 #include "ident/uncertainty/data_weight.h"
 
 namespace pushid {
@@ -12,7 +14,9 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 12;
-constexpr double kRough = 1e-5;  // function tolerance between rounds
+constexpr double kRough = 1e-5;         // function tolerance between rounds
+constexpr double kContradicted = 3.84;  // of twice the log likelihood
+constexpr size_t kMostColumnsToTest = 60;
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
@@ -52,11 +56,8 @@ void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions&
   start->message = std::move(again.message);
 }
 
-}  // namespace
-
-Solution SolveWeighted(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+Solution SolveAndWeigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                        const SolveProgress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
   Solution solution = Solve(FitProblem(recordings, *options), progress);
   bool changed = false;
   for (int round = 0; solution.best >= 0 && round < kMostRounds; ++round) {
@@ -70,9 +71,66 @@ Solution SolveWeighted(const std::vector<PendulumRecording>& recordings, FitOpti
     changed = true;
   }
   if (changed) SolveOn(recordings, *options, &solution.starts[solution.best]);
-  solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solution;
+}
+
+// Half of what the demand to settle adds to the cost at a point.
+double SettlingCost(const FitProblem& problem, const FitPoint& point) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  double sum = 0.0;
+  for (const auto& [id, cluster] : built.blocks) {
+    if (cluster != FitProblem::kSettlingCluster) continue;
+    double cost = 0.0;
+    built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
+    sum += cost;
+  }
+  return built.rests_left_out > 0 ? std::numeric_limits<double>::infinity() : sum;
+}
+
+// Step 2 of the header.
+void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
+                FitOptions* options, WeightedSolution* solved) {
+  SolveStart& best = solved->solution.starts[solved->solution.best];
+  FitOptions demanding = *options;
+  demanding.settling_weight = weight;
+  const FitProblem with(recordings, demanding), without(recordings, *options);
+  const double before = SettlingCost(without, best.to);
+  if (SettlingCost(with, best.to) <= before) {
+    *options = demanding;  // met already
+    return;
+  }
+  SolveStart held = best;
+  SolveOn(recordings, demanding, &held);
+  // What the rest of the cost rises by. Demands that stay (on the modes) are in both.
+  const double rise = held.cost - SettlingCost(with, held.to) + SettlingCost(without, held.to) -
+                      best.cost;
+  solved->settling.binds = true;
+  solved->settling.rise = 2.0 * rise;
+  solved->settling.free_seconds =
+      SettlingSeconds(without.ModelAt(best.to), without.Parameters(best.to, ""));
+  solved->settling.contradicted = !held.converged || 2.0 * rise > kContradicted;
+  if (solved->settling.contradicted) return;
+  solved->free = best.to;
+  best = held;
+  *options = demanding;
+}
+
+}  // namespace
+
+WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
+                               FitOptions* options, const SolveProgress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const double weight = options->settling_weight;
+  const FitProblem problem(recordings, *options);
+  const bool test = weight > 0.0 && problem.NominalPoint().Flat().size() <= kMostColumnsToTest;
+  if (test) options->settling_weight = 0.0;
+  WeightedSolution solved;
+  solved.solution = SolveAndWeigh(recordings, options, progress);
+  if (test && solved.solution.best >= 0) TestDemand(recordings, weight, options, &solved);
+  solved.solution.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solved;
 }
 
 }  // namespace pushid

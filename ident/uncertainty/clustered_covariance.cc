@@ -41,10 +41,13 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
   gathered.scores.resize(base.cols(), 0);
   for (const std::vector<int>& of_cluster : rows) {
     if (of_cluster.empty()) continue;
-    const Eigen::MatrixXd own = score.jacobian(of_cluster, Eigen::all) * base;
+    const bool robust = score.robust_jacobian.size() > 0;
+    const Eigen::MatrixXd own =
+        (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all) * base;
     gathered.information.push_back(own.transpose() * own);
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
-    gathered.scores.rightCols(1) = own.transpose() * score.residuals(of_cluster);
+    gathered.scores.rightCols(1) = base.transpose() * (score.jacobian(of_cluster, Eigen::all).transpose() *
+                                   score.residuals(of_cluster));
   }
   return gathered;
 }

@@ -10,7 +10,6 @@
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/null_directions.h"
-#include "ident/uncertainty/settling_pull.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
@@ -190,6 +189,19 @@ std::vector<Shares> SharesOf(const Covariance& c, const Eigen::VectorXd& settlin
   return shares;
 }
 
+// What the demand to settle moved each column by, fitted scale.
+Eigen::VectorXd MovedBySettling(const Covariance& c, const FitPoint& point, const FitPoint* free) {
+  if (free == nullptr) {
+    if (c.settling_gradient.isZero(0.0)) return c.settling_gradient;
+    const Eigen::MatrixXd without = c.by_data + c.by_prior + c.by_pooling;
+    return -without.completeOrthogonalDecomposition().solve(c.settling_gradient);
+  }
+  const std::vector<double> to = point.Flat(), from = free->Flat();
+  Eigen::VectorXd moved(static_cast<Eigen::Index>(to.size()));
+  for (size_t i = 0; i < to.size(); ++i) moved[static_cast<Eigen::Index>(i)] = to[i] - from[i];
+  return moved;
+}
+
 // Residuals, Jacobian and, unless there are too many columns, second derivatives.
 struct Evaluated {
   JacobianBlocks score;
@@ -240,7 +252,8 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   return (c.clustered * all).trace() / (c.inverse_of_parts * c.by_data).trace();
 }
 
-Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point) {
+Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
+                               const FitPoint* free) {
   const Evaluated e = Evaluate(problem, point, true);
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
@@ -262,9 +275,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point)
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
-  const SettlingPull settling = ComputeSettlingPull(problem, point, c);
-  u.settling = settling.demand;
-  const std::vector<Shares> shares = SharesOf(c, settling.moved);
+  const std::vector<Shares> shares = SharesOf(c, MovedBySettling(c, point, free));
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;

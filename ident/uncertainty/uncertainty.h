@@ -8,9 +8,9 @@
 //
 // With H = H_data + H_prior + H_settling the Hessian of the cost, H^-1 = H^-1 H H^-1 splits exactly
 // into what each of the three says: a parameter's shares are the three parts of its diagonal entry.
-// What the priors pull a parameter by is -H^-1 g of their gradient g, to first order. What the demand
-// to settle moves it by comes from a fit without that demand (settling_pull.h). All assume that the
-// data weigh as much as they know (data_weight.h).
+// What the priors pull a parameter by is -H^-1 g of their gradient g, to first order. A demand that
+// binds holds a fit on its edge, where its gradient says little: what it moved is the difference to
+// the optimum without it. All assume that the data weigh as much as they know (data_weight.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -84,8 +84,10 @@ struct NullDirection {
 
 // What the demand to settle does to a fit.
 struct SettlingDemand {
-  bool binds = false;          // the fit without it does not settle in time
-  double free_seconds = 0.0;   // in which people settle without it; infinite: they do not
+  bool binds = false;         // the fit without it does not settle in time
+  bool contradicted = false;  // by the data: dropped
+  double rise = 0.0;          // of twice the negative log likelihood, by it
+  double free_seconds = 0.0;  // in which people settle without it; infinite: they do not
 };
 
 struct Uncertainty {
@@ -114,7 +116,10 @@ Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
 // lambda of data_weight.h; 0 where it cannot be told.
 double CompositeInflation(const FitProblem& problem, const FitPoint& point);
 
-Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point);
+// free: the optimum without the demand to settle, where that binds; null: one Newton step away,
+// (H - H_settling)^-1 g.
+Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
+                               const FitPoint* free = nullptr);
 
 // What the recordings alone leave undetermined at a point, and how badly conditioned the rest is;
 // cheaper than all of Uncertainty.

@@ -24,8 +24,11 @@
 #include "ident/results/fit_setup.h"
 
 DEFINE_int32(studies, 200, "synthetic studies");
+DEFINE_int32(only, -1, "the one study to run");
 DEFINE_uint64(seed, 1, "of the first study; the others follow");
 DEFINE_double(people_spread, 0.1, "of the gains between people, on a log scale");
+DEFINE_bool(noise_at_first_frame, true, "whether frame 0, which sets rod and posture, is noisy too");
+DEFINE_double(noise, -1.0, "of hip and ankles, m; negative: 1 to 5 mm");
 DEFINE_string(options, "", "of the fits, as in '--cluster=recording'; empty: the defaults");
 DEFINE_bool(details, false, "a line for every estimate, on stderr");
 DEFINE_int32(num_threads, 2, "threads");
@@ -44,6 +47,7 @@ SyntheticOptions Draw(uint64_t seed) {
   Random random(seed);
   const FitOptions preset = MakePreset("tail").value();
   SyntheticOptions study;
+  study.model = preset.model;
   for (const ParameterSpec& spec : preset.table.specs) {
     study.parameters[spec.id] = spec.nominal;
     if (!spec.free) continue;
@@ -57,6 +61,8 @@ SyntheticOptions Draw(uint64_t seed) {
   study.fps = random.Uniform(0.0, 1.0) < 0.5 ? 60.0 : 120.0;
   study.frames = static_cast<int>(1.2 * study.fps);
   study.joint_noise_m = random.Uniform(0.001, 0.005);
+  study.noise_at_first_frame = FLAGS_noise_at_first_frame;
+  if (FLAGS_noise >= 0.0) study.joint_noise_m = FLAGS_noise;
   study.subject_spread = FLAGS_people_spread;
   study.seed = seed;
   return study;
@@ -103,6 +109,12 @@ void Judge(int index, std::mutex* mutex, Study* all) {
     }
     ++all->fitted;
     all->seconds += result.solve_seconds;
+    if (FLAGS_details) {
+      std::fprintf(stderr, "%d sigmas %.4g m, %.4g m/s, %.4g rad, %.4g rad/s; %.3g frames a frame; settles %d\n", index,
+                   result.options.sigmas.hip, result.options.sigmas.velocity,
+                   result.options.sigmas.angle, result.options.sigmas.rate,
+                   result.options.effective_weight, result.behaviour.settles);
+    }
     for (const Estimate& e : result.estimates) {
       if (e.status == EstimateStatus::kFixed) continue;
       const Parameter id = result.options.table.Find(e.name)->id;
@@ -140,7 +152,10 @@ int Run() {
   Study all;
   std::mutex mutex;
   ParallelFor(
-      FLAGS_studies, FLAGS_num_threads, [&](int i) { Judge(i, &mutex, &all); },
+      FLAGS_studies, FLAGS_num_threads,
+      [&](int i) {
+        if (FLAGS_only < 0 || FLAGS_only == i) Judge(i, &mutex, &all);
+      },
       [](int done, int total) {
         if (done % 20 == 0) std::fprintf(stderr, "study %d of %d\n", done, total);
       });
