@@ -143,21 +143,20 @@ ModelOptions SyntheticOptions::TailModel() {
 }
 
 ParameterSet<double> PublishedTailParameters() {
-  // They are known per mass, per m g l and per m l^2 of the point mass.
+  // What is held is known per mass, per m g l and per m l^2 of the point mass.
   const double point_mass = (1.0 - kCartShare) * kReferenceMass;
   const double stiffness = point_mass * kGravity * kReferenceRod;     // N m/rad
   const double damping = point_mass * kReferenceRod * kReferenceRod;  // N m s/rad
   ParameterSet<double> p{};
-  p[kMu] = 0.34 * kReferenceMass;
+  p[kMu] = 30.0;
   p[kMuY] = 1.2 * kReferenceMass;
-  p[kKpTheta] = 2.19 * stiffness;
+  p[kKpTheta] = 1800.0;
   p[kKpPhi] = 2.1 * stiffness;
   p[kKdTheta] = p[kKdPhi] = 1.0 * damping;
-  p[kAx] = -9.2;
-  p[kTailGain] = 1.15;
-  p[kTailTorque] = 0.33;
-  p[kTailTime] = 11.5 / 60.0;
-  p[kTailExponent] = 1.55;
+  p[kAx] = -10.0;
+  p[kTailGain] = 1.0;
+  p[kTailTorque] = 0.4;
+  p[kTailTime] = 0.25;
   return p;
 }
 

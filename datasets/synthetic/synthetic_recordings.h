@@ -32,7 +32,7 @@ struct PushStrength {
   double acceleration;  // m/s^2
 };
 
-// The settled seven-parameter model for the person of 85 kg and 0.95 m: the values identified from
+// The settled tail model for the person of 85 kg and 0.95 m: round values near those identified from
 // the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
 

@@ -59,7 +59,7 @@ ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
 Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
   const ModelOptions model = ModelAt(point);
   Behaviour all = ComputeBehaviour(model, Parameters(point, ""));
-  if (map_.pool_by != PoolBy::kSetting) return all;
+  if (!HoldsForRecording(map_.pool_by)) return all;
   for (const auto& [unit, deviations] : point.unit) {
     all.Add(ComputeBehaviour(model, Parameters(point, unit)), unit);
   }

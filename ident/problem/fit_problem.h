@@ -44,7 +44,7 @@ class FitProblem {
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
 
-  // What people do after a push at a point; where settings differ, in each setting.
+  // What people do after a push at a point; where settings or conditions differ, in each.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
   // Half the squared residuals of the recordings alone, as they count; infinite where a rollout

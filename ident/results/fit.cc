@@ -7,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/solver/pooled_solve.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
@@ -93,7 +94,7 @@ void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* resul
     }
   }
   const auto pooled = PooledByUnit(problem, point, result->uncertainty);
-  if (problem.options().pool_by == PoolBy::kSetting) {
+  if (HoldsForRecording(problem.options().pool_by)) {
     result->settings = pooled;
   } else {
     for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
@@ -190,8 +191,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.message = trained.error().ToString();
     return result;
   }
-  const FitProblem problem(recordings, options);
-  const Solution solution = Solve(problem, progress);
+  FitOptions fitted = options;  // with the spread of units, where that is estimated
+  const FitProblem problem(recordings, fitted);
+  const Solution solution = SolvePooled(problem, &fitted.table, progress);
+  result.options.table = fitted.table;
   result.starts = solution.starts;
   result.best_start = solution.best;
   result.solve_seconds = solution.seconds;
@@ -215,6 +218,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
                          result.uncertainty.estimates.end());
   result.derived = Derived(problem, best.to, result.uncertainty);
   AddUnits(problem, best.to, &result);
+  result.push_range = FittedPushRange(ModelOf(result), recordings);
   result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);

@@ -2,6 +2,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/solver/pooled_solve.h"
 
 namespace pushid {
 
@@ -15,7 +16,7 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
     options = trained.value();
   }
   const FitProblem problem(recordings, options);
-  const Solution solution = Solve(problem);
+  const Solution solution = SolvePooled(problem, &options.table);
   if (solution.best < 0) return Error{"no usable optimum was found"};
   const FitPoint& best = solution.Best().to;
   SolvedModel solved;

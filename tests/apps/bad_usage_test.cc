@@ -66,7 +66,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--mode_margin=inf"}, {"--mode_margin"}},
       {{"--mode_weight=-1"}, {"--mode_weight"}},
       {{"--settling_weight=-2"}, {"--settling_weight"}},
-      {{"--pool_by=subject"}, {"--pool_by", "--pool"}},
+      {{"--preset=ldp", "--pool_by=subject"}, {"--pool_by", "--pool"}},
       {{"--preset=group", "--pool=none", "--pooling_sigma=0.3"}, {"--pooling_sigma", "--pool"}},
       {{"--interaction=contact,contact"}, {"--interaction", "'contact' twice"}},
       {{"--interaction=contact,spring"}, {"--interaction", "'spring' twice"}},
@@ -78,7 +78,8 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--interaction=network"}, {"--interaction_network"}},
       {{"--interaction_network=n.json"}, {"--interaction", "network"}},
       {{"--self_from=" + Path("none.json")}, {"none.json"}},
-      {{"--interaction=contact", "--pool=contact_distance"}, {"contact_distance", "--pool_by"}},
+      {{"--interaction=contact", "--pool=contact_distance", "--pool_by=subject"},
+       {"contact_distance", "--pool_by"}},
       {{"--seed=abc"}, {"seed", "abc"}},
   };
   const int files = CountFiles();

@@ -48,9 +48,13 @@ inline std::vector<PendulumRecording> MakePendulums(const SyntheticOptions& opti
   return AsPendulums(Recordings(made.value()));
 }
 
-// The tail preset as a user gets it, its fixed parameters at the truth of `study`.
+// The tail preset as a user gets it, its fixed parameters at the truth of `study`, whose recordings
+// share one condition.
 inline FitOptions DefaultFit(const SyntheticOptions& study) {
   FitOptions options = MakePreset("tail").value();
+  options.pool = "none";
+  options.pool_by = PoolBy::kSubject;
+  (void)PoolParameters(&options);
   options.model = study.model;
   for (ParameterSpec& spec : options.table.specs) {
     if (!spec.free) spec.nominal = study.parameters[spec.id];
