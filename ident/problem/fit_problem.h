@@ -93,6 +93,9 @@ class FitProblem {
   void AddPriors(FitPoint* point, Built* built) const;
   void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;
+  // Whose settling is simulated: that of the shared parameters (""), and of each setting or
+  // condition where these differ in what acts then.
+  std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;

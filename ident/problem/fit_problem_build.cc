@@ -109,12 +109,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     }
     built->AddRollout(std::move(residual), blocks, kPriorCluster);
   };
-  // Where settings or conditions differ, people must settle in each of them.
-  std::vector<std::string> units = {""};
-  if (map_.num_deviations > 0 && HoldsForRecording(map_.pool_by)) {
-    for (const auto& [unit, values] : point->unit) units.push_back(unit);
-  }
-  for (const std::string& unit : units) {
+  for (const std::string& unit : SettlingUnits(*point)) {
     std::vector<double*> blocks = {point->shared.data()};
     if (!unit.empty()) blocks.push_back(point->unit[unit].data());
     std::vector<double*> rollout_blocks = blocks;

@@ -18,7 +18,7 @@ struct Case {
 };
 
 TEST_F(BadUsageTest, FitFlags) {
-  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent";
+  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time";
   const std::vector<Case> cases = {
       {{"--fix=mew"}, {"--fix", "'mew'", "no parameter", "Kp_theta"}},
       {{"--free=mew"}, {"--free", "'mew'"}},
@@ -283,7 +283,7 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
       {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
       {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
-      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"},
+      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"},
        {"--compare", "'held'", "nothing is left"}},
   };
   for (const Case& one : cases) {

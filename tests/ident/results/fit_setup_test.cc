@@ -126,7 +126,7 @@ TEST(FitSetup, BadOptionsAreNamed) {
 TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
   for (const GivenOptions& given :
        {GivenOptions{{"pool", "contact_stiffness"}},
-        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"}}}) {
+        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
     EXPECT_EQ(Complaint(given), "") << given[0].first;
     EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
   }
