@@ -51,8 +51,10 @@ int Run() {
   const Result<std::optional<BodyEvaluation>> bodies =
       Bodies(flags, model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
-  const Evaluation evaluation =
-      Evaluate(model.value(), MakePendulumRecordings(recordings.value(), model.value().mapping));
+  const std::vector<PendulumRecording> pendulums =
+      MakePendulumRecordings(recordings.value(), model.value().mapping);
+  for (const std::string& warning : ExtrapolationWarnings(model.value(), pendulums)) Warn(warning);
+  const Evaluation evaluation = Evaluate(model.value(), pendulums);
   std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
   if (bodies.value()) {

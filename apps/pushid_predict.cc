@@ -25,6 +25,9 @@ int Run() {
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.value().mapping);
 
+  for (const std::string& warning : ExtrapolationWarnings(model.value(), {recording})) {
+    Warn(warning);
+  }
   const Prediction prediction = Predict(model.value(), recording, flags.frames);
   if (!prediction.status.ok) {
     std::fprintf(stderr,

@@ -59,6 +59,11 @@ int Run() {
   options.parameters = truth.value().parameters;
   const Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
   if (!made.ok()) return Fail(made.error());
+  for (const std::string& warning : ExtrapolationWarnings(
+           truth.value(),
+           MakePendulumRecordings(Recordings(made.value()), truth.value().mapping))) {
+    Warn(warning);
+  }
   if (MaybeError error = WriteSyntheticRecordings(out, options, made.value())) return Fail(*error);
   PrintTruth(truth.value(), options);
   std::printf(

@@ -116,16 +116,16 @@ int LeftDomain(const RolloutStatus& status, double dt) {
   return kFitFailed;
 }
 
-// Takes the parameters of the named setting for every person.
+// Takes the parameters of the named setting, or condition, for every person.
 MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (setting.empty()) return std::nullopt;
   const auto found = model->by_unit.find(setting);
-  if (model->pool_by == PoolBy::kSetting && found != model->by_unit.end()) {
+  if (HoldsForRecording(model->pool_by) && found != model->by_unit.end()) {
     model->parameters = found->second;
     return std::nullopt;
   }
   std::string known;
-  if (model->pool_by == PoolBy::kSetting) {
+  if (HoldsForRecording(model->pool_by)) {
     for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
   }
   return Error{"--as_setting names '" + setting + "'; " + model->source + " knows " +
@@ -159,6 +159,9 @@ int SimulateFormation() {
          "pushid-fit --setting=groups --interaction=contact");
   }
   const FormationRun run = RunFormation(model.value(), scene, flags.value().frames);
+  for (const std::string& warning : ExtrapolationWarnings(model.value(), {run.recording})) {
+    Warn(warning);
+  }
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
   MaybeError error = WriteOutputs(outputs.value(), run, title);
   if (!error && bodies.value()) {

@@ -108,7 +108,7 @@
     m.push_tail == PushTail::kExponential, false, \
     "tail's decay time after a push of 0.1 s", \
     "where the pushes cover only their first part") \
-  X(kTailExponent, "tail_exponent", "e", "1", 1, -5, 5, 1, kIdentity, \
+  X(kTailExponent, "tail_exponent", "e", "1", 0, -5, 5, 1, kIdentity, \
     m.push_tail == PushTail::kExponential, false, \
     "growth of that time with the push's duration", \
     "with pushes of different duration") \

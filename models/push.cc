@@ -3,6 +3,15 @@
 
 namespace pushid {
 
+double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt) {
+  const double duration = static_cast<double>(push.force.size()) * dt;
+  const double force = push.mean.head<2>().norm();
+  if (push.kind == PushKind::kExternal || push.force.empty()) return force * duration;
+  // The sum of TailForce over all frames to come, a geometric series.
+  const double tail = p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, duration));
+  return force * (duration + tail);
+}
+
 void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
                      Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
   if (push.kind == PushKind::kExternal || push.force.empty() || frame < push.EndFrame()) return;
@@ -12,7 +21,7 @@ void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int f
   const double decay = std::exp(-elapsed / tau);
   // d decay / d tau = decay elapsed / tau^2; tau is proportional to tail_time.
   const double by_time = decay * elapsed / (tau * p[kTailTime]);
-  const double by_exponent = decay * elapsed / tau * std::log(duration / kTailReferenceDuration);
+  const double by_exponent = decay * elapsed / tau * LogTailDuration(duration);
   for (int row = 0; row < 4; ++row) {
     const Parameter amplitude = row < 2 ? kTailGain : kTailTorque;
     (*by_parameter)(row, amplitude) += decay * push.mean[row];

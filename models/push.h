@@ -1,11 +1,14 @@
 // models: pushes as generalized forces [N, N, N m, N m] on one person, frame by frame.
 //
 // A `net` push covers only the first part of the real one. Its tail goes on after the last row as
-//   F(k) = [g Fx, g Fy, r Ftheta, r Fphi] exp(-k dt / tau),  tau = t (n dt / 0.1 s)^e,
+//   F(k) = [g Fx, g Fy, r Ftheta, r Fphi] exp(-k dt / tau),  tau = t (d / 0.1 s)^e,
 // with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
-// t = tail_time, e = tail_exponent. An external push has no tail.
+// t = tail_time, e = tail_exponent, d = n dt, at most 0.25 s: longer pushes were never there to
+// learn the exponent from, and a tail that kept growing with them would send people away. An
+// external push has no tail.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,7 +25,7 @@ enum class PushKind {
   kExternal,            // a measured force, added to everything else
 };
 
-inline constexpr double kTailReferenceDuration = 0.1;  // s
+inline constexpr double kTailReferenceDuration = 0.1, kLongestTailDuration = 0.25;  // s
 
 // One push in a scene; row i drives the step from frame start_frame + i to the next.
 struct ScenePush {
@@ -44,11 +47,16 @@ inline ScenePush MakeScenePush(int person, int start_frame, PushKind kind,
   return push;
 }
 
+// log(d / 0.1 s) for a push of so many seconds.
+inline double LogTailDuration(double push_duration) {
+  return std::log(std::min(push_duration, kLongestTailDuration) / kTailReferenceDuration);
+}
+
 // The tail's decay time in seconds.
 template <typename T>
 T TailDecayTime(const ParameterSet<T>& p, double push_duration) {
   using std::exp;
-  return p[kTailTime] * exp(p[kTailExponent] * std::log(push_duration / kTailReferenceDuration));
+  return p[kTailTime] * exp(p[kTailExponent] * LogTailDuration(push_duration));
 }
 
 // The tail's force at `frame`; zero before the push ends and for an external push.
@@ -63,6 +71,9 @@ Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame,
   const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
   return {gain * push.mean[0], gain * push.mean[1], torque * push.mean[2], torque * push.mean[3]};
 }
+
+// The horizontal impulse of a push with its tail, N s.
+double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt);
 
 // Adds the derivatives of TailForce to a 4 x kNumParameters matrix; written out: 2.5 times as fast
 // as Jets (tests/benchmarks, Jacobian_OfTail).

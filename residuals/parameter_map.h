@@ -2,7 +2,7 @@
 //
 // Parameter blocks of one recording, in this order:
 //   0        shared values on the fitted scale, one entry per fitted parameter
-//   1 .. S   deviations of each distinct unit - subject or setting - one entry per pooled parameter
+//   1 .. S   deviations of each distinct unit - subject, setting or condition - one entry per pooled parameter
 //            (absent when none)
 //   next     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
 //   last     weights of what is learned, self force and rod (only when there is any)
@@ -20,10 +20,18 @@
 namespace pushid {
 
 // What pooled parameters may differ by: the unit that a deviation belongs to.
-enum class PoolBy { kSubject, kSetting };
-constexpr EnumNames<PoolBy, 2> Names(PoolBy) {
-  return {{{"subject", PoolBy::kSubject}, {"setting", PoolBy::kSetting}}};
+enum class PoolBy {
+  kSubject,
+  kSetting,
+  kCondition  // of the protocol; the setting of a recording that names no condition
+};
+constexpr EnumNames<PoolBy, 3> Names(PoolBy) {
+  return {{{"subject", PoolBy::kSubject},
+           {"setting", PoolBy::kSetting},
+           {"condition", PoolBy::kCondition}}};
 }
+// Whether all people in a recording belong to one unit.
+constexpr bool HoldsForRecording(PoolBy pool_by) { return pool_by != PoolBy::kSubject; }
 
 struct FittedParameter {
   Parameter parameter;

@@ -9,7 +9,7 @@
 DEFINE_string(folder, "", "the folder that holds the recordings, in it and below");
 DEFINE_string(pattern, "",
               "paths of the motion files in the folder, as in {setting}/{subject}_{take}.c3d; "
-              "setting, subject, magnitude, condition_code and person are understood, any other "
+              "setting, subject, magnitude, condition and person are understood, any other "
               "{name} tells recordings apart, * does not matter");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with names of --pattern");
 DEFINE_string(masses, "", "CSV file id,mass_kg of the subjects");

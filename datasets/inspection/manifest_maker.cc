@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // What names of a pattern mean something; others tell recordings apart.
-const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition_code",
+const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition", kOldConditionKey,
                                               "person"};
 
 class Maker {
@@ -159,7 +159,7 @@ class Maker {
     }
     recording.setting = Value(values, "setting", options_.setting);
     recording.magnitude = Value(values, "magnitude", options_.magnitude);
-    recording.condition_code = Value(values, "condition_code", "");
+    recording.condition = Value(values, "condition", Value(values, kOldConditionKey, ""));
     recording.push_kind = options_.push_kind;
     recording.motion_format = format_;
     for (const FoundFile& file : *files) {

@@ -7,7 +7,7 @@
 //   options.masses = {{"anna", 62.0}};
 //   Result<MadeManifest> made = MakeManifest(options);
 //
-// Names that mean something: subject (the person's id), setting, magnitude, condition_code, and
+// Names that mean something: subject (the person's id), setting, magnitude, condition, and
 // person: files that differ in person and subject only are the people of one recording, in the
 // order of `person`. Every other name just tells recordings apart. A recording's id is all values
 // but those of person (and of subject where there is a person), joined by _.

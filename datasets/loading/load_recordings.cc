@@ -57,7 +57,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.id = entry.id;
   recording.setting = entry.setting;
   recording.magnitude = entry.magnitude;
-  recording.condition_code = entry.condition_code;
+  recording.condition = entry.condition;
   recording.pushed_person = entry.pushed_person;
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;

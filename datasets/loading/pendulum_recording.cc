@@ -40,7 +40,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   result.id = recording.id;
   result.setting = recording.setting;
   result.magnitude = recording.magnitude;
-  result.condition_code = recording.condition_code;
+  result.condition = recording.condition;
   result.pushed_person = recording.pushed_person;
   result.initial_velocity = recording.initial_velocity;
   result.scene.dt = 1.0 / recording.fps;

@@ -14,7 +14,7 @@ struct PendulumRecording {
   std::string id;
   std::string setting;
   std::string magnitude;
-  std::string condition_code;
+  std::string condition;
   int pushed_person = 0;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<std::string> subject_ids;  // one per person

@@ -15,7 +15,7 @@
 // external), joints {hip, left_ankle, right_ankle} by name or index, up and forward (axes of the
 // BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
 // start_frame}] in addition to push_csv, initial_velocity (zero, estimated, free; default zero),
-// condition_code, frames. At the top: length_unit or units.bvh_length for all recordings.
+// condition (label of the protocol; condition_code in older files), frames. At the top: length_unit or units.bvh_length for all recordings.
 //
 // Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
 // with one file per subject; the same file may be named for several. A joint may then be a list of
@@ -53,6 +53,9 @@ struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
 };
 
+// What the published manifests call `condition`; read where that is not there, never written.
+inline constexpr char kOldConditionKey[] = "condition_code";
+
 inline constexpr double kHeaviestPerson = 400.0;  // kg
 
 struct ManifestSubject {
@@ -79,7 +82,7 @@ struct ManifestRecording {
   std::string push_csv;             // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;
   std::string magnitude;
-  std::string condition_code;
+  std::string condition;
   JointMapping joints;
   std::string up = "z";       // axis of the BVH that points up
   std::string forward = "x";  // axis of the BVH that points forward, in the push direction

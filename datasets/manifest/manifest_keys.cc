@@ -14,7 +14,7 @@ std::vector<std::string> KnownKeys() {
       "id",      "setting",     "fps",         "subjects",      "pushed_person",
       "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
       "up",      "forward",     "length_unit", "pushes",        "initial_velocity",
-      "frames",  "first_frame", "end_frame",   "condition_code"};
+      "frames",  "first_frame", "end_frame",   "condition", kOldConditionKey};
   for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
   return keys;
 }

@@ -81,7 +81,8 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = Name(recording.push_kind);
   json["magnitude"] = recording.magnitude;
-  SetOrKeep(recording.condition_code.empty(), "condition_code", recording.condition_code, &json);
+  json.erase(kOldConditionKey);
+  SetOrKeep(recording.condition.empty(), "condition", recording.condition, &json);
   const Json joints = JointsJson(recording.joints, json);
   SetUnless(joints.empty(), "joints", joints, &json);
   SetOrKeep(recording.up == "z", "up", recording.up, &json);

@@ -51,7 +51,7 @@ struct Recording {
   std::string id;
   std::string setting;
   std::string magnitude;       // strength label, e.g. weak, medium, strong
-  std::string condition_code;  // free label of the protocol; may be empty
+  std::string condition;  // of the protocol, a free label; may be empty
   double fps = 0.0;
   int pushed_person = 0;
   PushKind push_kind = PushKind::kExternal;

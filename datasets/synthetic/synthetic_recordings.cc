@@ -136,28 +136,16 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
 
 }  // namespace
 
-ModelOptions SyntheticOptions::TailModel() {
-  ModelOptions model;
-  model.friction = FrictionKind::kAnisotropic;
-  return model;
-}
-
 ParameterSet<double> PublishedTailParameters() {
-  // They are known per mass, per m g l and per m l^2 of the point mass.
-  const double point_mass = (1.0 - kCartShare) * kReferenceMass;
-  const double stiffness = point_mass * kGravity * kReferenceRod;     // N m/rad
-  const double damping = point_mass * kReferenceRod * kReferenceRod;  // N m s/rad
   ParameterSet<double> p{};
-  p[kMu] = 0.34 * kReferenceMass;
-  p[kMuY] = 1.2 * kReferenceMass;
-  p[kKpTheta] = 2.19 * stiffness;
-  p[kKpPhi] = 2.1 * stiffness;
-  p[kKdTheta] = p[kKdPhi] = 1.0 * damping;
-  p[kAx] = -9.2;
-  p[kTailGain] = 1.15;
-  p[kTailTorque] = 0.33;
-  p[kTailTime] = 11.5 / 60.0;
-  p[kTailExponent] = 1.55;
+  p[kMu] = 30.0;
+  p[kKpTheta] = 1800.0;
+  p[kKpPhi] = 1500.0;
+  p[kKdTheta] = p[kKdPhi] = 70.0;
+  p[kAx] = -10.0;
+  p[kTailGain] = 1.0;
+  p[kTailTorque] = 0.4;
+  p[kTailTime] = 0.25;
   return p;
 }
 

@@ -32,14 +32,14 @@ struct PushStrength {
   double acceleration;  // m/s^2
 };
 
-// The settled seven-parameter model for the person of 85 kg and 0.95 m: the values identified from
+// The settled tail model for the person of 85 kg and 0.95 m: round values near those identified from
 // the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
 
 struct SyntheticOptions {
   // The truth. model.push decides what a `net` push is: with kAdded, a force beside all others;
   // with kAsRecorded, the whole generalized force on the person while it lasts.
-  ModelOptions model = TailModel();
+  ModelOptions model;
   ParameterSet<double> parameters = PublishedTailParameters();
 
   int subjects = 4;
@@ -79,8 +79,6 @@ struct SyntheticOptions {
   bool noise_at_first_frame = true;
   // Not zero: the noise is drawn from this seed, so that one set of motions can be had with many.
   uint64_t noise_seed = 0;
-
-  static ModelOptions TailModel();
 };
 
 // What is wrong with the options, if anything: names option, value and constraint.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -85,8 +86,9 @@ struct FitOptions {
   std::string pool = "none";
   PoolBy pool_by = PoolBy::kSubject;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
-  // a log scale is about 20 %). Acts on pooled parameters.
-  double pooling_sigma = 0.2;
+  // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.h).
+  // PoolParameters gives it to the pooled parameters.
+  std::optional<double> pooling_sigma;
 
   // The self-force network of `model` (whose weights are the start): standard deviation of the
   // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than

@@ -17,6 +17,7 @@ Json TableJson(const ParameterTable& table) {
                 {"free", spec.free},       {"pooled", spec.pooled},
                 {"meaning", spec.meaning}};
     if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
+    if (spec.pooled) row["pooling_sigma"] = spec.pooling_sigma;
     rows.push_back(row);
   }
   return rows;
@@ -56,6 +57,7 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
     spec->transform = EnumFrom<Transform>(row, "transform");
     spec->free = row.at("free");
     spec->pooled = row.at("pooled");
+    spec->pooling_sigma = row.value("pooling_sigma", kFirstPoolingSigma);
     spec->meaning = row.at("meaning");
     spec->prior.reset();
     if (row.contains("prior")) {

@@ -68,6 +68,39 @@ Row SeedRow() {
   return row;
 }
 
+constexpr char kEstimate[] = "estimate";
+
+Row PoolingSigmaRow() {
+  const auto text = [](const FitOptions& o) {
+    return o.pooling_sigma ? DoubleText(*o.pooling_sigma) : std::string(kEstimate);
+  };
+  const auto apply = [](const std::string& given, FitOptions* o) -> MaybeError {
+    double sigma = 0.0;
+    o->pooling_sigma.reset();
+    if (given == kEstimate) return std::nullopt;
+    if (!ParseDouble(given, &sigma) || !(sigma > 0.0)) {
+      return BadOption("pooling_sigma", given, "must be positive, or estimate");
+    }
+    o->pooling_sigma = sigma;
+    return std::nullopt;
+  };
+  Row row = WordsRow("pooling_sigma", OptionStage::kModel,
+                     "how far a unit may deviate from the shared value: a standard deviation on "
+                     "the fitted scale (0.2 is about 20 % for a positive parameter), or estimate",
+                     apply);
+  row.text = text;
+  row.json = "/pooling_sigma";
+  row.write = [](const FitOptions& o) {
+    return o.pooling_sigma ? Json(*o.pooling_sigma) : Json(kEstimate);
+  };
+  row.read = [](const Json& json, FitOptions* o) {
+    o->pooling_sigma.reset();
+    if (json != kEstimate) o->pooling_sigma = json.get<double>();
+  };
+  row.preset_decides = true;
+  return row;
+}
+
 Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
   return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
     TableEdits edits;
@@ -135,12 +168,9 @@ std::vector<Row> WeightRows() {
           "weight of the rollouts continued past the data, with the push and 1.4 times it"),
       Decided(NameRow<PoolBy>(
           "pool_by", "/pool_by", [](O & o) -> auto& { return o.pool_by; },
-          "the unit that pooled parameters may differ by: subject or setting")),
-      Decided(NumberRow(
-          "pooling_sigma", "/pooling_sigma", [](O & o) -> auto& { return o.pooling_sigma; },
-          kPositive,
-          "how far a unit may deviate from the shared value (standard deviation on the fitted "
-          "scale; 0.2 is about 20 % for a positive parameter)")),
+          "the unit that pooled parameters may differ by: subject, setting or condition (the "
+          "setting where a recording names no condition)")),
+      PoolingSigmaRow(),
       MayBeAbsent(NumberRow(
           "network_prior", "/network_prior", [](O & o) -> auto& { return o.network_prior; },
           kNotNegative,

@@ -64,6 +64,10 @@ ParameterMap ParameterTable::Map() const {
   return map;
 }
 
+double PoolingSigma(const ParameterSpec& spec) {
+  return spec.pooling_sigma * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);
+}
+
 bool AnyPooled(const ParameterTable& table) {
   return std::any_of(table.specs.begin(), table.specs.end(),
                      [](const ParameterSpec& spec) { return spec.free && spec.pooled; });

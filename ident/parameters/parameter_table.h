@@ -21,6 +21,9 @@ struct Prior {
   double sigma;  // in the parameter's unit; on a log scale it becomes sigma / mean
 };
 
+// Where the estimate of the units' spread starts; 0.3 is about 30 % for a positive parameter.
+inline constexpr double kFirstPoolingSigma = 0.3;
+
 struct ParameterSpec {
   Parameter id{};
   std::string name;
@@ -30,7 +33,9 @@ struct ParameterSpec {
   double scale = 1.0;  // a typical size, for scaling null directions and judging "weak"
   Transform transform = Transform::kIdentity;
   bool free = false;
-  bool pooled = false;  // may deviate by subject or setting
+  bool pooled = false;  // may deviate by subject, setting or condition
+  // Of a pooled one: standard deviation of a unit's deviation, as PoolingSigma has it.
+  double pooling_sigma = kFirstPoolingSigma;
   std::optional<Prior> prior;
   std::string meaning;  // one line for people
 };
@@ -61,6 +66,10 @@ struct ParameterTable {
 
 // Every parameter there is, fixed at a value that makes its term vanish, or at LDP's value.
 ParameterTable BaseTable();
+
+// Standard deviation of a unit's deviation on the fitted scale: on a log scale pooling_sigma itself,
+// on an identity scale that many typical sizes of the parameter.
+double PoolingSigma(const ParameterSpec& spec);
 
 // Whether some parameter may differ by unit.
 bool AnyPooled(const ParameterTable& table);

@@ -1,9 +1,10 @@
 // ident: settings of the models, and what follows from a model: which parameters are fitted.
 //
-//   tail:  one person: push tail, posture-relative recovery, one cross term; seven free parameters
+//   tail:  one person: push tail, posture-relative recovery, one cross term; six free parameters,
+//          the tail's time partially pooled by condition
 //   ldp:   one person: plain PD balance and friction from upright; six free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
-//          partially pooled by setting; eighteen shared parameters
+//          partially pooled by setting (condition); seventeen shared parameters
 //   auto:  tail where every recording is of one person, otherwise group
 //
 //   FitOptions options = MakePreset("tail").value();

@@ -118,7 +118,7 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   if (MaybeError error = Assign(edits.fix, "--fix", false, false, table)) return error;
   if (MaybeError error = AddPriors(edits.prior, table)) return error;
   const auto may_differ = [&edits](const ParameterSpec& spec) {
-    return edits.pool_by == PoolBy::kSetting || !IsPairParameter(spec.id);
+    return HoldsForRecording(edits.pool_by) || !IsPairParameter(spec.id);
   };
   for (const std::string& name : Split(edits.pool, ',')) {
     if (name == "none") continue;

@@ -13,7 +13,7 @@ namespace pushid {
 struct FitPoint {
   std::vector<double> shared;  // fitted scale
   std::map<std::string, std::vector<double>>
-      unit;  // deviations by subject or setting, fitted scale; empty if not pooled
+      unit;  // deviations by PoolBy's units, fitted scale; empty if not pooled
   std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
   std::vector<double> weights;                  // of what is learned; empty without
 

@@ -58,12 +58,29 @@ ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
 
 Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
   const ModelOptions model = ModelAt(point);
-  Behaviour all = ComputeBehaviour(model, Parameters(point, ""));
-  if (map_.pool_by != PoolBy::kSetting) return all;
-  for (const auto& [unit, deviations] : point.unit) {
-    all.Add(ComputeBehaviour(model, Parameters(point, unit)), unit);
+  Behaviour all;
+  for (const std::string& unit : SettlingUnits(point)) {
+    const Behaviour one = ComputeBehaviour(model, Parameters(point, unit));
+    if (unit.empty()) {
+      all = one;
+    } else {
+      all.Add(one, unit);
+    }
   }
   return all;
+}
+
+std::vector<std::string> FitProblem::SettlingUnits(const FitPoint& point) const {
+  std::vector<std::string> units = {""};
+  ModelOptions measured = options_.model;  // as the simulations' pushes are: without a tail
+  measured.push_tail = PushTail::kNone;
+  const bool differ =
+      std::any_of(map_.fitted.begin(), map_.fitted.end(), [&measured](const FittedParameter& f) {
+        return f.deviation >= 0 && Acts(f.parameter, measured);
+      });
+  if (!differ || !HoldsForRecording(map_.pool_by)) return units;
+  for (const auto& [unit, deviations] : point.unit) units.push_back(unit);
+  return units;
 }
 
 double FitProblem::DataCost(const FitPoint& point) const {

@@ -44,7 +44,7 @@ class FitProblem {
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
 
-  // What people do after a push at a point; where settings differ, in each setting.
+  // What people do after a push at a point; where settings or conditions differ, in each.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
   // Half the squared residuals of the recordings alone, as they count; infinite where a rollout
@@ -94,6 +94,9 @@ class FitProblem {
   void AddPriors(FitPoint* point, Built* built) const;
   void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;
+  // Whose settling is simulated: that of the shared parameters (""), and of each setting or
+  // condition where these differ in what acts then.
+  std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;

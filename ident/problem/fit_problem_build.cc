@@ -67,11 +67,8 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
   for (auto& [name, values] : point->unit) {
     for (const FittedParameter& f : map_.fitted) {
       if (f.deviation < 0) continue;
-      // On an identity scale the deviation is in units of the parameter's typical size.
-      const double unit =
-          f.transform == Transform::kIdentity ? options_.table[f.parameter].scale : 1.0;
       built->Add(std::make_unique<PriorResidual>(map_.num_deviations, f.deviation, 0.0,
-                                                 options_.pooling_sigma * unit),
+                                                 PoolingSigma(options_.table[f.parameter])),
                  {values.data()}, kPoolingCluster);
     }
   }
@@ -112,12 +109,7 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     }
     built->AddRollout(std::move(residual), blocks, kSettlingCluster);
   };
-  // Where settings differ, people must settle in each of them.
-  std::vector<std::string> units = {""};
-  if (map_.num_deviations > 0 && map_.pool_by == PoolBy::kSetting) {
-    for (const auto& [unit, values] : point->unit) units.push_back(unit);
-  }
-  for (const std::string& unit : units) {
+  for (const std::string& unit : SettlingUnits(*point)) {
     std::vector<double*> blocks = {point->shared.data()};
     if (!unit.empty()) blocks.push_back(point->unit[unit].data());
     std::vector<double*> rollout_blocks = blocks;

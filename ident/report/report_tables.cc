@@ -9,6 +9,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/problem/pooling_spread.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
@@ -167,7 +168,7 @@ TextTable BehaviourTable(const FitResult& result) {
 
 TextTable PooledTable(const FitResult& result) {
   const bool by_setting = !result.settings.empty();
-  std::vector<std::string> header = {by_setting ? "setting" : "subject"};
+  std::vector<std::string> header = {NameOf(result.options.pool_by)};
   std::vector<bool> left = {true};
   if (!by_setting) header.push_back("kg"), left.push_back(false);
   header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
@@ -188,6 +189,28 @@ TextTable PooledTable(const FitResult& result) {
     }
   }
   for (const auto& [setting, pooled] : result.settings) add({setting}, pooled);
+  return table;
+}
+
+TextTable SpreadTable(const FitResult& result) {
+  const FitOptions& o = result.options;
+  TextTable table({"pooled", "shared", "std error", "unit",
+                   "spread between " + NameOf(o.pool_by) + "s (1 sigma)"},
+                  {true, false, false, true, true});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = o.table.Find(e.name);
+    if (spec == nullptr || !spec->free || !spec->pooled) continue;
+    const double sigma = PoolingSigma(*spec);
+    const std::string spread =
+        spec->transform == Transform::kLog ? "a factor of " + Rounded(std::exp(sigma), 3)
+        : spec->transform == Transform::kLogit
+            ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
+            : Rounded(sigma, 3);
+    const char* source = o.pooling_sigma                        ? ", given"
+                         : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none seen"
+                                                                : ", estimated";
+    table.Add({e.name, Rounded(e.value, 4), Rounded(e.standard_error, 3), e.unit, spread + source});
+  }
   return table;
 }
 

@@ -20,8 +20,10 @@ std::string HowSure(const FitResult& result);
 TextTable DerivedTable(const FitResult& result);
 std::string ConventionText(const FitResult& result);
 
-// Values of each subject or setting; only a header where nothing is pooled.
+// Values of each unit that parameters are pooled by; only a header where nothing is pooled.
 TextTable PooledTable(const FitResult& result);
+// The shared values and how far units differ from them; only a header where nothing is pooled.
+TextTable SpreadTable(const FitResult& result);
 
 // Pairs of parameters that the data separate poorly.
 std::string CorrelationText(const FitResult& result);

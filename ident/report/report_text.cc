@@ -95,7 +95,9 @@ std::string ReportText(const FittedModel& model) {
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
-  if (pooled.rows().size() > 1) text += "\n" + pooled.ToString() + "\n";
+  if (pooled.rows().size() > 1) {
+    text += "\n" + pooled.ToString() + "\n" + SpreadTable(result).ToString() + "\n";
+  }
   text += BehaviourText(result);
   const TextTable lines = LinesTable(result);
   if (lines.rows().size() > 1) text += lines.ToString();

@@ -99,7 +99,7 @@ void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* resul
     }
   }
   const auto pooled = PooledByUnit(problem, point, result->uncertainty);
-  if (problem.options().pool_by == PoolBy::kSetting) {
+  if (HoldsForRecording(problem.options().pool_by)) {
     result->settings = pooled;
   } else {
     for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
@@ -260,6 +260,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
                          result.uncertainty.estimates.end());
   result.derived = Derived(problem, best.to, result.uncertainty);
   AddUnits(problem, best.to, &result);
+  result.push_range = FittedPushRange(ModelOf(result), recordings);
   result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);

@@ -11,6 +11,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
 #include "ident/results/ensemble.h"
+#include "ident/results/push_range.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/network_takeover.h"
@@ -41,8 +42,9 @@ struct FitResult {
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains
   std::map<std::string, SubjectParameters> subjects;
-  // Value of each pooled parameter in each setting, where settings differ.
+  // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
+  std::optional<PushRange> push_range;  // none in files that are older than it
   Uncertainty uncertainty;
   Diagnostics diagnostics;
   Behaviour behaviour;

@@ -70,6 +70,19 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   return std::nullopt;
 }
 
+// What the preset pools by name may have been fixed since, or not act any more; and some networks
+// cannot be trained beside deviations of units.
+void PoolOnlyFree(FitOptions* options) {
+  if (options->pool == "all" || options->pool == "none") return;
+  std::string free;
+  if (NeedsGradientTraining(*options) || options->ensemble > 1) options->pool.clear();
+  std::stringstream names(options->pool);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;
+  }
+  options->pool = free.empty() ? "none" : free;
+}
+
 Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& given,
                               const GivenOptions& must_act) {
   Result<FitOptions> made = StartPreset(preset);
@@ -80,11 +93,12 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
     if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
   }
-  if (MaybeError error = PoolParameters(&o)) return *error;
   // Its shape is known now, and so is the seed.
   if (const auto network = o.model.self_network) {
     o.model.self_network = InitialNetwork(network->shape, o.seed, network->rod);
   }
+  if (Find(given, "pool") == nullptr) PoolOnlyFree(&o);
+  if (MaybeError error = PoolParameters(&o)) return *error;
   std::string invalid;
   if (!o.IsValid(&invalid)) return Error{invalid};
   if (MaybeError error = CheckGivenAct(must_act, o)) return *error;

@@ -179,6 +179,7 @@ class ModelReader {
     ReadLearned();
     ReadEstimates();
     ReadPooled();
+    ReadPushRange();
     ReadValues();
     ReadJudgement();
     ReadSolve();
@@ -253,6 +254,16 @@ class ModelReader {
       for (const auto& [name, estimate] : subject.at("pooled").items()) {
         result_.subjects[id].pooled[name] = EstimateFrom(estimate);
       }
+    }
+  }
+
+  void ReadPushRange() {
+    if (!json_.contains("push_range")) return;
+    const Json& json = At("push_range");
+    PushRange& range = result_.push_range.emplace();
+    for (const PushRangeRow& row : kPushRangeRows) {
+      if (!json.contains(row.key)) continue;
+      range.*row.range = {json.at(row.key).at(0), json.at(row.key).at(1)};
     }
   }
 

@@ -171,6 +171,15 @@ Json RecordingsJson(const FitResult& result) {
   return recordings;
 }
 
+Json PushRangeJson(const PushRange& range) {
+  Json json = Json::object();
+  for (const PushRangeRow& row : kPushRangeRows) {
+    const ValueRange& values = range.*row.range;
+    if (!values.empty()) json[row.key] = {values.lower, values.upper};
+  }
+  return json;
+}
+
 // What only some models have.
 void AddLearned(const FitResult& result, Json* json) {
   if (const auto& network = result.options.model.self_network) {
@@ -235,6 +244,7 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                  {"solve_seconds", result.solve_seconds},
                  {"total_seconds", run.total_seconds},
                  {"num_threads", run.num_threads}}}};
+  if (result.push_range) json["push_range"] = PushRangeJson(*result.push_range);
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);

@@ -1,7 +1,9 @@
 // ident: options made fit for recordings.
 #include <algorithm>
+#include <set>
 
 #include "ident/diagnostics/diagnostics.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/solver/large_network_stage.h"
@@ -23,18 +25,40 @@ std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& re
   return warnings;
 }
 
+// Where all share one unit, its deviation and the shared value would be one number. That is worth
+// a word only where it was asked for.
+void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                   std::vector<std::string>* warnings) {
+  if (!AnyPooled(options->table)) return;
+  std::set<std::string> units;
+  for (const PendulumRecording& recording : recordings) {
+    for (const std::string& unit : PoolingUnits(recording, options->pool_by)) units.insert(unit);
+  }
+  if (units.size() > 1) return;
+  for (ParameterSpec& spec : options->table.specs) spec.pooled = false;
+  const Result<FitOptions> preset = StartPreset(options->preset);
+  if (!preset.ok() || preset.value().pool == options->pool) return;
+  warnings->push_back("--pool=" + options->pool + " does nothing: all recordings share one " +
+                      NameOf(options->pool_by) + ", '" + *units.begin() + "'");
+}
+
 }  // namespace
 
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  std::vector<std::string> told;
+  UnpoolOneUnit(recordings, options, &told);
   std::string invalid;
   if (!options->IsValid(&invalid)) return Error{invalid};
   HoldUnusedTail(recordings, options);
   if (options->table.Free().empty()) {
     return Error{"every parameter that acts on these recordings is fixed: nothing is left to fit"};
   }
-  if (warnings != nullptr) *warnings = WarningsBefore(recordings, *options);
+  if (warnings != nullptr) {
+    *warnings = WarningsBefore(recordings, *options);
+    warnings->insert(warnings->end(), told.begin(), told.end());
+  }
   // A large network has no force yet and no Jacobian at all: the physical model is what is checked.
   const FitOptions checked = NeedsGradientTraining(*options) ? PhysicsAlone(*options) : *options;
   return CheckEffects(FitProblem(recordings, checked));

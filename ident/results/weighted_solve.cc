@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "ident/problem/behaviour.h"
+#include "ident/problem/pooling_spread.h"
 #include "ident/uncertainty/data_weight.h"
 
 namespace pushid {
@@ -39,7 +40,7 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* opt
     options->effective_weight = EstimateEffectiveWeight(problem, point);
     change = std::max(change, Change(weight, options->effective_weight));
   }
-  return change;
+  return std::max(change, UpdatePoolingSpread(problem, point, &options->table));
 }
 
 // From the optimum under other weights to that under these.

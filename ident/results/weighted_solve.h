@@ -1,7 +1,8 @@
 // ident: a solve whose data weigh as much as they know, and in which the demand to settle is tested.
 //
-// 1. Sigmas and effective frames (uncertainty/data_weight.h) are estimated and the fit solved on
-//    from there, until neither changes by more than 1 %. The demand to settle is left out so far: it
+// 1. Sigmas and effective frames (uncertainty/data_weight.h) and the spread of pooled units
+//    (problem/pooling_spread.h) are estimated and the fit solved on
+//    from there, until none changes by more than 1 %. The demand to settle is left out so far: it
 //    must not make the data look worse than they are.
 // 2. Who settles in time as fitted is not moved at all. Otherwise the fit is solved with the demand,
 //    at the same weights. Where twice the log likelihood (composite, adjusted; priors included)

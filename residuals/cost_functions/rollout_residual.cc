@@ -8,8 +8,10 @@
 namespace pushid {
 
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by) {
-  if (pool_by == PoolBy::kSubject) return recording.subject_ids;
-  return std::vector<std::string>(recording.scene.people.size(), recording.setting);
+  if (!HoldsForRecording(pool_by)) return recording.subject_ids;
+  const bool by_condition = pool_by == PoolBy::kCondition && !recording.condition.empty();
+  const std::string& unit = by_condition ? recording.condition : recording.setting;
+  return std::vector<std::string>(recording.scene.people.size(), unit);
 }
 
 std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording& recording,

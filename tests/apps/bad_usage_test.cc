@@ -18,7 +18,7 @@ struct Case {
 };
 
 TEST_F(BadUsageTest, FitFlags) {
-  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent";
+  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time";
   const std::vector<Case> cases = {
       {{"--fix=mew"}, {"--fix", "'mew'", "no parameter", "Kp_theta"}},
       {{"--free=mew"}, {"--free", "'mew'"}},
@@ -66,7 +66,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--mode_margin=inf"}, {"--mode_margin"}},
       {{"--mode_weight=-1"}, {"--mode_weight"}},
       {{"--settling_weight=-2"}, {"--settling_weight"}},
-      {{"--pool_by=subject"}, {"--pool_by", "--pool"}},
+      {{"--preset=ldp", "--pool_by=subject"}, {"--pool_by", "--pool"}},
       {{"--preset=group", "--pool=none", "--pooling_sigma=0.3"}, {"--pooling_sigma", "--pool"}},
       {{"--interaction=contact,contact"}, {"--interaction", "'contact' twice"}},
       {{"--interaction=contact,spring"}, {"--interaction", "'spring' twice"}},
@@ -78,7 +78,8 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--interaction=network"}, {"--interaction_network"}},
       {{"--interaction_network=n.json"}, {"--interaction", "network"}},
       {{"--self_from=" + Path("none.json")}, {"none.json"}},
-      {{"--interaction=contact", "--pool=contact_distance"}, {"contact_distance", "--pool_by"}},
+      {{"--interaction=contact", "--pool=contact_distance", "--pool_by=subject"},
+       {"contact_distance", "--pool_by"}},
       {{"--seed=abc"}, {"seed", "abc"}},
   };
   const int files = CountFiles();
@@ -282,7 +283,7 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
       {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
       {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
-      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"},
+      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"},
        {"--compare", "'held'", "nothing is left"}},
   };
   for (const Case& one : cases) {

@@ -190,9 +190,13 @@ TEST_F(FitAppTest, AReplicaSaysSo) {
 
 TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
   const std::string alone = FitModel("alone.json");
-  FitModel("m.json", {"--self_from=" + alone, "--free=mu", "--pool=mu", "--pool_by=setting"});
-  EXPECT_TRUE(Contains(fit_.out, "pooled by setting, self parameters from " + alone));
-  EXPECT_FALSE(Contains(fit_.out, "setting  kg"));
+  FitModel("m.json", {"--self_from=" + alone, "--free=mu", "--pool=mu", "--pool_by=subject"});
+  EXPECT_TRUE(Contains(fit_.out, "pooled by subject, self parameters from " + alone));
+  EXPECT_TRUE(Contains(fit_.out, "spread between subjects"));
+  // All of them stand in one setting.
+  FitModel("m.json", {"--pool=mu", "--pool_by=setting"});
+  EXPECT_FALSE(Contains(fit_.out, "pooled by"));
+  EXPECT_TRUE(Contains(fit_.err, "--pool=mu does nothing: all recordings share one setting"));
 }
 
 TEST_F(FitAppTest, OnlyTheRecordingsAskedForAreFitted) {

@@ -48,9 +48,13 @@ inline std::vector<PendulumRecording> MakePendulums(const SyntheticOptions& opti
   return AsPendulums(Recordings(made.value()));
 }
 
-// The tail preset as a user gets it, its fixed parameters at the truth of `study`.
+// The tail preset as a user gets it, its fixed parameters at the truth of `study`, whose recordings
+// share one condition.
 inline FitOptions DefaultFit(const SyntheticOptions& study) {
   FitOptions options = MakePreset("tail").value();
+  options.pool = "none";
+  options.pool_by = PoolBy::kSubject;
+  (void)PoolParameters(&options);
   options.model = study.model;
   for (ParameterSpec& spec : options.table.specs) {
     if (!spec.free) spec.nominal = study.parameters[spec.id];
@@ -58,12 +62,15 @@ inline FitOptions DefaultFit(const SyntheticOptions& study) {
   return options;
 }
 
-// Without whatever pulls a fit away from the data: priors, settling, stability, robust loss.
+// Without whatever pulls a fit away from the data - priors, settling, stability, robust loss - and
+// with weights that are given.
 inline FitOptions UnbiasedFit(const SyntheticOptions& study) {
   FitOptions options = DefaultFit(study);
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   options.settling_weight = options.stability_weight = 0.0;
   options.sigmas.robust = 0.0;
+  options.sigma_source = SigmaSource::kFixed;
+  options.recording_weight = RecordingWeight::kRecording;
   return options;
 }
 

@@ -51,10 +51,44 @@ TEST(PushTail, ExternalAndEmptyPushesHaveNone) {
   }
 }
 
+// The same impulse over ever more frames: the tail brings an ever smaller share of it, also with an
+// exponent that once made a push of two seconds go on for minutes.
+TEST(PushTail, StaysInProportionToTheWholePush) {
+  constexpr double kImpulse = 40.0;  // N s
+  ParameterSet<double> p{};
+  p[kTailGain] = 1.0, p[kTailTime] = 0.25;
+  for (double exponent : {0.0, 1.55}) {
+    p[kTailExponent] = exponent;
+    double last_share = 10.0;
+    for (int frames : {6, 12, 15, 22, 60, 120}) {
+      const Vector4<double> force(kImpulse / (frames * kDt), 0.0, 0.0, 0.0);
+      const ScenePush push = MakeScenePush(
+          0, 2, PushKind::kNet, std::vector<Vector4<double>>(static_cast<size_t>(frames), force));
+      double tail = 0.0;
+      for (int frame = 0; frame < 20000; ++frame) tail += TailForce(push, p, frame, kDt)[0] * kDt;
+      EXPECT_NEAR(WholeImpulse(push, p, kDt), kImpulse + tail, 1e-9 * tail) << frames;
+      const double share = tail / kImpulse;
+      if (exponent == 0.0 || frames > 15) EXPECT_LT(share, last_share) << frames;
+      EXPECT_LT(share, 5.0) << frames;
+      last_share = share;
+    }
+    EXPECT_LT(last_share, 0.6);
+  }
+}
+
+TEST(PushTail, WholeImpulseOfAnExternalPushIsItsOwn) {
+  ParameterSet<double> p{};
+  p[kTailGain] = 1.0, p[kTailTime] = 0.25;
+  const ScenePush push =
+      MakeScenePush(0, 0, PushKind::kExternal, {{30, 40, 7, 0}, {30, 40, 0, 0}, {0, 0, 0, 0}});
+  EXPECT_NEAR(WholeImpulse(push, p, 0.1), 10.0, 1e-12);
+  EXPECT_EQ(WholeImpulse(MakeScenePush(0, 0, PushKind::kNet, {}), p, 0.1), 0.0);
+}
+
 TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
   Random random(3);
   for (int trial = 0; trial < 50; ++trial) {
-    const int rows = 1 + trial % 13;
+    const int rows = 1 + trial % 20;  // beyond the longest duration that the tail's time grows with
     const PushKind kind = trial % 2 ? PushKind::kNet : PushKind::kNetWithoutFriction;
     const ScenePush push = RandomPush(&random, rows, kind);
     ParameterSet<double> p = RandomParameters(&random);

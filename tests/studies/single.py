@@ -62,9 +62,9 @@ def depends():
     for title, flags in variants:
         model = fit(*flags).json
         told = estimates(model)
-        names = ("c_x", "Kp_theta/(m g l)", "a_x", "tail_gain", "tail_exponent")
+        names = ("c_x", "Kp_theta/(m g l)", "a_x", "tail_gain", "tail_time")
         rows.append([title] + [estimate(told[n]) for n in names] + ["yes" if model["behaviour"]["settles"] else "no"])
-    return studies.table(["", "c_x, N s/m", "Kp_theta/(m g l)", "a_x, m/s^2/rad", "tail_gain", "tail_exponent",
+    return studies.table(["", "c_x, N s/m", "Kp_theta/(m g l)", "a_x, m/s^2/rad", "tail_gain", "tail_time, s",
                           "settles"], rows)
 
 

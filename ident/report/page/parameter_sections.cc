@@ -149,8 +149,8 @@ ReportSection ParameterSection(const FittedModel& model) {
 
 ReportSection UnitSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  const bool by_setting = !result.settings.empty();
-  ReportSection section{"units", by_setting ? "By setting" : "By subject", {}, {}, {}, {}, {}, ""};
+  const std::string by = NameOf(result.options.pool_by);
+  ReportSection section{"units", "By " + by, {}, {}, {}, {}, {}, ""};
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() < 2) return section;
   section.paragraphs = {
@@ -179,10 +179,11 @@ ReportSection UnitSection(const FittedModel& model) {
     }
     section.folds.push_back(
         {name,
-         {{"units_" + name, name + " by " + (by_setting ? "setting" : "subject"),
+         {{"units_" + name, name + " by " + by,
            Forest(rows, name, true).Draw(legend), numbers}}});
   }
   section.tables.push_back({"", pooled});
+  section.tables.push_back({"how far they differ", SpreadTable(result)});
   return section;
 }
 

@@ -11,7 +11,7 @@ namespace {
 using LoadRecordingsTest = RecordingFolderTest;
 
 TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
-  entry().condition_code = "p";
+  entry().condition = "p";
   entry().push_kind = PushKind::kNet;
   entry().initial_velocity = InitialVelocity::kEstimated;
   entry().frames = 20;
@@ -22,7 +22,7 @@ TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
   EXPECT_EQ(recording.id, "a");
   EXPECT_EQ(recording.setting, "single");
   EXPECT_EQ(recording.magnitude, "weak");
-  EXPECT_EQ(recording.condition_code, "p");
+  EXPECT_EQ(recording.condition, "p");
   EXPECT_EQ(recording.fps, 60.0);
   EXPECT_EQ(recording.push_kind, PushKind::kNet);
   EXPECT_EQ(recording.initial_velocity, InitialVelocity::kEstimated);

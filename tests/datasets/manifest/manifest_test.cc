@@ -75,7 +75,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.pushed_person, 1);
   EXPECT_EQ(b.push_csv, "");
   EXPECT_EQ(b.push_kind, PushKind::kExternal);
-  EXPECT_EQ(b.condition_code, "p");
+  EXPECT_EQ(b.condition, "p");
   EXPECT_EQ(b.joints.hip->name, "Hips");
   EXPECT_EQ(b.joints.left_ankle->index, 3);
   EXPECT_FALSE(b.joints.right_ankle);
@@ -121,6 +121,8 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   EXPECT_FALSE(json["recordings"][0].contains("push_csv"));
   EXPECT_FALSE(json["recordings"][1].contains("length_unit"));
   EXPECT_EQ(json["recordings"][1]["pushes"][0]["sensor"], "F1");
+  EXPECT_EQ(json["recordings"][1]["condition"], "p");
+  EXPECT_FALSE(json["recordings"][1].contains("condition_code"));
   const Result<Manifest> again = ReadManifest(Path("manifest.json"));
   ASSERT_TRUE(again.ok()) << again.error().ToString();
   EXPECT_EQ(again.value().recordings[0].initial_velocity, InitialVelocity::kEstimated);

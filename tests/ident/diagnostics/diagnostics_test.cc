@@ -24,10 +24,10 @@ TEST(StartDiagnostics, ParametersWithoutEffectAreNamed) {
   FitOptions options = UnbiasedFit(study);
   const MaybeError error = CheckEffects(FitProblem(recordings, options));
   ASSERT_TRUE(error);
-  EXPECT_TRUE(Contains(error->message, "tail_gain,tail_torque,tail_time,tail_exponent have no"));
+  EXPECT_TRUE(Contains(error->message, "tail_gain,tail_torque,tail_time have no"));
   EXPECT_TRUE(Contains(error->message, "--fix=tail_gain"));
   ASSERT_FALSE(
-      EditTable({"tail_gain,tail_torque,tail_time,tail_exponent", "", "", "", ""}, &options.table));
+      EditTable({"tail_gain,tail_torque,tail_time", "", "", "", ""}, &options.table));
   EXPECT_FALSE(CheckEffects(FitProblem(recordings, options)));
 }
 

@@ -25,8 +25,12 @@ std::set<std::string> FreeNames(const ParameterTable& table) {
 TEST(Presets, FreeWhatTheyPromise) {
   const FitOptions tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
   EXPECT_EQ(FreeNames(tail.table),
-            (std::set<std::string>{"mu", "Kp_theta", "a_x", "tail_gain", "tail_torque", "tail_time",
-                                   "tail_exponent"}));
+            (std::set<std::string>{"mu", "Kp_theta", "a_x", "tail_gain", "tail_torque",
+                                   "tail_time"}));
+  EXPECT_EQ(tail.table[kTailExponent].nominal, 0.0);
+  for (const ParameterSpec& spec : tail.table.specs) {
+    EXPECT_EQ(spec.pooled, spec.id == kTailTime) << spec.name;
+  }
   EXPECT_EQ(FreeNames(ldp.table),
             (std::set<std::string>{"mu", "mu_y", "Kp_theta", "Kp_phi", "Kd_theta", "Kd_phi"}));
   EXPECT_EQ(ldp.model.posture, Posture::kUpright);
@@ -78,7 +82,7 @@ TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
   ParameterTable table = Tail();
   table[kKpTheta].pooled = table[kTailTime].pooled = true;
   const ParameterMap map = table.Map();
-  ASSERT_EQ(map.fitted.size(), 7u);
+  ASSERT_EQ(map.fitted.size(), 6u);
   EXPECT_EQ(map.num_deviations, 2);
   for (size_t i = 1; i < map.fitted.size(); ++i) {
     EXPECT_LT(map.fitted[i - 1].parameter, map.fitted[i].parameter);
@@ -93,6 +97,7 @@ TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
 TEST(TableEdits, FixFreePriorSetPool) {
   ParameterTable table = Tail();
   TableEdits edits;
+  table[kTailExponent].free = true;
   edits.fix = "tail_exponent=1.4,a_x";
   edits.free = "Kp_x=12,Kd_theta";
   edits.prior = "mu:80:15,Kp_x:0:50";

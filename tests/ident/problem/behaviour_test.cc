@@ -29,7 +29,7 @@ ParameterSet<double> FirmParameters() {
 }
 
 Behaviour Of(const ParameterSet<double>& parameters) {
-  return ComputeBehaviour(SyntheticOptions::TailModel(), parameters);
+  return ComputeBehaviour(ModelOptions(), parameters);
 }
 
 TEST(Behaviour, FirmGainsSettle) {
@@ -61,7 +61,7 @@ TEST(Behaviour, FreeModesKnowTheNetwork) {
   network.weights.assign(network.shape.num_weights(), 0.0);
   network.weights[0] = kSmall;                                     // e_theta
   network.weights[network.shape.output_at() + 2] = -0.1 / kSmall;  // torque
-  ModelOptions options = SyntheticOptions::TailModel();
+  ModelOptions options = ModelOptions();
   options.self_network = std::make_shared<const SelfNetwork>(network);
   const ParameterSet<double> p = FirmParameters();
   ParameterSet<double> stiffer = p;
@@ -82,7 +82,7 @@ TEST(Behaviour, FreeModesKnowTheMemory) {
   for (int row = 0; row < 2; ++row) {
     network.weights[s.gates_at() + (row + 1) * s.gate_width() - 1] = 8.0;
   }
-  ModelOptions options = SyntheticOptions::TailModel();
+  ModelOptions options = ModelOptions();
   options.self_network = std::make_shared<const SelfNetwork>(network);
   const double z = 1.0 / (1.0 + std::exp(-8.0));
   EXPECT_NEAR(ComputeBehaviour(options, FirmParameters()).fastest_growth, 60.0 * std::log(z), 1e-6);
@@ -137,7 +137,7 @@ TEST(Behaviour, GrowthIsThatOfTheFreeModesWithAndWithoutTheCartsAcceleration) {
   Random random(11);
   int grow = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    ModelOptions options = SyntheticOptions::TailModel();
+    ModelOptions options = ModelOptions();
     options.friction = FrictionKind::kAnisotropic;
     ParameterSet<double> p = FirmParameters();
     p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
@@ -183,7 +183,7 @@ double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double
 TEST(Behaviour, GrowthIsThatOfTheLinearizedRollout) {
   Random random(12);
   for (int trial = 0; trial < 40; ++trial) {
-    ModelOptions options = SyntheticOptions::TailModel();
+    ModelOptions options = ModelOptions();
     options.posture = trial % 2 == 0 ? Posture::kInitial : Posture::kUpright;
     options.gain_scaling = static_cast<GainScaling>(trial % 3);
     ParameterSet<double> p = FirmParameters();
@@ -201,7 +201,7 @@ TEST(Behaviour, GrowthIsThatOfTheLinearizedRollout) {
 
 // Five in a line, the pushed one thrown back by the contact: the signed means say so.
 TEST(Behaviour, MovesAreSignedAlongThePush) {
-  ModelOptions options = SyntheticOptions::TailModel();
+  ModelOptions options = ModelOptions();
   options.interaction.spring = options.interaction.damping = true;
   ParameterSet<double> p = FirmParameters();
   p[kContactStiffness] = 2900.0, p[kContactDistance] = 0.47, p[kContactKappa] = 0.45;

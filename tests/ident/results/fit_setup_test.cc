@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/option_table.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -48,6 +49,34 @@ TEST(FitSetup, PoolingFollowsTheTerms) {
   EXPECT_FALSE(AnyPooled(none.table));
 }
 
+// The preset's own pooling gives way to what else is asked for; that of a user does not.
+TEST(FitSetup, ThePresetPoolsWhatItCan) {
+  const FitOptions tail = MakeFitOptions({{"preset", "tail"}}).value();
+  EXPECT_TRUE(tail.table[kTailTime].pooled);
+  EXPECT_EQ(tail.pool_by, PoolBy::kCondition);
+  EXPECT_FALSE(tail.pooling_sigma);
+  for (const GivenOptions& given :
+       {GivenOptions{{"fix", "tail_time"}}, GivenOptions{{"push_tail", "none"}},
+        GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}},
+        GivenOptions{{"self_force", "lstm:64"}}}) {
+    const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    EXPECT_FALSE(AnyPooled(made.value().table)) << given[0].first;
+  }
+  EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
+}
+
+TEST(FitSetup, PoolingSigmaIsANumberOrEstimated) {
+  const FitOptions given = MakeFitOptions({{"preset", "tail"}, {"pooling_sigma", "0.4"}}).value();
+  EXPECT_EQ(given.pooling_sigma, 0.4);
+  EXPECT_EQ(given.table[kTailTime].pooling_sigma, 0.4);
+  for (const char* text : {"0.4", "estimate"}) {
+    const FitOptions o = MakeFitOptions({{"preset", "group"}, {"pooling_sigma", text}}).value();
+    EXPECT_EQ(FindFitOption("pooling_sigma")->text(o), text);
+    EXPECT_EQ(OptionsFrom(OptionsJson(o)).pooling_sigma, o.pooling_sigma);
+  }
+}
+
 TEST(FitSetup, AutoLooksAtTheRecordings) {
   const std::vector<PendulumRecording> single = MakePendulums(TinyStudy());
   EXPECT_EQ(MakeFitOptions({}, &single).value().preset, "tail");
@@ -80,7 +109,8 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"preset_priors", "of course"}},
        "--preset_priors is 'of course'; it must be true or false"},
       {{{"seed", "2x"}}, "--seed is '2x'"},
-      {{{"preset", "tail"}, {"pooling_sigma", "0.3"}},
+      {{{"pooling_sigma", "guess"}}, "--pooling_sigma is 'guess'; it must be positive, or estimate"},
+      {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
        "--pooling_sigma says how parameters differ"},
       {{{"rod", "linear"}, {"takeover_weight", "1"}}, "only the rod has a network"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
@@ -95,8 +125,8 @@ TEST(FitSetup, BadOptionsAreNamed) {
 // Before the recordings are known auto may be either preset: what one of them takes is no error.
 TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
   for (const GivenOptions& given :
-       {GivenOptions{{"pooling_sigma", "0.4"}}, GivenOptions{{"pool", "contact_stiffness"}},
-        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time,tail_exponent"}}}) {
+       {GivenOptions{{"pool", "contact_stiffness"}},
+        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
     EXPECT_EQ(Complaint(given), "") << given[0].first;
     EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
   }

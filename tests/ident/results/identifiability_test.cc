@@ -100,7 +100,7 @@ TEST(Identifiability, NoEffectIsNamed) {
   study.push_kind = PushKind::kExternal;
   study.strengths = {{"weak", 0.5}, {"strong", 1.0}};
   const FitResult result = FitEdited(study, {});
-  const Names tail = {"tail_gain", "tail_torque", "tail_time", "tail_exponent"};
+  const Names tail = {"tail_gain", "tail_torque", "tail_time"};
   EXPECT_EQ(Unidentifiable(result), tail);
   ExpectOthersFinite(result, tail);
   Names named;

@@ -35,6 +35,7 @@ TEST(Pooling, SubjectsKeepTheirOwnAndShrinkTogether) {
   for (double sigma : {100.0, 0.2, 0.02, 0.002}) {
     FitOptions options = ExactFit(study);
     options.table[kMu].pooled = true;
+    options.table[kMu].pooling_sigma = sigma;
     options.pooling_sigma = sigma;
     const FitResult result = Fit(recordings, options);
     ASSERT_TRUE(result.ok());
@@ -80,7 +81,7 @@ TEST(Pooling, SettingsKeepTheirOwnContact) {
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   options.pool_by = PoolBy::kSetting;
   options.table[kContactDistance].pooled = true;
-  options.pooling_sigma = 10.0;
+  options.pooling_sigma = options.table[kContactDistance].pooling_sigma = 10.0;
   const FitResult result = Fit(recordings, options);
   ASSERT_TRUE(result.ok());
   EXPECT_NEAR(result.settings.at("near").at("contact_distance").value, 0.38, 1e-3);
