@@ -1,0 +1,99 @@
+// ident: directions that the data hardly know, in words.
+#include "ident/uncertainty/held_directions.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kHeldShare = 0.5;
+constexpr double kPartOf = 0.3;  // of the largest component: what counts as part of a direction
+
+// The information on `kept`, everything else integrated out.
+Eigen::MatrixXd Marginal(const Eigen::MatrixXd& information, const std::vector<int>& kept,
+                         const std::vector<int>& rest) {
+  const Eigen::MatrixXd own = information(kept, kept);
+  if (rest.empty()) return own;
+  const Eigen::MatrixXd cross = information(rest, kept), others = information(rest, rest);
+  return own - cross.transpose() * others.completeOrthogonalDecomposition().solve(cross);
+}
+
+// change: of each kept parameter along the direction, natural units.
+std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen::VectorXd& change,
+                     double share) {
+  Eigen::VectorXd size(change.size());
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    size[i] = std::abs(change[i]) / specs[static_cast<size_t>(i)]->scale;
+  }
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    if (size[i] >= kPartOf * size.maxCoeff()) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&size](auto a, auto b) { return size[a] > size[b]; });
+  const std::string percent = Rounded(std::round(100.0 * share), 3) + " %";
+  const ParameterSpec& first = *specs[static_cast<size_t>(order[0])];
+  if (order.size() == 1) {
+    return "the data alone hardly know " + first.name + " (their share of it: " + percent + ")";
+  }
+  if (order.size() == 2) {
+    const ParameterSpec& second = *specs[static_cast<size_t>(order[1])];
+    const double slope = change[order[0]] / change[order[1]];
+    return "the data alone know " + first.name + (slope > 0.0 ? " - " : " + ") +
+           Rounded(std::abs(slope), 2) + " " + second.name +
+           " better than either: where along it the two stand is put in (data: " + percent + ")";
+  }
+  std::string names;
+  for (size_t k = 0; k < order.size(); ++k) {
+    names += (k == 0 ? "" : k + 1 == order.size() ? " and " : ", ") +
+             specs[static_cast<size_t>(order[k])]->name;
+  }
+  return "the data alone hardly tell " + names + " apart: where they stand together is put in " +
+         "(data: " + percent + ")";
+}
+
+}  // namespace
+
+std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
+                                        const Covariance& covariance,
+                                        const std::vector<bool>& at_bound) {
+  const auto& fitted = problem.map().fitted;
+  std::vector<int> kept, rest;
+  std::vector<const ParameterSpec*> specs;
+  Eigen::VectorXd slope(0);
+  for (int i = 0; i < covariance.by_data.rows(); ++i) {
+    const bool shared = i < static_cast<int>(fitted.size());
+    if (at_bound[static_cast<size_t>(i)]) continue;
+    if (!shared) {
+      rest.push_back(i);
+      continue;
+    }
+    kept.push_back(i);
+    const FittedParameter& f = fitted[static_cast<size_t>(i)];
+    specs.push_back(&problem.options().table[f.parameter]);
+    slope.conservativeResize(slope.size() + 1);
+    slope[slope.size() - 1] =
+        TransformSlope(f.transform, ToNatural(f.transform, point.shared[static_cast<size_t>(i)]));
+  }
+  std::vector<std::string> sentences;
+  if (kept.empty()) return sentences;
+  const Eigen::MatrixXd data =
+      Marginal(covariance.by_data + covariance.by_pooling, kept, rest);
+  const Eigen::MatrixXd put_in = (covariance.by_prior + covariance.by_settling)(kept, kept);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(data + put_in);
+  if (!(all.eigenvalues().minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere
+  const Eigen::MatrixXd root = all.operatorInverseSqrt();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(root * data * root);
+  for (Eigen::Index k = 0; k < shares.eigenvalues().size(); ++k) {
+    const double share = std::max(0.0, shares.eigenvalues()[k]);
+    if (share >= kHeldShare) break;  // ascending
+    const Eigen::VectorXd direction = root * shares.eigenvectors().col(k);
+    sentences.push_back(Sentence(specs, slope.cwiseProduct(direction), share));
+  }
+  return sentences;
+}
+
+}  // namespace pushid

@@ -1,0 +1,22 @@
+// ident: directions that the data hardly know: where priors and demands decide.
+//
+// H = H_data + H_put_in over the shared parameters (deviations of units integrated out). The
+// eigenvalues of H^-1/2 H_data H^-1/2 are the data's shares, direction by direction; along one whose
+// share is below 50 % the estimate is what was put in. Where two parameters make most of it, the
+// data still know a combination of the two.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/covariance.h"
+
+namespace pushid {
+
+// One sentence for each. at_bound: columns that do not move.
+std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
+                                        const Covariance& covariance,
+                                        const std::vector<bool>& at_bound);
+
+}  // namespace pushid
