@@ -12,6 +12,7 @@
 #include "datasets/files/atomic_file.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/design_text.h"
+#include "ident/report/studies_text.h"
 #include "ident/results/confidence.h"
 
 DEFINE_string(profile, "",
@@ -21,8 +22,8 @@ DEFINE_int32(bootstrap, 0, "refit so many resamples of the recordings; 199 is a 
 DEFINE_string(bootstrap_file, "",
               "keeps finished replicas, so that a run that was interrupted goes on from there");
 DEFINE_string(design, "",
-              "which further push would lower the standard error of this parameter most; all: of "
-              "all together");
+              "which further push would lower the standard error of this parameter most (all: of "
+              "all together), and what a force sensor and more people would");
 
 namespace pushid {
 namespace {
@@ -112,11 +113,13 @@ Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordin
   const FitProblem problem(recordings, result.options);
   const FitPoint& estimate = result.starts[result.best_start].to;
   const ExperimentDesign design =
-      DesignExperiments(problem, estimate, result.uncertainty, DefaultCandidates(recordings));
-  if (!design.refused.empty()) return "\nno design: " + design.refused + "\n";
+      DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
+                        DefaultCandidates(recordings));
+  const std::string studies = "\n" + StudiesText(design.studies, FLAGS_design);
+  if (!design.refused.empty()) return "\nno further push: " + design.refused + "\n" + studies;
   Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
   if (!text.ok()) return Error{"--design: " + text.error().message};
-  return "\n" + text.value();
+  return "\n" + text.value() + studies;
 }
 
 }  // namespace pushid

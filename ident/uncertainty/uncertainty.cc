@@ -168,8 +168,13 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
 
 }  // namespace
 
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point) {
+  Evaluated e = Evaluate(problem, point, true);
+  return {std::move(e.score), std::move(e.unit)};
+}
+
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
-  const Evaluated e = Evaluate(problem, point, true);
+  const ScoredFit e = ScoreAt(problem, point);
   return ComputeCovariance(e.score, e.unit);
 }
 

@@ -26,7 +26,8 @@ ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingVi
     recordings.push_back(view.run.recording);
   }
   const FitProblem problem(recordings, result.options);
-  return DesignExperiments(problem, result.starts[result.best_start].to, result.uncertainty,
+  const FitPoint& estimate = result.starts[result.best_start].to;
+  return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
                            DefaultCandidates(recordings));
 }
 
