@@ -10,7 +10,9 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/push/push_check.h"
 #include "ident/report/design_text.h"
 #include "ident/report/studies_text.h"
 #include "ident/results/confidence.h"
@@ -24,6 +26,15 @@ DEFINE_string(bootstrap_file, "",
 DEFINE_string(design, "",
               "which further push would lower the standard error of this parameter most (all: of "
               "all together), and what a force sensor and more people would");
+
+DEFINE_bool(push_check, false,
+            "fit again with pushes that might as well have been recorded: other windows and "
+            "smoothing of inverse dynamics, sensor noise and a frame's shift of measured ones");
+DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
+              "noise of the push's sensor, as a share of the push's peak, for --push_check");
+DEFINE_bool(horizon_check, false,
+            "fit again the first 8, 16, 32 and 64 frames: a parameter that means something keeps "
+            "its value");
 
 namespace pushid {
 namespace {
@@ -62,6 +73,13 @@ MaybeError CheckConfidenceFlags() {
   if (!FLAGS_bootstrap_file.empty() && FLAGS_bootstrap == 0) {
     return Error{"--bootstrap_file needs --bootstrap=N"};
   }
+  if (!(FLAGS_push_check_noise >= 0.0 && FLAGS_push_check_noise <= 1.0)) {
+    return Error{"--push_check_noise is " + DoubleText(FLAGS_push_check_noise) +
+                 "; it must be from 0 to 1, a share of the push's peak"};
+  }
+  if (Given("push_check_noise") && !FLAGS_push_check) {
+    return Error{"--push_check_noise needs --push_check"};
+  }
   return FLAGS_bootstrap_file.empty() ? std::nullopt : CheckWritable(FLAGS_bootstrap_file);
 }
 
@@ -74,6 +92,11 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
     return Error{
         "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
         "reaches; let --network_prior guard the training instead"};
+  }
+  if (NeedsGradientTraining(options) && (FLAGS_push_check || FLAGS_horizon_check)) {
+    return Error{
+        "--push_check and --horizon_check fit many times, and this network is trained by its "
+        "gradient; choose a smaller one"};
   }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";
@@ -103,6 +126,18 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
             AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), model)) {
       return *error;
     }
+  }
+  if (FLAGS_push_check) {
+    PushVariantOptions options;
+    options.sensor_noise = FLAGS_push_check_noise;
+    options.seed = Seed();
+    if (MaybeError error =
+            AddPushCheck(recordings, options, NumThreads(), Show(&line, "push"), model)) {
+      return Error{"--push_check: " + error->ToString()};
+    }
+  }
+  if (FLAGS_horizon_check) {
+    AddHorizonCheck(recordings, NumThreads(), Show(&line, "horizon"), model);
   }
   return std::nullopt;
 }

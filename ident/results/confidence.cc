@@ -2,6 +2,7 @@
 #include "ident/results/confidence.h"
 
 #include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/horizon_check.h"
 
 namespace pushid {
 
@@ -26,6 +27,13 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
   if (!bootstrap.ok()) return bootstrap.error();
   model->bootstrap = std::move(bootstrap.value());
   return std::nullopt;
+}
+
+void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,
+                     const JobProgress& progress, FittedModel* model) {
+  const FitProblem problem(recordings, model->fit.options);
+  model->horizon_check = CheckHorizons(problem, model->fit.starts[model->fit.best_start].to,
+                                       model->fit.uncertainty, num_threads, progress);
 }
 
 }  // namespace pushid

@@ -7,6 +7,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -266,6 +267,10 @@ class ModelReader {
     result_.behaviour = BehaviourFrom(At("behaviour"));
     if (json_.contains("profiles")) model_.profiles = ProfilesFromJson(At("profiles"));
     if (json_.contains("bootstrap")) model_.bootstrap = BootstrapFromJson(At("bootstrap"));
+    if (json_.contains("push_check")) model_.push_check = RefitTableFromJson(At("push_check"));
+    if (json_.contains("horizon_check")) {
+      model_.horizon_check = RefitTableFromJson(At("horizon_check"));
+    }
     if (json_.contains("diagnostics")) {
       result_.diagnostics = DiagnosticsFromJson(At("diagnostics"));
       model_.advice = AdviceFrom(At("diagnostics").at("advice"));

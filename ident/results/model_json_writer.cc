@@ -5,6 +5,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -225,6 +226,8 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);
+  if (model.push_check) json["push_check"] = ToJson(*model.push_check);
+  if (model.horizon_check) json["horizon_check"] = ToJson(*model.horizon_check);
   return json;
 }
 

@@ -48,6 +48,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.sections = {SummarySection(model),   ParameterSection(model),
                      UnitSection(model),      IdentifiabilitySection(model),
                      ProfileSection(model),   BootstrapSection(model),
+                     PushCheckSection(model), HorizonCheckSection(model),
                      BehaviourSection(model), FigureSection(views),
                      MotionSection(views),    RecordingSection(model),
                      LeverageSection(model),  ResidualSection(model),
