@@ -10,8 +10,11 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/push/push_check.h"
 #include "ident/report/design_text.h"
+#include "ident/report/studies_text.h"
 #include "ident/results/confidence.h"
 
 DEFINE_string(profile, "",
@@ -21,8 +24,19 @@ DEFINE_int32(bootstrap, 0, "refit so many resamples of the recordings; 199 is a 
 DEFINE_string(bootstrap_file, "",
               "keeps finished replicas, so that a run that was interrupted goes on from there");
 DEFINE_string(design, "",
-              "which further push would lower the standard error of this parameter most; all: of "
-              "all together");
+              "which further push would lower the standard error of this parameter most (all: of "
+              "all together), and what a force sensor and more people would");
+
+DEFINE_bool(push_check, false,
+            "fit again with pushes that might as well have been recorded: other windows and "
+            "smoothing of inverse dynamics, sensor noise and a frame's shift of measured ones");
+DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
+              "noise of the push's sensor, as a share of the push's peak, for --push_check");
+DEFINE_bool(prior_check, false,
+            "refit with centres and widths of all priors halved, and doubled");
+DEFINE_bool(horizon_check, false,
+            "fit again the first 8, 16, 32 and 64 frames: a parameter that means something keeps "
+            "its value");
 
 namespace pushid {
 namespace {
@@ -61,6 +75,13 @@ MaybeError CheckConfidenceFlags() {
   if (!FLAGS_bootstrap_file.empty() && FLAGS_bootstrap == 0) {
     return Error{"--bootstrap_file needs --bootstrap=N"};
   }
+  if (!(FLAGS_push_check_noise >= 0.0 && FLAGS_push_check_noise <= 1.0)) {
+    return Error{"--push_check_noise is " + DoubleText(FLAGS_push_check_noise) +
+                 "; it must be from 0 to 1, a share of the push's peak"};
+  }
+  if (Given("push_check_noise") && !FLAGS_push_check) {
+    return Error{"--push_check_noise needs --push_check"};
+  }
   return FLAGS_bootstrap_file.empty() ? std::nullopt : CheckWritable(FLAGS_bootstrap_file);
 }
 
@@ -73,6 +94,11 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
     return Error{
         "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
         "reaches; let --network_prior guard the training instead"};
+  }
+  if (NeedsGradientTraining(options) && (FLAGS_push_check || FLAGS_horizon_check || FLAGS_prior_check)) {
+    return Error{
+        "--push_check, --horizon_check and --prior_check fit many times, and this network is trained by its "
+        "gradient; choose a smaller one"};
   }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";
@@ -103,6 +129,19 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
       return *error;
     }
   }
+  if (FLAGS_push_check) {
+    PushVariantOptions options;
+    options.sensor_noise = FLAGS_push_check_noise;
+    options.seed = Seed();
+    if (MaybeError error =
+            AddPushCheck(recordings, options, NumThreads(), Show(&line, "push"), model)) {
+      return Error{"--push_check: " + error->ToString()};
+    }
+  }
+  if (FLAGS_prior_check) AddPriorCheck(recordings, model);
+  if (FLAGS_horizon_check) {
+    AddHorizonCheck(recordings, NumThreads(), Show(&line, "horizon"), model);
+  }
   return std::nullopt;
 }
 
@@ -112,11 +151,13 @@ Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordin
   const FitProblem problem(recordings, result.options);
   const FitPoint& estimate = result.starts[result.best_start].to;
   const ExperimentDesign design =
-      DesignExperiments(problem, estimate, result.uncertainty, DefaultCandidates(recordings));
-  if (!design.refused.empty()) return "\nno design: " + design.refused + "\n";
+      DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
+                        DefaultCandidates(recordings));
+  const std::string studies = "\n" + StudiesText(design.studies, FLAGS_design);
+  if (!design.refused.empty()) return "\nno further push: " + design.refused + "\n" + studies;
   Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
   if (!text.ok()) return Error{"--design: " + text.error().message};
-  return "\n" + text.value();
+  return "\n" + text.value() + studies;
 }
 
 }  // namespace pushid

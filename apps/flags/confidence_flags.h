@@ -1,5 +1,5 @@
-// apps: the flags of pushid-fit that ask how sure a fit is: profiles, bootstrap, and
-// the next push to record.
+// apps: the flags of pushid-fit that ask how sure a fit is: profiles, bootstrap, other
+// pushes, shorter horizons, and what to record next.
 #pragma once
 
 #include <vector>

@@ -132,6 +132,15 @@ Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& resu
   return FromBootstrap(result, *options.bootstrap, options);
 }
 
+std::vector<std::vector<Vector3<double>>> MedianHip(const PredictiveBands& bands) {
+  std::vector<std::vector<Vector3<double>>> hip;
+  for (const PathBand& band : bands.people) {
+    hip.emplace_back();
+    for (const BandPoint& point : band.median) hip.back().push_back(point.head<3>());
+  }
+  return hip;
+}
+
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
                                   const std::vector<PendulumRecording>& fitted) {
   std::vector<ErrorPath> paths;

@@ -7,6 +7,11 @@
 // fitted recording is added, per impulse over mass, so that a harder push errs farther. Without the
 // second part the bands say where the *mean* person goes; they hold a new recording far less often
 // than their name says (pushid-crossvalidate --bands measures both).
+//
+// The line of a band is its median, not the rollout at the estimate: the errors of the fitted
+// recordings do not average to zero where the model misses something, and paths bend where
+// parameters are drawn, so that the rollout may lie aside of the middle, even outside the 50 %
+// band. Forces and animations belong to the rollout: a median of paths obeys no equation of motion.
 #pragma once
 
 #include <string>
@@ -33,6 +38,9 @@ struct PredictiveBands {
   int samples = 0, failed = 0;   // rollouts that left the domain are in no band
   std::vector<PathBand> people;  // empty when every rollout failed
 };
+
+// The lines of the bands: hip positions by person and frame.
+std::vector<std::vector<Vector3<double>>> MedianHip(const PredictiveBands& bands);
 
 struct BandOptions {
   int samples = 200;
@@ -69,6 +77,9 @@ struct BandCoverage {
   double inside50[2] = {0.0, 0.0}, inside50_error[2] = {0.0, 0.0};
   double inside90[2] = {0.0, 0.0}, inside90_error[2] = {0.0, 0.0};
   double width90[2] = {0.0, 0.0};  // mean, m
+  // hipADE of the bands' median, and of the rollout at the estimate, m.
+  double median_ade = 0.0, median_ade_error = 0.0;
+  double rollout_ade = 0.0, rollout_ade_error = 0.0;
 };
 
 // Of recordings that were not fitted, with and without model error.

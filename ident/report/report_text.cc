@@ -10,6 +10,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/preparation_text.h"
+#include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/starts_text.h"
 #include "ident/solver/large_network_stage.h"
@@ -88,10 +89,14 @@ std::string ReportText(const FittedModel& model) {
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
+  for (const std::string& held : result.uncertainty.held_directions) text += "put in: " + held + "\n";
   const TextTable agreement = AgreementTable(model);
   if (agreement.rows().size() > 1) {
     text += agreement.ToString() + AgreementNote(model) + "\n";
   }
+  if (model.push_check) text += PushCheckText(*model.push_check) + "\n";
+  if (model.prior_check) text += PriorCheckText(*model.prior_check) + "\n";
+  if (model.horizon_check) text += HorizonCheckText(*model.horizon_check) + "\n";
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);

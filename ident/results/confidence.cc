@@ -2,6 +2,8 @@
 #include "ident/results/confidence.h"
 
 #include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/horizon_check.h"
+#include "ident/uncertainty/prior_check.h"
 
 namespace pushid {
 
@@ -26,6 +28,30 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
   if (!bootstrap.ok()) return bootstrap.error();
   model->bootstrap = std::move(bootstrap.value());
   return std::nullopt;
+}
+
+void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model) {
+  FitResult& fit = model->fit;
+  const FitProblem problem(recordings, fit.options);
+  model->prior_check =
+      CheckPriors(problem, fit.starts[fit.best_start].to, fit.uncertainty);
+  const RefitTable& check = *model->prior_check;
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    Estimate& known = fit.uncertainty.estimates[i];
+    if (known.status != EstimateStatus::kIdentified) continue;
+    if (PriorsLeaveInside(check, i, fit.uncertainty)) continue;
+    known.status = EstimateStatus::kWeak;
+    for (Estimate& e : fit.estimates) {
+      if (e.name == known.name) e.status = EstimateStatus::kWeak;
+    }
+  }
+}
+
+void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,
+                     const JobProgress& progress, FittedModel* model) {
+  const FitProblem problem(recordings, model->fit.options);
+  model->horizon_check = CheckHorizons(problem, model->fit.starts[model->fit.best_start].to,
+                                       model->fit.uncertainty, num_threads, progress);
 }
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: profiles and bootstrap of a finished fit.
+// ident: profiles, bootstrap and shorter horizons of a finished fit.
 #pragma once
 
 #include <string>
@@ -15,5 +15,9 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FittedModel* model);
+// An identified parameter that leaves its interval under other priors becomes weak.
+void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model);
+void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,
+                     const JobProgress& progress, FittedModel* model);
 
 }  // namespace pushid

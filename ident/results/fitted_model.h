@@ -10,6 +10,7 @@
 #include "ident/results/provenance.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/profile.h"
+#include "ident/uncertainty/refit_table.h"
 
 namespace pushid {
 
@@ -19,6 +20,9 @@ struct FittedModel {
   std::optional<Bootstrap> bootstrap;  // absent unless asked for
   std::vector<Advice> advice;          // report/advice.h
   Provenance provenance;
+  // Absent unless asked for: refits with other pushes (push_check.h), and of fewer frames
+  // (horizon_check.h).
+  std::optional<RefitTable> push_check{}, horizon_check{}, prior_check{};
 };
 
 }  // namespace pushid

@@ -7,6 +7,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -99,6 +100,7 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
   u.correlation = MatrixFrom(json.at("correlation"));
   u.null_directions = NullDirectionsFrom(json.at("null_directions"));
+  if (json.contains("held_directions")) u.held_directions = json.at("held_directions").get<std::vector<std::string>>();
   if (json.contains("settling")) {
     const Json& s = json.at("settling");
     u.settling = {s.at("binds"), s.at("contradicted"), NumberFrom(s.at("rise")),
@@ -290,6 +292,13 @@ class ModelReader {
     result_.behaviour = BehaviourFrom(At("behaviour"));
     if (json_.contains("profiles")) model_.profiles = ProfilesFromJson(At("profiles"));
     if (json_.contains("bootstrap")) model_.bootstrap = BootstrapFromJson(At("bootstrap"));
+    if (json_.contains("push_check")) model_.push_check = RefitTableFromJson(At("push_check"));
+    if (json_.contains("prior_check")) {
+      model_.prior_check = RefitTableFromJson(At("prior_check"));
+    }
+    if (json_.contains("horizon_check")) {
+      model_.horizon_check = RefitTableFromJson(At("horizon_check"));
+    }
     if (json_.contains("diagnostics")) {
       result_.diagnostics = DiagnosticsFromJson(At("diagnostics"));
       model_.advice = AdviceFrom(At("diagnostics").at("advice"));

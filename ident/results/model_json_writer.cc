@@ -5,6 +5,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -56,6 +57,7 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"covariance_fitted_scale", MatrixJson(u.covariance)},
           {"correlation", MatrixJson(u.correlation)},
           {"null_directions", NullDirectionsJson(u.null_directions)},
+          {"held_directions", u.held_directions},
           {"settling",
            {{"binds", u.settling.binds},
             {"contradicted", u.settling.contradicted},
@@ -248,6 +250,9 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);
+  if (model.push_check) json["push_check"] = ToJson(*model.push_check);
+  if (model.prior_check) json["prior_check"] = ToJson(*model.prior_check);
+  if (model.horizon_check) json["horizon_check"] = ToJson(*model.horizon_check);
   return json;
 }
 

@@ -64,4 +64,11 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
                              const Clustering& clustering,
                              double null_value = kNullSingularValue);
 
+// What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
+struct ScoredFit {
+  JacobianBlocks score;
+  Eigen::VectorXd unit;
+};
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point);
+
 }  // namespace pushid

@@ -1,48 +1,52 @@
 // ident: refits with other priors.
 #include "ident/uncertainty/prior_check.h"
 
+#include <algorithm>
+
+#include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
+#include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 namespace {
 
-// Shared values on the fitted scale; empty where the refit fails.
-std::vector<double> RefitWith(const FitProblem& problem, const FitPoint& estimate, double factor) {
+RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const std::string& name,
+                   double factor) {
+  RefitRow row{"priors", name, {}, {}, "", 0};
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) {
     if (spec.prior) spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
   }
   const FitProblem other(problem.recordings(), options, problem.counts());
   const SolveStart refit = Refit(other, estimate);
-  return refit.failed.empty() ? refit.to.shared : std::vector<double>();
+  if (refit.failed.empty()) {
+    row.value = SharedValues(other, refit.to);
+  } else {
+    row.failure = "a rollout left the model's domain";
+  }
+  return row;
 }
 
 }  // namespace
 
-std::vector<PriorCheckRow> CheckPriors(const FitProblem& problem, const FitPoint& estimate,
-                                       const Uncertainty& uncertainty) {
+RefitTable CheckPriors(const FitProblem& problem, const FitPoint& estimate,
+                       const Uncertainty& uncertainty) {
+  RefitTable table = RefitTableOf(problem, estimate, uncertainty);
   const auto& fitted = problem.map().fitted;
-  bool any = false;
-  for (const FittedParameter& f : fitted) {
-    any = any || problem.options().table[f.parameter].prior.has_value();
-  }
-  if (!any) return {};
-  const std::vector<double> halved = RefitWith(problem, estimate, 0.5);
-  const std::vector<double> doubled = RefitWith(problem, estimate, 2.0);
-  if (halved.empty() || doubled.empty()) return {};
-  std::vector<PriorCheckRow> rows;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    const Estimate& e = uncertainty.estimates[i];
-    PriorCheckRow row{e.name, e.unit};
-    row.value = e.value;
-    row.halved = ToNatural(fitted[i].transform, halved[i]);
-    row.doubled = ToNatural(fitted[i].transform, doubled[i]);
-    for (double value : {row.halved, row.doubled}) {
-      row.inside = row.inside && e.lower95 <= value && value <= e.upper95;
-    }
-    rows.push_back(row);
-  }
-  return rows;
+  const bool any = std::any_of(fitted.begin(), fitted.end(), [&problem](const FittedParameter& f) {
+    return problem.options().table[f.parameter].prior.has_value();
+  });
+  if (!any) return table;
+  table.rows = {RefitWith(problem, estimate, "halved", 0.5),
+                RefitWith(problem, estimate, "doubled", 2.0)};
+  return table;
+}
+
+bool PriorsLeaveInside(const RefitTable& check, size_t index, const Uncertainty& uncertainty) {
+  const Estimate& e = uncertainty.estimates[index];
+  return std::all_of(check.rows.begin(), check.rows.end(), [&](const RefitRow& row) {
+    return !row.value.empty() && e.lower95 <= row.value[index] && row.value[index] <= e.upper95;
+  });
 }
 
 }  // namespace pushid

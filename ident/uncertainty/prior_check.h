@@ -4,23 +4,16 @@
 // carry the same priors.
 #pragma once
 
-#include <string>
-#include <vector>
-
-#include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/uncertainty.h"
+#include "ident/uncertainty/refit_table.h"
 
 namespace pushid {
 
-struct PriorCheckRow {
-  std::string name, unit;
-  double halved = 0.0, value = 0.0, doubled = 0.0;  // natural unit
-  bool inside = true;  // both within the 95 % interval
-};
+// Two rows, halved and doubled, refitted from the estimate at the same weights of the data; none
+// where no free parameter has a prior.
+RefitTable CheckPriors(const FitProblem& problem, const FitPoint& estimate,
+                       const Uncertainty& uncertainty);
 
-// Refits from the estimate, at the same weights of the data. Empty where no free parameter has a
-// prior, or where a refit fails.
-std::vector<PriorCheckRow> CheckPriors(const FitProblem& problem, const FitPoint& estimate,
-                                       const Uncertainty& uncertainty);
+// Whether every refit leaves parameter `index` inside its 95 % interval; a failed one does not.
+bool PriorsLeaveInside(const RefitTable& check, size_t index, const Uncertainty& uncertainty);
 
 }  // namespace pushid

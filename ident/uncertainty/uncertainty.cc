@@ -9,6 +9,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/held_directions.h"
 #include "ident/uncertainty/null_directions.h"
 #include "models/cart_damping.h"
 
@@ -226,6 +227,11 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
 
 }  // namespace
 
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point) {
+  Evaluated e = Evaluate(problem, point, true);
+  return {std::move(e.score), std::move(e.unit)};
+}
+
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
   const Evaluated e = Evaluate(problem, point, true);
   return ComputeCovariance(e.score, e.unit, e.clustering);
@@ -284,6 +290,9 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                        touched && !columns[i].at_bound));
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
+  std::vector<bool> at_bound;
+  for (const Column& column : columns) at_bound.push_back(column.at_bound);
+  u.held_directions = HeldDirections(problem, point, c, at_bound);
   return u;
 }
 

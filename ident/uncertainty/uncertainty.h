@@ -107,6 +107,8 @@ struct Uncertainty {
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
   Eigen::MatrixXd correlation;      // of that covariance
   std::vector<NullDirection> null_directions;
+  // Sentences of directions in which priors and demands decide (held_directions.h).
+  std::vector<std::string> held_directions;
   SettlingDemand settling;
 };
 

@@ -4,6 +4,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/time_series.h"
 #include "ident/results/fit.h"
@@ -15,13 +16,18 @@ namespace {
 struct Held {
   bool ok = false;
   double inside50[2] = {0.0, 0.0}, inside90[2] = {0.0, 0.0}, width90[2] = {0.0, 0.0};
+  double median_ade = 0.0, rollout_ade = 0.0;
 };
 
 // Of the pushed person: bystanders of a single recording stand still, and groups err by contact.
-Held CountInside(const PredictiveBands& bands, const PendulumRecording& recording) {
+Held CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
+                 const PendulumRecording& recording) {
   Held held;
-  if (bands.people.empty()) return held;
+  const Prediction rollout = Predict(model, recording);
+  if (bands.people.empty() || !rollout.status.ok) return held;
   held.ok = true;
+  held.median_ade = ScoreHip(recording, MedianHip(bands)).hip_ade;
+  held.rollout_ade = ScoreHip(recording, rollout.hip).hip_ade;
   const PathBand& band = bands.people[recording.pushed_person];
   const double share = 1.0 / (recording.num_frames() - 1);
   for (int t = 1; t < recording.num_frames(); ++t) {
@@ -41,11 +47,17 @@ Held CountInside(const PredictiveBands& bands, const PendulumRecording& recordin
 BandCoverage MeanCoverage(const std::vector<std::vector<Held>>& by_recording, bool model_error) {
   BandCoverage coverage;
   coverage.model_error = model_error;
-  std::vector<double> inside50[2], inside90[2], width[2];
+  std::vector<double> inside50[2], inside90[2], width[2], median, rollout;
   for (const std::vector<Held>& repeats : by_recording) {
     if (repeats.empty()) continue;
     ++coverage.recordings;
     const double share = 1.0 / static_cast<double>(repeats.size());
+    median.push_back(0.0);
+    rollout.push_back(0.0);
+    for (const Held& held : repeats) {
+      median.back() += share * held.median_ade;
+      rollout.back() += share * held.rollout_ade;
+    }
     for (int axis : {0, 1}) {
       double a = 0.0, b = 0.0, c = 0.0;
       for (const Held& held : repeats) {
@@ -66,6 +78,11 @@ BandCoverage MeanCoverage(const std::vector<std::vector<Held>>& by_recording, bo
     coverage.inside90_error[axis] = b.error;
     coverage.width90[axis] = MeanOf(width[axis]).mean;
   }
+  const MeanAndError of_median = MeanOf(median), of_rollout = MeanOf(rollout);
+  coverage.median_ade = of_median.mean;
+  coverage.median_ade_error = of_median.error;
+  coverage.rollout_ade = of_rollout.mean;
+  coverage.rollout_ade_error = of_rollout.error;
   return coverage;
 }
 
@@ -95,12 +112,13 @@ std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording
         if (!result.ok()) return;
         const auto samples = SampleParameters(result, bands);
         const std::vector<ErrorPath> errors = ErrorPaths(result, training);
+        const IdentifiedModel model = ModelOf(result);
         for (size_t k = 0; k < folds[f].held_out.size(); ++k) {
           const PendulumRecording& held = recordings[folds[f].held_out[k]];
           without[f][k] =
-              CountInside(ComputeBands(result, samples.value(), {}, held, bands.seed), held);
-          with[f][k] =
-              CountInside(ComputeBands(result, samples.value(), errors, held, bands.seed), held);
+              CountInside(ComputeBands(result, samples.value(), {}, held, bands.seed), model, held);
+          with[f][k] = CountInside(ComputeBands(result, samples.value(), errors, held, bands.seed),
+                                   model, held);
         }
       },
       progress);
@@ -130,9 +148,16 @@ std::string BandCoverageText(const std::vector<BandCoverage>& coverage) {
                  percent(c.inside90[axis], c.inside90_error[axis]), Rounded(c.width90[axis], 3)});
     }
   }
-  return table.ToString() + "share of held-out frames of " +
-         std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
-         " recordings whose measured hip lies in the predictive bands\n";
+  std::string text = table.ToString() + "share of held-out frames of " +
+                     std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
+                     " recordings whose measured hip lies in the predictive bands\n";
+  for (const BandCoverage& c : coverage) {
+    if (!c.model_error) continue;
+    text += kHipMetrics[0].name + std::string(" of their median ") + Rounded(c.median_ade, 3) +
+            " +- " + Rounded(c.median_ade_error, 2) + " m, of the rollout at the estimate " +
+            Rounded(c.rollout_ade, 3) + " +- " + Rounded(c.rollout_ade_error, 2) + " m\n";
+  }
+  return text;
 }
 
 }  // namespace pushid

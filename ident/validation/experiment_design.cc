@@ -8,7 +8,6 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/uncertainty/covariance.h"
 
 namespace pushid {
 namespace {
@@ -171,7 +170,7 @@ std::vector<int> KnownParameters(const Uncertainty& uncertainty, int shared) {
   std::vector<int> known;
   for (int i = 0; i < shared; ++i) {
     const EstimateStatus status = uncertainty.estimates[i].status;
-    if (status == EstimateStatus::kIdentified || status == EstimateStatus::kWeak) {
+    if (status != EstimateStatus::kUnidentifiable && status != EstimateStatus::kAtBound) {
       known.push_back(i);
     }
   }
@@ -181,35 +180,34 @@ std::vector<int> KnownParameters(const Uncertainty& uncertainty, int shared) {
 }  // namespace
 
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
-                                   const Uncertainty& uncertainty,
+                                   const Uncertainty& uncertainty, const ErrorParts& parts,
                                    const std::vector<CandidatePush>& candidates) {
-  const Covariance covariance = CovarianceAt(problem, estimate);
   const std::vector<int> known = KnownParameters(uncertainty, problem.map().num_shared());
   ExperimentDesign design;
+  design.studies = PlanStudies(problem, estimate, parts, known);
   design.kind = UsualKind(problem.recordings());
   for (int i : known) {
     design.parameters.push_back(uncertainty.estimates[i].name);
     design.units.push_back(uncertainty.estimates[i].unit);
     design.standard_error.push_back(uncertainty.estimates[i].standard_error);
   }
-  const int size = static_cast<int>(known.size());
-  if (size == 0 || uncertainty.num_clusters - 1 < size) {
+  const int size = static_cast<int>(known.size()), groups = parts.num_recordings();
+  if (size == 0 || groups - 1 < size) {
     design.refused = "what one more recording would tell needs more recordings (" +
-                     std::to_string(uncertainty.num_clusters) + ") than free parameters (" +
-                     std::to_string(size) + ") and one";
+                     std::to_string(groups) + ") than free parameters (" + std::to_string(size) +
+                     ") and one";
     return design;
   }
-  const Eigen::MatrixXd now = uncertainty.covariance(known, known);
+  const Eigen::MatrixXd now = parts.by_recording(known, known);
   const Eigen::MatrixXd present = now.inverse();
-  const Eigen::MatrixXd spread =
-      SpreadRoot(now, covariance.naive(known, known), std::max(1, uncertainty.num_clusters));
+  const Eigen::MatrixXd spread = SpreadRoot(now, parts.naive(known, known), groups);
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
     if (Falls(candidate)) continue;
     const Eigen::MatrixXd jacobian =
         CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
     const Eigen::MatrixXd information =
-        jacobian.transpose() * jacobian / (covariance.sigma * covariance.sigma);
+        jacobian.transpose() * jacobian / (parts.sigma * parts.sigma);
     const Eigen::MatrixXd then = (present + WithSpread(information, spread)).inverse();
     DesignRow row;
     row.push = push;

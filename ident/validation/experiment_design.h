@@ -2,7 +2,7 @@
 // a kind would bring.
 //
 // A recording's own gains deviate from the shared ones by the spread T between recordings, and are
-// seen through noise. With V the clustered covariance of the G present recordings, V_naive the one
+// seen through noise. With V the covariance clustered by the G present recordings, V_naive the one
 // that takes all errors for noise, and I_c = J_c'J_c / sigma^2 of a candidate, whose Jacobian comes
 // from rolling the model out at the estimate (no data needed):
 //
@@ -22,6 +22,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "ident/validation/study_plan.h"
 
 namespace pushid {
 
@@ -45,14 +46,16 @@ struct ExperimentDesign {
   std::vector<double> standard_error;  // now
   PushKind kind = PushKind::kNet;      // of the candidates: that of most recordings
   std::vector<DesignRow> rows;         // candidates that fell are left out
+  StudyPlan studies;                   // a force sensor, more people; even where there is no push
 };
 
 // Directions forward, oblique, sideways and back; strengths, durations and masses as wide as those
 // of the recordings; at the hip and lower.
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings);
 
+// uncertainty: which parameters have an error to lower.
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
-                                   const Uncertainty& uncertainty,
+                                   const Uncertainty& uncertainty, const ErrorParts& parts,
                                    const std::vector<CandidatePush>& candidates);
 
 // The recording a candidate would be: an upright person at rest, and the motion that the model

@@ -39,6 +39,22 @@ bool SameWord(const std::string& a, const std::string& b) {
   return std::abs(x - y) <= 0.02 * std::max(std::abs(x), std::abs(y));
 }
 
+// Other pushes and shorter horizons stand in the model and in every report of it.
+TEST_F(FitAppTest, RefitsAreKeptAndReported) {
+  const std::string path = FitModel("model.json", {"--push_check", "--horizon_check"});
+  const nlohmann::ordered_json model = Json(path);
+  EXPECT_EQ(model["push_check"]["refits"].size(), 8u);     // of pushes by inverse dynamics
+  EXPECT_EQ(model["horizon_check"]["refits"].size(), 3u);  // 8, 16 and 32 of 44 steps
+  EXPECT_EQ(model["push_check"]["parameters"][0]["name"], "mu");
+  const AppRun report = RunApp("pushid-report", {"--model=" + path, "--text"});
+  ASSERT_EQ(report.exit_code, 0) << report.err;
+  for (const char* part : {"push error", "smoothed over 7", "Estimates from fewer frames"}) {
+    EXPECT_TRUE(Contains(report.out, part)) << part;
+  }
+  EXPECT_TRUE(Contains(fit_.out, "total error"));
+  EXPECT_TRUE(Contains(fit_.out, "first frames"));
+}
+
 TEST_F(FitAppTest, ModelHasItsParts) {
   const nlohmann::ordered_json model = Json(FitModel());
   for (const char* key :

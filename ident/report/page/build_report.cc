@@ -26,7 +26,8 @@ ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingVi
     recordings.push_back(view.run.recording);
   }
   const FitProblem problem(recordings, result.options);
-  return DesignExperiments(problem, result.starts[result.best_start].to, result.uncertainty,
+  const FitPoint& estimate = result.starts[result.best_start].to;
+  return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
                            DefaultCandidates(recordings));
 }
 
@@ -47,6 +48,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.sections = {SummarySection(model),   ParameterSection(model),
                      UnitSection(model),      IdentifiabilitySection(model),
                      ProfileSection(model),   BootstrapSection(model),
+                     PriorCheckSection(model), PushCheckSection(model), HorizonCheckSection(model),
                      BehaviourSection(model), FigureSection(views),
                      MotionSection(views),    RecordingSection(model),
                      LeverageSection(model),  ResidualSection(model),

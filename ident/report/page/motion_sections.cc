@@ -9,6 +9,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/report/design_text.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/studies_text.h"
 
 namespace pushid {
 namespace {
@@ -44,7 +45,10 @@ Chart HipChart(const RecordingView& view, int person, int axis, const std::strin
     chart.bands.push_back({shifted(band.lower90), shifted(band.upper90), kWideBandLook});
     chart.bands.push_back({shifted(band.lower50), shifted(band.upper50), kNarrowBandLook});
   }
-  if (view.run.prediction.status.ok) {
+  // The line of a band is its median.
+  if (!view.bands.people.empty()) {
+    chart.lines.push_back({line(MedianHip(view.bands)[person]), kPredictedLook, false});
+  } else if (view.run.prediction.status.ok) {
     chart.lines.push_back({line(run.prediction.hip[person]), kPredictedLook, false});
   }
   chart.lines.push_back({line(run.recording.hip[person]), kMeasuredLook, false});
@@ -74,18 +78,39 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
   for (int t = 0; t < frames; ++t) {
     measured.points.emplace_back(run.Seconds(t), run.recording.states[person][t].q[row]);
     if (t >= valid) continue;
-    predicted.points.emplace_back(run.Seconds(t), run.prediction.path.At(t, person).q[row]);
+    const double angle = view.bands.people.empty() ? run.prediction.path.At(t, person).q[row]
+                                                   : view.bands.people[person].median[t][row + 1];
+    predicted.points.emplace_back(run.Seconds(t), angle);
   }
   chart.lines = {predicted, measured};
   return chart;
 }
 
 TextTable PathNumbers(const RecordingView& view) {
-  TextTable table({"person", "frame", "time_s", "measured_x_m", "measured_y_m", "predicted_x_m",
-                   "predicted_y_m", "lower90_x_m", "upper90_x_m", "lower90_y_m", "upper90_y_m",
-                   "lower50_x_m", "upper50_x_m", "lower50_y_m", "upper50_y_m", "measured_theta_rad",
-                   "predicted_theta_rad", "measured_phi_rad", "predicted_phi_rad"},
-                  Words(15));
+  TextTable table({"person",
+                   "frame",
+                   "time_s",
+                   "measured_x_m",
+                   "measured_y_m",
+                   "predicted_x_m",
+                   "predicted_y_m",
+                   "lower90_x_m",
+                   "upper90_x_m",
+                   "lower90_y_m",
+                   "upper90_y_m",
+                   "lower50_x_m",
+                   "upper50_x_m",
+                   "lower50_y_m",
+                   "upper50_y_m",
+                   "measured_theta_rad",
+                   "predicted_theta_rad",
+                   "measured_phi_rad",
+                   "predicted_phi_rad",
+                   "median_x_m",
+                   "median_y_m",
+                   "median_theta_rad",
+                   "median_phi_rad"},
+                  Words(23));
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -109,6 +134,8 @@ TextTable PathNumbers(const RecordingView& view) {
         add(true, run.recording.states[n][t].q[row]);
         add(ok, ok ? run.prediction.path.At(t, n).q[row] : 0.0);
       }
+      for (int entry : {0, 1, 3, 4})
+        add(bands, bands ? view.bands.people[n].median[t][entry] : 0.0);
       table.Add(cells);
     }
   }
@@ -137,7 +164,7 @@ std::string PathPicture(const RecordingView& view) {
   const int people = view.run.recording.num_people();
   SvgPicture svg(4 * kPanelWidth, 24 + kPanelHeight * people, view.run.recording.id);
   DrawLegend({{"measured", kMeasuredLook},
-              {"predicted", kPredictedLook},
+              {view.bands.people.empty() ? "predicted" : "predicted (median)", kPredictedLook},
               {"50 %", kNarrowBandLook},
               {"90 %", kWideBandLook}},
              52, 16, &svg);
@@ -160,10 +187,35 @@ std::string FoldTitle(const RecordingView& view) {
   const PendulumRecording& r = view.run.recording;
   std::string title = r.id;
   if (view.run.prediction.status.ok) {
-    const RecordingScore score = ScoreHip(r, view.run.prediction.hip);
-    title += ": " + MetricsText(score, 2);
+    title += ": " + MetricsText(ScoreHip(r, view.run.prediction.hip), 2);
+    if (!view.bands.people.empty()) {
+      title += "; the median " + MetricsText(ScoreHip(r, MedianHip(view.bands)), 2);
+    }
   }
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
+}
+
+// How far the drawn medians lie from the rollouts at the estimate.
+std::string MedianText(const std::vector<RecordingView>& views) {
+  double sum = 0.0, most = 0.0;
+  int count = 0;
+  for (const RecordingView& view : views) {
+    const auto median = MedianHip(view.bands);
+    for (size_t n = 0; n < median.size(); ++n) {
+      for (size_t t = 1; t < median[n].size(); ++t, ++count) {
+        const double distance = (median[n][t] - view.run.prediction.hip[n][t]).norm();
+        sum += distance;
+        most = std::max(most, distance);
+      }
+    }
+  }
+  if (count == 0) return "";
+  return "The line is the median of the predictions that make the bands. The rollout at the "
+         "estimate, to which forces, moving figure and the first errors in the titles belong, "
+         "lies " +
+         Rounded(sum / count, 2) + " m from it on average, " + Rounded(most, 2) +
+         " m at most: what other recordings' errors have in common shifts the median, and a "
+         "median of paths obeys no equation of motion.";
 }
 
 }  // namespace
@@ -176,6 +228,9 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
       "open and, for the person who is pushed, how far people with the same parameters differ; for "
       "others they show the parameters alone. The forces explain the motion: balance, friction, "
       "interaction, push and what else acts add up to the net force (thick)."};
+  if (const std::string median = MedianText(views); !median.empty()) {
+    section.paragraphs.push_back(median);
+  }
   for (const RecordingView& view : views) {
     ReportFold fold{FoldTitle(view), {}};
     const std::string& id = view.run.recording.id;
@@ -190,15 +245,15 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
   return section;
 }
 
-ReportSection DesignSection(const ExperimentDesign& design) {
-  ReportSection section{"design", "Which push to record next", {}, {}, {}, {}, {}, ""};
-  if (!design.refused.empty()) section.paragraphs = {"Left out: " + design.refused + "."};
-  if (design.rows.empty()) return section;
-  section.paragraphs = {
+namespace {
+
+// The best pushes to record next, over all and for each parameter.
+void AddPushes(const ExperimentDesign& design, ReportSection* section) {
+  section->paragraphs.push_back(
       "What one more recording of a kind would do to the standard errors, from the sensitivities "
-      "at "
-      "the estimate: for all parameters together (D-optimal) and for each (c-optimal)."};
-  section.tables.push_back({"for all parameters", DesignTable(design, "all", kBestPushes).value()});
+      "at the estimate: for all parameters together (D-optimal) and for each (c-optimal).");
+  section->tables.push_back(
+      {"for all parameters", DesignTable(design, "all", kBestPushes).value()});
   TextTable best({"parameter", "best push", "m/s^2", "height", "s", "kg", "its error"},
                  {true, true, false, false, false, false, false});
   for (const std::string& parameter : design.parameters) {
@@ -208,7 +263,28 @@ ReportSection DesignSection(const ExperimentDesign& design) {
     row.resize(best.rows()[0].size());
     best.Add(row);
   }
-  section.tables.push_back({"for each parameter", best});
+  section->tables.push_back({"for each parameter", best});
+}
+
+// What a force sensor and more people would tell.
+void AddStudies(const StudyPlan& plan, ReportSection* section) {
+  section->tables.push_back(
+      {"a force sensor: the same study with the whole push known", SensorTable(plan, "all")});
+  if (plan.sizes.empty()) return;
+  section->paragraphs.push_back(StudySizesNote(plan));
+  section->tables.push_back(
+      {"standard errors that more people and more pushes of each would leave (the first row: as "
+       "it is)",
+       StudySizesTable(plan, "all")});
+}
+
+}  // namespace
+
+ReportSection DesignSection(const ExperimentDesign& design) {
+  ReportSection section{"design", "What to record next", {}, {}, {}, {}, {}, ""};
+  if (!design.refused.empty()) section.paragraphs = {"Left out: " + design.refused + "."};
+  if (!design.rows.empty()) AddPushes(design, &section);
+  AddStudies(design.studies, &section);
   return section;
 }
 

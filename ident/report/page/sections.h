@@ -17,6 +17,9 @@ ReportSection UnitSection(const FittedModel& model);  // subjects or settings th
 ReportSection IdentifiabilitySection(const FittedModel& model);
 ReportSection ProfileSection(const FittedModel& model);
 ReportSection BootstrapSection(const FittedModel& model);
+ReportSection PushCheckSection(const FittedModel& model);
+ReportSection HorizonCheckSection(const FittedModel& model);
+ReportSection PriorCheckSection(const FittedModel& model);
 ReportSection BehaviourSection(const FittedModel& model);
 ReportSection RecordingSection(const FittedModel& model);
 ReportSection LeverageSection(const FittedModel& model);

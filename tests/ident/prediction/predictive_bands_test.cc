@@ -68,11 +68,34 @@ TEST(PredictiveBands, LieInsideOneAnotherAndWidenWithModelError) {
     }
     EXPECT_NEAR(b.upper90[0][0] - b.lower90[0][0], 0.0, 1e-9);  // everybody starts there
   }
+  EXPECT_EQ(MedianHip(narrow)[0][last], narrow.people[0].median[last].head<3>());
   const auto width = [last](const PredictiveBands& bands) {
     return bands.people[0].upper90[last][0] - bands.people[0].lower90[last][0];
   };
   EXPECT_GT(width(narrow), 0.0);
   EXPECT_GT(width(wide), 1.5 * width(narrow));
+}
+
+// Where the model misses something that all recordings share, the rollout at the estimate lies
+// beside its own band, and the median in its middle: the line of a band is the median.
+TEST(PredictiveBands, MedianFollowsWhatAllErrorsShare) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
+  const FitResult result = Fit(recordings, UnbiasedFit(VaryingStudy()));
+  std::vector<ErrorPath> errors = ErrorPaths(result, recordings);
+  for (ErrorPath& error : errors) {
+    for (size_t t = 0; t < error.path.size(); ++t) {
+      error.path[t][0] += 3.0 * static_cast<double>(t) / static_cast<double>(error.path.size());
+    }
+  }
+  const auto samples = SampleParameters(result, BandOptions()).value();
+  const PredictiveBands bands = ComputeBands(result, samples, errors, recordings[3], 1);
+  const Prediction rollout = Predict(ModelOf(result), recordings[3]);
+  const size_t last = static_cast<size_t>(recordings[3].num_frames()) - 1;
+  const PathBand& band = bands.people[0];
+  EXPECT_LT(rollout.hip[0][last].x(), band.lower90[last][0]);
+  const double median = MedianHip(bands)[0][last].x();
+  EXPECT_GT(median, band.lower50[last][0]);
+  EXPECT_LT(median, band.upper50[last][0]);
 }
 
 // Every member of an ensemble is drawn along.
@@ -105,6 +128,10 @@ TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
   EXPECT_NEAR(coverage[1].inside90[0], 0.9, 0.1);
   EXPECT_NEAR(coverage[1].inside50[0], 0.5, 0.2);
   EXPECT_TRUE(Contains(BandCoverageText(coverage), "parameters alone"));
+  EXPECT_TRUE(Contains(BandCoverageText(coverage), "of their median"));
+  // No model error that all share here: median and rollout are about as good.
+  EXPECT_GT(coverage[1].median_ade, 0.0);
+  EXPECT_NEAR(coverage[1].median_ade, coverage[1].rollout_ade, 0.25 * coverage[1].rollout_ade);
 }
 
 }  // namespace

@@ -73,12 +73,20 @@ FittedModel JudgedModel() {
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
   d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
   model.advice = {{"free less", "pushid-fit --fix=mu"}};
+  model.push_check = RefitTable{
+      {"mu"},
+      {"N s/m"},
+      {20.1},
+      {infinity},
+      {{"window", "+2 frames", {0.1}, {}, "", 0}, {"window", "+4 frames", {}, {}, "fell", 0}}};
+  model.horizon_check = RefitTable{
+      {"mu"}, {"N s/m"}, {20.1}, {0.3}, {{"horizon", "8 frames", {0.7}, {infinity}, "", 8}}};
   return model;
 }
 
 TEST(ResultJson, ConfidenceRoundTripIsExact) {
   const Json json = ToJson(JudgedModel(), kRun);
-  for (const char* key : {"profiles", "bootstrap", "diagnostics"}) {
+  for (const char* key : {"profiles", "bootstrap", "push_check", "horizon_check", "diagnostics"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
   EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());

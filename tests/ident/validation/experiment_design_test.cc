@@ -26,9 +26,10 @@ class Design : public ::testing::Test {
     problem_ = std::make_unique<FitProblem>(recordings_, options_);
     estimate_ = Solve(*problem_).Best().to;
     uncertainty_ = ComputeUncertainty(*problem_, estimate_);
+    parts_ = ErrorPartsAt(*problem_, estimate_);
   }
   ExperimentDesign Of(const std::vector<CandidatePush>& candidates) const {
-    return DesignExperiments(*problem_, estimate_, uncertainty_, candidates);
+    return DesignExperiments(*problem_, estimate_, uncertainty_, parts_, candidates);
   }
   static size_t Index(const ExperimentDesign& design, const std::string& name) {
     return static_cast<size_t>(std::find(design.parameters.begin(), design.parameters.end(), name) -
@@ -41,6 +42,7 @@ class Design : public ::testing::Test {
   std::unique_ptr<FitProblem> problem_;
   FitPoint estimate_;
   Uncertainty uncertainty_;
+  ErrorParts parts_;
 };
 
 // Sideways pushes tell about sideways friction, and a strong one more than a weak one.
@@ -53,7 +55,7 @@ TEST_F(Design, ThePushThatMovesAParameterIsTheOneToRecord) {
   const auto ratio = [&](const ExperimentDesign& d, int row) {
     return d.rows[row].error_ratio[sideways];
   };
-  uncertainty_.covariance = CovarianceAt(*problem_, estimate_).naive;
+  parts_.by_recording = parts_.naive;
   const ExperimentDesign noise_alone = Of(pushes);
   for (const ExperimentDesign* d : {&alike, &noise_alone}) {
     EXPECT_LT(ratio(*d, 1), ratio(*d, 0));
@@ -76,7 +78,7 @@ TEST_F(Design, CandidatesCountAsRecordings) {
   const FitProblem with(more, options_);
   // Without spread V = V_naive, and what is found is the naive error of the fit with it.
   const Covariance now = CovarianceAt(*problem_, estimate_), then = CovarianceAt(with, estimate_);
-  uncertainty_.covariance = now.naive;
+  parts_.by_recording = now.naive;
   const double sigma = now.sigma / then.sigma;
   const Eigen::MatrixXd expected = sigma * sigma * then.naive;
   const ExperimentDesign d = Of({push});

@@ -1,0 +1,43 @@
+// ident: the pushes that a recording might as well have: what is uncertain about a push, as sets of
+// recordings to fit again.
+//
+// A push made by inverse dynamics (`net`, `net_without_friction`) depends on where its window ends
+// and on how the motion was smoothed, which nobody measured: it is made anew from its published
+// start over windows 2 frames shorter to 4 frames longer, without smoothing and with the cubic
+// smoother over kSmoothingFrames. Its kind stays; so does the friction that is taken out of a
+// net_without_friction push. The window of the published length without smoothing shows how far the
+// recipe itself is from the published push.
+//
+// A measured push (`external`) carries the noise of its sensor, white and as large as
+// `sensor_noise` times the push's peak in every row, and the clocks of sensor and cameras may be a
+// frame apart.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+
+namespace pushid {
+
+inline constexpr int kSmoothingFrames = 7;
+
+struct PushVariantOptions {
+  double sensor_noise = 0.01;  // share of the peak, one standard deviation
+  int draws = 8;               // of that noise
+  uint64_t seed = 1;
+};
+
+// All recordings, with other pushes of one cause.
+struct PushVariant {
+  std::string source, name;
+  std::vector<PendulumRecording> recordings;
+};
+
+// Errors: no push at all; a push that cannot be made anew (recording and reason).
+Result<std::vector<PushVariant>> PushVariants(const std::vector<PendulumRecording>& recordings,
+                                              const PushVariantOptions& options);
+
+}  // namespace pushid

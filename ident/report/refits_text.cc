@@ -1,0 +1,125 @@
+// ident: refits beside the fit.
+#include "ident/report/refits_text.h"
+
+#include <vector>
+
+#include "datasets/files/number_text.h"
+#include "ident/push/push_errors.h"
+#include "ident/uncertainty/horizon_check.h"
+
+namespace pushid {
+namespace {
+
+std::string WithUnit(const RefitTable& check, size_t i) {
+  return check.parameters[i] + (check.units[i] == "1" ? "" : ", " + check.units[i]);
+}
+
+std::string ValueText(double value, double error) {
+  return Rounded(value, 4) + " +- " + Rounded(error, 2);
+}
+
+}  // namespace
+
+TextTable PushErrorTable(const RefitTable& check) {
+  TextTable table({"pushes", "value", "standard error", "push error", "total error", "unit"},
+                  {true, false, false, false, false, true});
+  const std::vector<PushError> errors = PushErrors(check);
+  for (size_t i = 0; i < errors.size(); ++i) {
+    table.Add({check.parameters[i], Rounded(check.value[i], 4), Rounded(check.standard_error[i], 3),
+               Rounded(errors[i].push, 3), Rounded(errors[i].total, 3), check.units[i]});
+  }
+  return table;
+}
+
+TextTable MovesTable(const RefitTable& check) {
+  std::vector<std::string> header = {"source", "push"};
+  for (size_t i = 0; i < check.parameters.size(); ++i) header.push_back(WithUnit(check, i));
+  std::vector<bool> left(header.size(), false);
+  left[0] = left[1] = true;
+  TextTable table(header, left);
+  for (const RefitRow& row : check.rows) {
+    std::vector<std::string> cells = {row.source, row.name};
+    for (size_t i = 0; i < check.parameters.size(); ++i) {
+      if (row.value.empty()) {
+        cells.push_back("-");
+        continue;
+      }
+      const double move = row.value[i] - check.value[i];
+      cells.push_back((move < 0.0 ? "" : "+") + Rounded(move, 3));
+    }
+    table.Add(cells);
+  }
+  return table;
+}
+
+TextTable HorizonTable(const RefitTable& check) {
+  std::vector<std::string> header = {"first frames"};
+  for (const RefitRow& row : check.rows) header.push_back(row.name);
+  header.insert(header.end(), {"all", "unit"});
+  std::vector<bool> left(header.size(), true);
+  TextTable table(header, left);
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    std::vector<std::string> cells = {check.parameters[i]};
+    for (const RefitRow& row : check.rows) {
+      cells.push_back(row.value.empty() ? "-" : ValueText(row.value[i], row.standard_error[i]));
+    }
+    cells.push_back(ValueText(check.value[i], check.standard_error[i]));
+    cells.push_back(check.units[i]);
+    table.Add(cells);
+  }
+  return table;
+}
+
+TextTable PriorTable(const RefitTable& check) {
+  std::vector<std::string> header = {"priors"};
+  for (const RefitRow& row : check.rows) header.push_back(row.name);
+  header.insert(header.end(), {"as fitted", "unit"});
+  TextTable table(header, std::vector<bool>(header.size(), true));
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    std::vector<std::string> cells = {check.parameters[i]};
+    for (const RefitRow& row : check.rows) {
+      cells.push_back(row.value.empty() ? "-" : Rounded(row.value[i], 4));
+    }
+    cells.push_back(ValueText(check.value[i], check.standard_error[i]));
+    cells.push_back(check.units[i]);
+    table.Add(cells);
+  }
+  return table;
+}
+
+std::string DriftText(const RefitTable& check) {
+  std::string text;
+  for (const Drift& drift : Drifts(check)) {
+    const RefitRow& row = check.rows[drift.row];
+    text += check.parameters[drift.parameter] + " drifts: " +
+            ValueText(row.value[drift.parameter], row.standard_error[drift.parameter]) +
+            " in the first " + row.name + ", " +
+            ValueText(check.value[drift.parameter], check.standard_error[drift.parameter]) +
+            " in all, " + Rounded(drift.in_errors, 2) +
+            " errors apart; it stands for something that the model leaves out\n";
+  }
+  return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
+}
+
+std::string PushCheckText(const RefitTable& check) {
+  std::string text = PushErrorTable(check).ToString() +
+                     "total error: the pushes are not known exactly either; each refit moves\n" +
+                     MovesTable(check).ToString();
+  for (const RefitRow& row : check.rows) {
+    if (!row.failure.empty()) text += row.source + " " + row.name + ": " + row.failure + "\n";
+  }
+  return text;
+}
+
+std::string PriorCheckText(const RefitTable& check) {
+  if (check.rows.empty()) return "no free parameter has a prior\n";
+  return PriorTable(check).ToString() +
+         "centres and widths of all priors halved and doubled, everything refitted\n";
+}
+
+std::string HorizonCheckText(const RefitTable& check) {
+  if (check.rows.empty()) return "no recording is longer than the shortest horizon\n";
+  return HorizonTable(check).ToString() + DriftText(check);
+}
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// ident: fits of fewer frames.
+#include "ident/uncertainty/horizon_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/uncertainty.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kDriftErrors = 2.0;
+
+template <typename T>
+void Cut(int frames, std::vector<std::vector<T>>* people) {
+  for (std::vector<T>& person : *people) {
+    if (static_cast<int>(person.size()) > frames) person.resize(frames);
+  }
+}
+
+// The pushes stay whole: a tail knows the mean of its push.
+std::vector<PendulumRecording> FirstFrames(std::vector<PendulumRecording> recordings, int frames) {
+  for (PendulumRecording& r : recordings) {
+    Cut(frames, &r.states);
+    Cut(frames, &r.rod_length);
+    Cut(frames, &r.hip);
+    Cut(frames, &r.weight);
+  }
+  return recordings;
+}
+
+RefitRow FitFirst(const FitProblem& whole, int frames) {
+  RefitRow row{"horizon", std::to_string(frames) + " frames", {}, {}, "", frames};
+  // Frame 0 and the steps to `frames`.
+  const std::vector<PendulumRecording> first = FirstFrames(whole.recordings(), frames + 1);
+  FitOptions options = whole.options();
+  options.num_threads = 1;
+  const FitProblem problem(first, options);
+  const Solution solution = Solve(problem);
+  if (solution.best < 0) {
+    row.failure = "no start could be solved";
+    return row;
+  }
+  const FitPoint& point = solution.Best().to;
+  row.value = SharedValues(problem, point);
+  const Uncertainty uncertainty = ComputeUncertainty(problem, point);
+  for (size_t i = 0; i < row.value.size(); ++i) {
+    row.standard_error.push_back(uncertainty.estimates[i].standard_error);
+  }
+  return row;
+}
+
+}  // namespace
+
+RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
+                         const Uncertainty& uncertainty, int num_threads,
+                         const JobProgress& progress) {
+  int longest = 0;
+  for (const PendulumRecording& r : problem.recordings()) {
+    longest = std::max(longest, r.num_frames() - 1);
+  }
+  std::vector<int> horizons;
+  for (int horizon : problem.options().horizons) {
+    if (horizon > 0 && horizon < longest) horizons.push_back(horizon);
+  }
+  std::sort(horizons.begin(), horizons.end());
+  RefitTable table = RefitTableOf(problem, estimate, uncertainty);
+  table.rows.resize(horizons.size());
+  ParallelFor(
+      static_cast<int>(horizons.size()), num_threads,
+      [&](int i) { table.rows[i] = FitFirst(problem, horizons[i]); }, progress);
+  return table;
+}
+
+std::vector<Drift> Drifts(const RefitTable& horizons) {
+  std::vector<Drift> drifts;
+  for (size_t p = 0; p < horizons.parameters.size(); ++p) {
+    Drift drift{p, 0, 0.0};
+    for (size_t r = 0; r < horizons.rows.size(); ++r) {
+      const RefitRow& row = horizons.rows[r];
+      if (row.value.empty()) continue;
+      const double error = std::max(row.standard_error[p], horizons.standard_error[p]);
+      const double move = std::abs(row.value[p] - horizons.value[p]) / error;
+      if (!std::isfinite(move) || move <= drift.in_errors) continue;
+      drift.row = r;
+      drift.in_errors = move;
+    }
+    if (drift.in_errors > kDriftErrors) drifts.push_back(drift);
+  }
+  return drifts;
+}
+
+}  // namespace pushid

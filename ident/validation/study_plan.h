@@ -1,0 +1,89 @@
+// ident: what another study would tell: the same recordings with the push measured, more people,
+// more pushes of each.
+//
+// Where an error comes from. A person's own parameters differ from everybody's with covariance B, a
+// recording's from its person's with W, and a recording sees its own through noise, N_1. With R
+// recordings of P people, n_p of person p, and f = sum (n_p / R)^2, the covariances that a fit
+// shows are
+//
+//   naive                   N   = N_1 / R
+//   clustered by recording  V_R = (W + N_1) / R + (1 - f) / (R - 1) B
+//   clustered by person     V_P = (W + N_1) / R + f B
+//
+// (one-way analysis of variance of what each recording moves), and n pushes of each of P people
+// leave
+//
+//   V(P, n) = B / P + (W + N_1) / (P n)
+//
+// so that further pushes of the same people never lower an error below that of B / P. Parameter by
+// parameter, positive parts only. Every recording counts as the mean of those there are; B and W
+// hold what differences in other parameters make of recordings of different kinds, too. B is known
+// only as well as a variance of P numbers: to sqrt(1 / (2 (P - 1))) of its root, 40 % for four
+// people.
+//
+// A force sensor. Where a push is known only in its first part, the fit finds the rest (the tail)
+// beside everything else, and each recording's own tail scatters everything else. A sensor leaves
+// the motion as it is and makes the tail known: its columns drop out of the Jacobian. With d_g the
+// deviation of recording g's own parameters, tail included, its rows are r_g = J_g d_g + e,
+// d_g ~ N(0, T), e ~ N(0, s^2); T and s come from the rows by EM (Laird and Ware 1982), and with
+// H_g = J_g'J_g, H that of all with priors,
+//
+//   V = H^-1 (sum s^2 H_g + H_g T H_g) H^-1, now with all columns, then without those of the tail
+//
+// Rejected: what noise alone would gain, which believes that people are alike; the scores of the
+// fit as it is with the tail held, where every recording's own tail would go on scattering the
+// rest; T from V - N by moments, which a dozen recordings do not determine. Left out: what a sensor
+// tells while the push lasts, where the rows of a `net` push replace all other forces; and the
+// sensor's own errors (push_variants.h). Good to about a factor of two (study_plan_test.cc).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/covariance.h"
+
+namespace pushid {
+
+// What the errors of a fit are made of; covariances on the fitted scale, in the order of
+// FitPoint::Flat, whatever the fit's own clusters are.
+struct ErrorParts {
+  JacobianBlocks score;  // by recording
+  double sigma = 0.0;
+  Eigen::MatrixXd naive;
+  Eigen::MatrixXd by_recording;  // empty with a single recording
+  Eigen::MatrixXd by_person;     // by who is pushed; empty with a single person
+  std::vector<int> person;       // of each recording, from 0
+
+  int num_recordings() const { return static_cast<int>(person.size()); }
+};
+ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate);
+
+// One size of a study, and the standard errors it would leave.
+struct StudySize {
+  int people = 0;
+  double pushes = 0.0;  // of each
+  std::vector<double> standard_error;
+};
+
+struct StudyPlan {
+  std::vector<std::string> parameters, units;
+  std::string no_sensor;  // why none is proposed
+  // Standard error with the force measured over that without; NaN for the tail's own parameters,
+  // which a measured push does not have.
+  std::vector<double> sensor_ratio;
+  std::string no_sizes;  // why the errors cannot be split
+  // Standard deviations: between people, of what a person's recordings move about their mean, and
+  // of what one recording tells through its noise.
+  std::vector<double> between_people, between_recordings, noise;
+  std::vector<StudySize> sizes;  // the first: as it is
+};
+
+// The errors of the shared parameters `known` (indices), in natural units.
+StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const ErrorParts& parts,
+                      const std::vector<int>& known);
+
+// The standard error that `people` with `pushes` each would leave of a plan's parameter.
+double ExpectedError(const StudyPlan& plan, size_t parameter, double people, double pushes);
+
+}  // namespace pushid

@@ -1,0 +1,84 @@
+// Estimates from fewer frames: what means something keeps its value, what stands for something that
+// the model leaves out drifts.
+#include "ident/uncertainty/horizon_check.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "ident/report/refits_text.h"
+#include "ident/results/confidence.h"
+#include "ident/results/fit.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+FittedModel Checked(const std::vector<PendulumRecording>& recordings, const FitOptions& options) {
+  FittedModel model;
+  model.fit = Fit(recordings, options);
+  AddHorizonCheck(recordings, 2, nullptr, &model);
+  return model;
+}
+
+// By hand: 3 errors of the larger kind apart at 8 frames, 1 at 16; an infinite error tells nothing.
+TEST(Drifts, AreJudgedByTheLargerError) {
+  RefitTable table;
+  table.parameters = {"mu", "a_x", "tail_gain"};
+  table.units = {"N s/m", "m/s^2/rad", "1"};
+  table.value = {10.0, -9.0, 1.0};
+  table.standard_error = {1.0, 2.0, 0.1};
+  const double infinity = std::numeric_limits<double>::infinity();
+  table.rows = {{"horizon", "8 frames", {16.0, -8.0, 5.0}, {2.0, 1.0, infinity}, "", 8},
+                {"horizon", "16 frames", {11.0, -9.0, 1.1}, {1.0, 1.0, 0.1}, "", 16},
+                {"horizon", "32 frames", {}, {}, "no start could be solved", 32}};
+  const std::vector<Drift> drifts = Drifts(table);
+  ASSERT_EQ(drifts.size(), 1u);
+  EXPECT_EQ(drifts[0].parameter, 0u);
+  EXPECT_EQ(drifts[0].row, 0u);
+  EXPECT_DOUBLE_EQ(drifts[0].in_errors, 3.0);
+  EXPECT_TRUE(Contains(DriftText(table), "mu drifts: 16 +- 2 in the first 8 frames, 10 +- 1"));
+  EXPECT_FALSE(Contains(DriftText(table), "a_x"));
+  EXPECT_TRUE(Contains(HorizonTable(table).ToString(), "-"));
+}
+
+// The model that made the motion: horizons beyond the push find the same parameters.
+TEST(HorizonCheck, TheTruthDoesNotDrift) {
+  SyntheticOptions study = SmallStudy();
+  study.push_kind = PushKind::kExternal;
+  study.joint_noise_m = 0.0005;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FittedModel model = Checked(recordings, options);
+  const RefitTable& check = *model.horizon_check;
+  ASSERT_EQ(check.rows.size(), 4u);  // 8, 16, 32 and 64 of 69 steps
+  EXPECT_EQ(check.rows[0].frames, 8);
+  EXPECT_LT(check.rows[3].standard_error[0], check.rows[1].standard_error[0])
+      << "more frames tell more";
+  // While the push lasts a fit without priors may end anywhere; from 32 frames on it may not.
+  RefitTable later = check;
+  later.rows.erase(later.rows.begin(), later.rows.begin() + 2);
+  for (const Drift& drift : Drifts(later)) {
+    EXPECT_LT(drift.in_errors, 4.0) << check.parameters[drift.parameter];
+  }
+}
+
+// Feet that drag more and more: one friction cannot be right for every horizon.
+TEST(HorizonCheck, WhatTheModelLeavesOutDrifts) {
+  SyntheticOptions study = SmallStudy();
+  study.push_kind = PushKind::kExternal;
+  study.joint_noise_m = 0.0005;
+  study.parameters[kCq] = 0.8;  // quadratic drag, which the fit does not have
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  options.table[kCq].nominal = 0.0;
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FittedModel model = Checked(recordings, options);
+  EXPECT_FALSE(Drifts(*model.horizon_check).empty());
+  EXPECT_TRUE(Contains(DriftText(*model.horizon_check), "drifts"));
+}
+
+}  // namespace
+}  // namespace pushid
