@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ident/diagnostics/diagnostics.h"
+#include "ident/diagnostics/term_tests.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/time_series.h"
 #include "ident/uncertainty/covariance.h"
@@ -177,6 +178,7 @@ Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
   d.recordings = DiagnoseRecordings(problem, best.to);
   d.whiteness = DiagnoseWhiteness(problem, best.to);
   d.leverage = ComputeLeverage(problem, best.to, uncertainty);
+  d.terms = TestTerms(problem, best.to);
   for (const SolveStage& stage : best.stages) {
     d.trace.insert(d.trace.end(), stage.trace.begin(), stage.trace.end());
   }

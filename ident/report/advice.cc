@@ -18,7 +18,7 @@ constexpr double kStrongCorrelation = 0.95;
 constexpr double kStrongLeverage = 1.0;  // standard errors that one recording moves
 constexpr double kDisagreement = 1.5;    // of interval widths
 constexpr int kFewRecordings = 10;
-constexpr double kPushDependence = 0.15;  // mean correlation that is more than a detail
+constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
@@ -30,11 +30,14 @@ class Adviser {
   std::vector<Advice> Run() {
     Solver();
     Identifiability();
+    Shares();
     Person();
     People();
     Recordings();
     Intervals();
-    Residuals();
+    Pushes();
+    Horizons();
+    Terms();
     return advice_;
   }
 
@@ -55,7 +58,10 @@ class Adviser {
   void People();
   void Recordings();
   void Intervals();
-  void Residuals();
+  void Shares();
+  void Pushes();
+  void Horizons();
+  void Terms();
 
   const FittedModel& model_;
   const FitResult& result_;
@@ -81,6 +87,7 @@ void Adviser::Identifiability() {
     Add("Not identifiable: " + n.sentence + ". Hold one of them.",
         Same().Append("fix", n.parameters.back()));
   }
+  std::string weak;
   for (const Estimate& e : result_.estimates) {
     if (e.status == EstimateStatus::kAtBound) {
       Add(e.name +
@@ -88,10 +95,12 @@ void Adviser::Identifiability() {
               "when it is held there.",
           Same().Append("fix", e.name + "=" + Rounded(e.value, 4)));
     }
-    if (e.status == EstimateStatus::kWeak) {
-      Add(e.name + " is only weakly identified; see which further push would lower its error most.",
-          Same().Set("design", e.name));
-    }
+    if (e.status == EstimateStatus::kWeak && weak.empty()) weak = e.name;
+  }
+  if (!weak.empty()) {
+    Add(weak + " is only weakly identified; see which pushes, people or sensor would lower its "
+        "error most.",
+        Same().Set("design", weak));
   }
   const Uncertainty& u = result_.uncertainty;
   const int shared = static_cast<int>(result_.options.table.Free().size());
@@ -183,8 +192,9 @@ void Adviser::Recordings() {
         Same().Append("leave_out", l.recordings[recording]));
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
+    const bool people = result_.uncertainty.clustered_by == ClusterBy::kSubject;
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
-            " recordings the clustered errors are uncertain too; record more, where the "
+            (people ? " people" : " recordings") + " the clustered errors are uncertain too; record more, where the "
             "design says it helps.",
         Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }
@@ -211,23 +221,51 @@ void Adviser::Intervals() {
   }
 }
 
-void Adviser::Residuals() {
-  const bool linear = result_.options.self_force == SelfForceKind::kLinear;
-  const SelfNetwork* network = result_.options.model.self_network.get();
-  const bool tail = result_.options.model.push_tail == PushTail::kExponential;
-  if (linear && tail) return;  // nothing is left to switch on
-  for (const Whiteness& w : result_.diagnostics.whiteness) {
-    for (size_t k = 0; k < w.push.size(); ++k) {
-      const double limit = std::max(kPushDependence, 2.0 * w.push_error[k]);
-      if (std::abs(w.push[k]) < limit) continue;
-      Add("The errors of " + w.channel + " follow the push (correlation " + Rounded(w.push[k], 2) +
-              " at lag " + std::to_string(k) +
-              "): the model misses part of the answer to it; try more terms.",
-          linear ? Same().Set("push_tail", "exponential")
-                 : Same().Set("self_force", SelfForceText(SelfForceKind::kLinear, network)));
-      return;
-    }
+// The data's word comes first: where priors or the demand to settle decide, more terms would only
+// give them more to decide.
+void Adviser::Shares() {
+  std::string held;
+  for (const Estimate& e : result_.estimates) {
+    if (e.status != EstimateStatus::kPriorHeld) continue;
+    held += (held.empty() ? "" : ", ") + e.name;
   }
+  if (!held.empty() && !model_.prior_check) {
+    Add("Priors decide on " + held + "; see what they are under other priors.",
+        Same().Set("prior_check", "true"));
+  }
+}
+
+void Adviser::Pushes() {
+  const bool measured = !result_.push_range || result_.push_range->net_s.empty();
+  if (measured || model_.push_check) return;
+  Add("The pushes were made by inverse dynamics; see how far their windows decide.",
+      Same().Set("push_check", "true"));
+}
+
+void Adviser::Horizons() {
+  if (model_.horizon_check) return;
+  Add("A parameter that means something keeps its value on fewer frames; see which do.",
+      Same().Set("horizon_check", "true"));
+}
+
+void Adviser::Terms() {
+  const bool explained =
+      result_.uncertainty.settling.binds ||
+      std::any_of(result_.estimates.begin(), result_.estimates.end(), [](const Estimate& e) {
+        return e.status != EstimateStatus::kIdentified && e.status != EstimateStatus::kFixed;
+      });
+  if (explained) return;
+  const TermTest* surest = nullptr;
+  for (const TermTest& test : result_.diagnostics.terms) {
+    if (test.p < kTermLevel && (surest == nullptr || test.p < surest->p)) surest = &test;
+  }
+  if (surest == nullptr) return;
+  FitCommand compare("pushid-crossvalidate", model_.provenance);
+  compare.Set("compare", "more: --free=" + compare.Appended("free", surest->parameter));
+  Add("The recordings ask for " + surest->parameter + " (score test: t = " +
+          Rounded(surest->t, 2) + " with " + std::to_string(surest->freedom) +
+          " degrees of freedom); see whether it predicts better.",
+      compare);
 }
 
 }  // namespace

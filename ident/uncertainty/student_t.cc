@@ -6,13 +6,16 @@
 
 namespace pushid {
 
+// P(|T| > t) = I_{v / (v + t^2)}(v / 2, 1 / 2).
+double StudentTail(double t, double v) {
+  return Eigen::numext::betainc(0.5 * v, 0.5, v / (v + t * t));
+}
+
 double StudentQuantile95(double v) {
-  // P(|T| > t) = I_{v / (v + t^2)}(v / 2, 1 / 2), falling in t.
   double low = 0.0, high = 1000.0;
   for (int i = 0; i < 100; ++i) {
     const double t = 0.5 * (low + high);
-    const double outside = Eigen::numext::betainc(0.5 * v, 0.5, v / (v + t * t));
-    (outside > 0.05 ? low : high) = t;
+    (StudentTail(t, v) > 0.05 ? low : high) = t;
   }
   return 0.5 * (low + high);
 }

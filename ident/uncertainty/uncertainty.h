@@ -149,5 +149,7 @@ std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
 
 // Two-sided 95 % quantile of Student's t.
 double StudentQuantile95(double degrees_of_freedom);
+// Probability that |T| exceeds |t|.
+double StudentTail(double t, double degrees_of_freedom);
 
 }  // namespace pushid

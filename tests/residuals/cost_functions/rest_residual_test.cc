@@ -19,7 +19,7 @@ ParameterSet<double> SensibleGains() {
 }
 
 double Cost(const RestProblem& problem, const ParameterBlocks& blocks) {
-  const Evaluation evaluation = EvaluateCost(RestResidual(problem), blocks, {});
+  const Evaluation evaluation = EvaluateCost(SettlingResidual(problem), blocks, {});
   EXPECT_TRUE(evaluation.ok);
   return 0.5 * evaluation.residuals.squaredNorm();
 }
@@ -31,54 +31,54 @@ PendulumRecording PushedPair(double push, Random* random) {
   return RecordRollout(scene, {}, std::vector(2, RecoveringParameters()), 30);
 }
 
+// While the person still moves, so that the hinges are open.
 TEST(Settling, JacobianAgainstNumericDifferentiation) {
   Random random(51);
   // Pooled parameters too: no particular person is pushed, so there are no columns for them.
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta});
   for (Posture posture : {Posture::kUpright, Posture::kInitial}) {
-    for (double impulse : {4.0, 25.0, 80.0}) {
+    for (double impulse : {25.0, 80.0}) {
       SCOPED_TRACE(impulse);
       ModelOptions options;
       options.posture = posture;
-      RestProblem problem = SettlingProblem(SettlingScene(80.0, impulse), options, map, {}, 3.0);
-      const RestResidual residual(problem);
+      RestProblem problem = SettlingProblem(SettlingScene(60.0, impulse), options, map, {}, 3.0);
+      problem.first_frame = 20, problem.last_frame = 40;
+      const SettlingResidual residual(problem);
       ASSERT_EQ(residual.parameter_block_sizes(), (std::vector<int>{kNumParameters}));
-      EXPECT_EQ(residual.num_residuals(), 70 * 6);
-      ExpectCorrectJacobian(residual, {SharedBlock(map, RandomRecoveringParameters(&random, 0.1))},
-                            {1e-6, 1e-8, 1e-14});
+      EXPECT_EQ(residual.num_residuals(), 20 * 3);
+      const ParameterBlocks blocks = {SharedBlock(map, RandomRecoveringParameters(&random, 0.1))};
+      EXPECT_GT(EvaluateCost(residual, blocks, {}).residuals.norm(), 0.1);
+      ExpectCorrectJacobian(residual, blocks, {1e-6, 1e-8, 1e-14});
     }
   }
 }
 
-TEST(Settling, SensibleGainsSettleAndPoorOnesDoNot) {
+// A demand, no pull: exactly zero for whoever settles, and not for one who keeps walking.
+TEST(Settling, IsZeroForWhoeverSettlesInTime) {
   ParameterMap map = EveryParameterMap({});
+  for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
   for (double mass : {60.0, 80.0, 100.0}) {
     for (double impulse : {4.0, 25.0, 80.0}) {
+      SCOPED_TRACE(std::to_string(mass) + ", " + std::to_string(impulse));
       const RestProblem problem = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
-      // Half a mean square in sigmas; a settled person is within 0.1 m/s and 0.05 rad.
-      EXPECT_LT(Cost(problem, {SharedBlock(map, SensibleGains())}), 0.02)
-          << mass << ", " << impulse;
-      // A person who drives themselves never stops walking.
+      const Evaluation settled =
+          EvaluateCost(SettlingResidual(problem), {SharedBlock(map, SensibleGains())}, {true});
+      ASSERT_TRUE(settled.ok);
+      EXPECT_EQ(settled.residuals.norm(), 0.0);
+      EXPECT_EQ(settled.jacobians[0].norm(), 0.0);
       ParameterSet<double> self_propelling = SensibleGains();
       self_propelling[kMu] = -60.0;
-      for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
-      const RestProblem walking = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
-      const Evaluation evaluation =
-          EvaluateCost(RestResidual(walking), {SharedBlock(map, self_propelling)}, {});
-      if (evaluation.ok) {
-        EXPECT_GT(0.5 * evaluation.residuals.squaredNorm(),
-                  50.0 * Cost(walking, {SharedBlock(map, SensibleGains())}))
-            << mass << ", " << impulse;
-      }
+      const Evaluation walking =
+          EvaluateCost(SettlingResidual(problem), {SharedBlock(map, self_propelling)}, {});
+      if (walking.ok) EXPECT_GT(walking.residuals.norm(), 1.0);
     }
-    map = EveryParameterMap({});
   }
 }
 
 TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
   const ParameterMap map = EveryParameterMap({});
   const Evaluation evaluation =
-      EvaluateCost(RestResidual(SettlingProblem(SettlingScene(80.0, 0.0), {}, map, {}, 3)),
+      EvaluateCost(SettlingResidual(SettlingProblem(SettlingScene(80.0, 0.0), {}, map, {}, 3)),
                    {SharedBlock(map, SensibleGains())}, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_EQ(evaluation.residuals.norm(), 0.0);
@@ -90,13 +90,14 @@ TEST(Settling, WeightIsThatOfAMeanSquare) {
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
   RestProblem problem = SettlingProblem(SettlingScene(80.0, 25.0), {}, map, {}, 1.0);
+  problem.first_frame = 20, problem.last_frame = 90;  // soon after the push, on the move
   const double cost = Cost(problem, blocks);
   EXPECT_GT(cost, 0.0);
   problem.weight = 3.0;
   EXPECT_NEAR(Cost(problem, blocks), 9.0 * cost, 1e-12 * cost);
   problem.weight = 1.0;
   double sum = 0.0;
-  for (int first : {110, 145}) {
+  for (int first : {20, 55}) {
     problem.first_frame = first, problem.last_frame = first + 35;
     sum += Cost(problem, blocks);
   }
@@ -107,7 +108,7 @@ TEST(Settling, FallingReturnsFalse) {
   ParameterMap map;
   map.values = SensibleGains();
   map.fitted = {{kKpTheta, Transform::kIdentity, -1}};
-  const RestResidual residual(SettlingProblem(SettlingScene(80.0, 80.0), {}, map, {}, 3.0));
+  const SettlingResidual residual(SettlingProblem(SettlingScene(80.0, 80.0), {}, map, {}, 3.0));
   EXPECT_TRUE(EvaluateCost(residual, {{1560.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {}).ok);
@@ -124,7 +125,7 @@ TEST(Stability, JacobianAgainstNumericDifferentiation) {
       ModelOptions options;
       options.posture = posture;
       const RestProblem problem = StabilityProblem(recording, factor, 40, options, map, {}, 1.0);
-      const RestResidual residual(problem);
+      const StabilityResidual residual(problem);
       EXPECT_EQ(residual.num_residuals(), 40 * 2 * 4);
       ASSERT_EQ(residual.parameter_block_sizes(), (std::vector<int>{kNumParameters, 3, 3, 8}));
       ExpectCorrectJacobian(
@@ -143,7 +144,7 @@ TEST(Stability, IsZeroForPeopleAtRest) {
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
   const Evaluation evaluation = EvaluateCost(
-      RestResidual(StabilityProblem(recording, 1.4, 40, {}, map, {}, 1.0)), blocks, {true});
+      StabilityResidual(StabilityProblem(recording, 1.4, 40, {}, map, {}, 1.0)), blocks, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_LT(evaluation.residuals.norm(), 1e-12);
   EXPECT_LT(evaluation.jacobians[0].norm(), 1e-11);
@@ -159,7 +160,7 @@ TEST(Stability, LooksAtTheFramesBehindTheData) {
   const ResidualSigmas sigmas;
   const RestProblem problem = StabilityProblem(recording, 1.4, 10, {}, map, sigmas, 2.0);
   const Evaluation evaluation =
-      EvaluateCost(RestResidual(problem), {{std::log(SensibleGains()[kMu])}}, {});
+      EvaluateCost(StabilityResidual(problem), {{std::log(SensibleGains()[kMu])}}, {});
   ASSERT_TRUE(evaluation.ok);
   const Scene scene = ScalePushes(recording.scene, 1.4);
   RolloutPath<double> path;

@@ -110,7 +110,8 @@ TEST(RodSensitivities, RestResiduals) {
     problem.first_frame = 40, problem.last_frame = 44;
     const ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
                                     options.self_network->weights};
-    ExpectCorrectJacobian(RestResidual(problem), blocks);
+    ExpectCorrectJacobian(SettlingResidual(problem), blocks);
+    ExpectCorrectJacobian(StabilityResidual(problem), blocks);
   }
 }
 

@@ -1,0 +1,30 @@
+"""Do default fits recover truths that nobody put beside the priors?
+
+truths  ident/README.md; 10 minutes on two cores
+
+Synthetic studies of their own truths; tests/studies/known_truth_study.cc says what varies.
+"""
+import studies
+
+STUDY = ["--studies=200", "--num_threads=2"]
+
+
+def rows_of(arguments):
+    text = studies.run("pushid-known-truth-study", *arguments, out=None).text
+    lines = text.splitlines()
+    rows = [line.split("  ") for line in lines[1:-1]]
+    return [[cell.strip() for cell in row if cell.strip()] for row in rows], lines[-1]
+
+
+def truths():
+    spread, told = rows_of(STUDY)
+    alike, told_alike = rows_of([*STUDY, "--people_spread=0"])
+    header = ["how many, and % of the intervals that hold the truth", "identified", "weak", "prior-held",
+              "unidentifiable", "at bound"]
+    rows = [[f"`{row[0]}`" if row[0] != "all" else "**all**", *row[1:]] for row in spread]
+    rows.append(["all, people alike", *alike[-1][1:]])
+    return f"{studies.table(header, rows)}\n\n{told}. People alike: {told_alike}."
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"truths": truths})
