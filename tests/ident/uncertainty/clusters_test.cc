@@ -1,0 +1,134 @@
+// Whose errors are independent, and how well the scatter over them is known.
+#include "ident/uncertainty/clusters.h"
+
+#include <Eigen/Dense>
+
+#include "ident/uncertainty/clustered_covariance.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+// Rows r = y - m of clusters of given sizes; the least-squares m is their mean.
+JacobianBlocks MeanOf(const std::vector<std::vector<double>>& clusters) {
+  JacobianBlocks score;
+  double sum = 0.0;
+  int rows = 0;
+  for (const auto& y : clusters) {
+    for (double value : y) sum += value, ++rows;
+  }
+  score.jacobian = Eigen::MatrixXd::Constant(rows, 1, -1.0);
+  score.residuals.resize(rows);
+  int row = 0;
+  for (size_t g = 0; g < clusters.size(); ++g) {
+    score.clusters.push_back(static_cast<int>(g));
+    for (double value : clusters[g]) {
+      score.residuals[row++] = value - sum / rows;
+      score.cluster_of_row.push_back(static_cast<int>(g));
+      score.row_in_block.push_back(0);
+    }
+  }
+  score.num_data_rows = rows;
+  return score;
+}
+
+Covariance Of(const JacobianBlocks& score) {
+  return ComputeCovariance(score, Eigen::VectorXd::Ones(1), {ClusterByRecording(score), {}, 0});
+}
+
+// Clusters of one size: the textbook's variance of a mean of cluster means, with G - 1 degrees of
+// freedom.
+TEST(Clusters, BalancedMeanIsTheTextbooks) {
+  const Covariance c = Of(MeanOf({{1.0, 1.2}, {2.0, 2.4}, {0.5, 0.1}, {1.5, 1.1}}));
+  const Eigen::Vector4d means(1.1, 2.2, 0.3, 1.3);
+  const double expected = (means.array() - means.mean()).square().sum() / (4.0 * 3.0);
+  EXPECT_NEAR(c.clustered(0, 0), expected, 1e-12);
+  EXPECT_NEAR(c.freedom[0], 3.0, 1e-9);
+}
+
+// One cluster holds most rows: the mean leans on it, and fewer degrees of freedom are left.
+TEST(Clusters, AnUnevenClusterCostsFreedom) {
+  std::vector<std::vector<double>> clusters(4, {1.0});
+  clusters[0].assign(20, 1.3);
+  EXPECT_LT(Of(MeanOf(clusters)).freedom[0], 1.6);
+}
+
+// Degrees of freedom by Pustejovsky and Tipton's formula, written out over rows.
+TEST(Clusters, FreedomIsSatterthwaites) {
+  Random random(5);
+  JacobianBlocks score;
+  const int sizes[] = {3, 5, 2, 7};
+  for (int g = 0; g < 4; ++g) {
+    score.clusters.push_back(g);
+    for (int k = 0; k < sizes[g]; ++k) {
+      score.cluster_of_row.push_back(g);
+      score.row_in_block.push_back(k);
+    }
+  }
+  const int n = static_cast<int>(score.cluster_of_row.size());
+  score.jacobian = Eigen::MatrixXd(n, 2);
+  score.residuals = Eigen::VectorXd(n);
+  for (int i = 0; i < n; ++i) {
+    score.jacobian.row(i) << 1.0, random.Normal();
+    score.residuals[i] = random.Normal();
+  }
+  score.num_data_rows = n;
+  const Eigen::MatrixXd& j = score.jacobian;
+  const Eigen::MatrixXd inverse = (j.transpose() * j).inverse();
+  const Eigen::MatrixXd rest =
+      Eigen::MatrixXd::Identity(n, n) - j * inverse * j.transpose();  // 1 - P
+  const Covariance c =
+      ComputeCovariance(score, Eigen::VectorXd::Ones(2), {ClusterByRecording(score), {}, 0});
+  for (int coefficient = 0; coefficient < 2; ++coefficient) {
+    Eigen::MatrixXd p = Eigen::MatrixXd::Zero(n, 4);
+    int first = 0;
+    for (int g = 0; g < 4; first += sizes[g++]) {
+      const Eigen::MatrixXd own = rest.block(first, first, sizes[g], sizes[g]);
+      p.col(g).segment(first, sizes[g]) =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(own).operatorInverseSqrt() *
+          j.middleRows(first, sizes[g]) * inverse.col(coefficient);
+    }
+    const Eigen::MatrixXd w = p.transpose() * rest * p;
+    EXPECT_NEAR(c.freedom[coefficient], w.trace() * w.trace() / w.squaredNorm(), 1e-6);
+  }
+}
+
+TEST(Clusters, ArePeopleWhereTheyRepeat) {
+  const auto recordings = MakePendulums(TinyStudy());  // two people, three pushes each
+  const Clusters people = MakeClusters(recordings, ClusterBy::kAuto);
+  EXPECT_EQ(people.by, ClusterBy::kSubject);
+  EXPECT_EQ(people.count(), 2);
+  EXPECT_FALSE(people.two_way);
+  EXPECT_EQ(MakeClusters(recordings, ClusterBy::kRecording).count(), 6);
+}
+
+TEST(Clusters, AreRecordingsWhereNobodyRepeats) {
+  SyntheticOptions study = TinyStudy();
+  study.recordings_per_subject = 1;
+  EXPECT_EQ(MakeClusters(MakePendulums(study), ClusterBy::kAuto).by, ClusterBy::kRecording);
+}
+
+// One id with two masses is two people.
+TEST(Clusters, AnIdWithTwoMassesIsTwoPeople) {
+  auto recordings = MakePendulums(TinyStudy());
+  recordings[0].scene.people[0].body.mass += 20.0;
+  EXPECT_EQ(MakeClusters(recordings, ClusterBy::kSubject).count(), 3);
+}
+
+TEST(Clusters, PeopleWhoShareRecordingsAreClusteredTwoWays) {
+  SyntheticOptions study = TinyStudy();
+  study.people_in_row = 2;
+  study.model.interaction.spring = study.model.interaction.damping = true;
+  study.parameters[kContactStiffness] = 2000.0;
+  study.parameters[kContactDistance] = 0.4;
+  study.parameters[kContactKappa] = 0.6;
+  study.parameters[kContactDamping] = 100.0;
+  study.parameters[kContactHeight] = 0.5;
+  const auto recordings = MakePendulums(study);
+  const Clusters clusters = MakeClusters(recordings, ClusterBy::kAuto);
+  EXPECT_TRUE(clusters.two_way);
+  EXPECT_EQ(clusters.of[0].size(), 2u);
+}
+
+}  // namespace
+}  // namespace pushid

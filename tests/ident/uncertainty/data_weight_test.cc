@@ -1,0 +1,126 @@
+// What the data weigh comes from the data.
+#include "ident/uncertainty/data_weight.h"
+
+#include "ident/results/weighted_solve.h"
+#include "ident/uncertainty/uncertainty.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+FitOptions Estimated(const SyntheticOptions& study) {
+  FitOptions options = DefaultFit(study);
+  options.sigma_source = SigmaSource::kEstimate;
+  options.recording_weight = RecordingWeight::kEffective;
+  return options;
+}
+
+SyntheticOptions Noisy(double noise) {
+  SyntheticOptions study = SmallStudy();
+  study.joint_noise_m = noise;
+  study.noise_at_first_frame = false;
+  return study;
+}
+
+// Hip and ankles have the noise; an angle that of hip and cart, a rate its difference.
+TEST(DataWeight, SigmasAreThoseOfTheNoise) {
+  for (double noise : {0.002, 0.005}) {
+    const SyntheticOptions study = Noisy(noise);
+    const auto recordings = MakePendulums(study);
+    FitOptions options = Estimated(study);
+    ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
+    EXPECT_NEAR(options.sigmas.hip / noise, 1.0, 0.1);
+    // The cart is the mean of two ankles, its velocity a difference of two frames.
+    EXPECT_NEAR(options.sigmas.velocity / (noise * study.fps), 1.0, 0.1);
+  }
+}
+
+TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
+  const SyntheticOptions study = Noisy(0.0);
+  const auto recordings = MakePendulums(study);
+  FitOptions options = Estimated(study);
+  options.marker_noise = 0.003;
+  ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
+  EXPECT_DOUBLE_EQ(options.sigmas.hip, 0.003);
+  EXPECT_DOUBLE_EQ(options.sigmas.velocity, 0.003 * study.fps);
+}
+
+// What counts is weight over sigma squared: told that errors are twice as large, a frame counts four
+// times as much.
+TEST(DataWeight, MakesUpForSigmas) {
+  const SyntheticOptions study = Noisy(0.003);
+  const auto recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  options.recording_weight = RecordingWeight::kEffective;
+  const Solution solution = SolveWeighted(recordings, &options).solution;
+  ASSERT_GE(solution.best, 0);
+  const FitPoint& point = solution.Best().to;
+  const double weight = EstimateEffectiveWeight(FitProblem(recordings, options), point);
+  for (double* sigma : {&options.sigmas.hip, &options.sigmas.velocity, &options.sigmas.angle,
+                        &options.sigmas.rate}) {
+    *sigma *= 2.0;
+  }
+  const double doubled = EstimateEffectiveWeight(FitProblem(recordings, options), point);
+  EXPECT_NEAR(doubled / weight, 4.0, 1e-6);
+}
+
+// One factor on all rows leaves an unpenalized optimum where it is.
+TEST(DataWeight, LeavesAnUnpenalizedOptimumWhereItWas) {
+  SyntheticOptions study = Noisy(0.003);
+  study.subject_spread = 0.1;
+  const auto recordings = MakePendulums(study);
+  FitOptions by_frame = UnbiasedFit(study), effective = by_frame;
+  by_frame.recording_weight = RecordingWeight::kFrame;
+  effective.recording_weight = RecordingWeight::kEffective;
+  const Solution a = SolveWeighted(recordings, &by_frame).solution;
+  const Solution b = SolveWeighted(recordings, &effective).solution;
+  ASSERT_TRUE(a.best >= 0 && b.best >= 0);
+  EXPECT_GT(std::abs(std::log(effective.effective_weight)), 0.5);
+  for (size_t i = 0; i < a.Best().to.shared.size(); ++i) {
+    EXPECT_NEAR(a.Best().to.shared[i], b.Best().to.shared[i],
+                1e-4 * std::max(1.0, std::abs(a.Best().to.shared[i])));
+  }
+}
+
+// A prior at the wrong place: exact data outweigh it, and the shares say so.
+TEST(DataWeight, ExactDataOutweighAPrior) {
+  SyntheticOptions study = Noisy(0.001);
+  study.parameters[kMu] = 80.0;
+  const auto recordings = MakePendulums(study);
+  FitOptions options = Estimated(study);
+  options.table[kMu].prior = Prior{20.0, 10.0};
+  ASSERT_FALSE(SolveWeighted(recordings, &options).solution.best < 0);
+  const FitProblem problem(recordings, options);
+  const SolveStart refit = Refit(problem, problem.NominalPoint());
+  const Uncertainty u = ComputeUncertainty(problem, refit.to);
+  const Estimate* mu = FindEstimate(u.estimates, "mu");
+  ASSERT_NE(mu, nullptr);
+  EXPECT_NEAR(mu->value, 80.0, 4.0);
+  EXPECT_GT(mu->shares.data, 0.95);
+  EXPECT_LT(mu->shares.prior_pull, 0.0);
+}
+
+// Two frames tell next to nothing: what is put in decides, and the status says so.
+TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
+  SyntheticOptions study = TinyStudy();
+  study.joint_noise_m = 0.01;
+  study.frames = 6;
+  const auto recordings = MakePendulums(study);
+  FitOptions options = Estimated(study);
+  const Solution solution = SolveWeighted(recordings, &options).solution;
+  ASSERT_GE(solution.best, 0);
+  const Uncertainty u =
+      ComputeUncertainty(FitProblem(recordings, options), solution.Best().to);
+  const Estimate* stiffness = FindEstimate(u.estimates, "Kp_theta");
+  ASSERT_NE(stiffness, nullptr);
+  EXPECT_LT(stiffness->shares.data, 0.5);
+  EXPECT_EQ(stiffness->status, EstimateStatus::kPriorHeld);
+  EXPECT_FALSE(u.held_directions.empty());
+  for (const Estimate& e : u.estimates) {
+    EXPECT_GE(e.shares.data, -1e-9) << e.name;
+    EXPECT_NEAR(e.shares.data + e.shares.prior + e.shares.settling, 1.0, 1e-9) << e.name;
+  }
+}
+
+}  // namespace
+}  // namespace pushid
