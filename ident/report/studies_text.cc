@@ -28,8 +28,10 @@ TextTable SensorTable(const StudyPlan& plan, const std::string& parameter) {
   if (plan.sensor_ratio.empty()) return table;
   for (size_t i : Chosen(plan, parameter)) {
     const double ratio = plan.sensor_ratio[i];
-    table.Add({plan.parameters[i], std::isnan(ratio) ? "not needed any more"
-                                                     : Rounded(100.0 * (ratio - 1.0), 2) + " %"});
+    // Pooled recordings that differ may even scatter more: no promise then.
+    std::string change = ratio < 1.0 ? Rounded(100.0 * (ratio - 1.0), 2) + " %" : "no gain found";
+    if (std::isnan(ratio)) change = "not needed any more";
+    table.Add({plan.parameters[i], change});
   }
   return table;
 }
