@@ -1,7 +1,13 @@
 // models: derivatives of the push tail, and the push of the settling simulations.
 #include "models/push.h"
 
+#include <algorithm>
+
 namespace pushid {
+
+double LogTailDuration(double push_duration) {
+  return std::log(std::min(push_duration, kLongestTailDuration) / kTailReferenceDuration);
+}
 
 double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt) {
   const double duration = static_cast<double>(push.force.size()) * dt;

@@ -3,12 +3,11 @@
 // A `net` push covers only the first part of the real one. Its tail goes on after the last row as
 //   F(k) = [g Fx, g Fy, r Ftheta, r Fphi] exp(-k dt / tau),  tau = t (d / 0.1 s)^e,
 // with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
-// t = tail_time, e = tail_exponent, d = n dt, at most 0.25 s: longer pushes were never there to
-// learn the exponent from, and a tail that kept growing with them would send people away. An
-// external push has no tail.
+// t = tail_time, e = tail_exponent, d = n dt, at most 0.4 s: the published pushes are no longer,
+// and a tail that kept growing would send people away who are pushed weakly for long. An external
+// push has no tail.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -25,7 +24,7 @@ enum class PushKind {
   kExternal,            // a measured force, added to everything else
 };
 
-inline constexpr double kTailReferenceDuration = 0.1, kLongestTailDuration = 0.25;  // s
+inline constexpr double kTailReferenceDuration = 0.1, kLongestTailDuration = 0.4;  // s
 
 // One push in a scene; row i drives the step from frame start_frame + i to the next.
 struct ScenePush {
@@ -48,9 +47,7 @@ inline ScenePush MakeScenePush(int person, int start_frame, PushKind kind,
 }
 
 // log(d / 0.1 s) for a push of so many seconds.
-inline double LogTailDuration(double push_duration) {
-  return std::log(std::min(push_duration, kLongestTailDuration) / kTailReferenceDuration);
-}
+double LogTailDuration(double push_duration);
 
 // The tail's decay time in seconds.
 template <typename T>

@@ -2,7 +2,8 @@
 //
 // Parameter blocks of one recording, in this order:
 //   0        shared values on the fitted scale, one entry per fitted parameter
-//   1 .. S   deviations of each distinct unit - subject, setting or condition - one entry per pooled parameter
+//   1 .. S   deviations of each distinct unit - subject, setting or condition - one entry per
+//   pooled parameter
 //            (absent when none)
 //   next     initial velocities [xd, yd, thetad, phid] per person, m/s and rad/s (only when free)
 //   last     weights of what is learned, self force and rod (only when there is any)

@@ -19,8 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 // What names of a pattern mean something; others tell recordings apart.
-const std::vector<std::string> kUnderstood = {"setting", "subject", "magnitude", "condition", kOldConditionKey,
-                                              "person"};
+const std::vector<std::string> kUnderstood = {"setting",   "subject",        "magnitude",
+                                              "condition", kOldConditionKey, "person"};
 
 class Maker {
  public:

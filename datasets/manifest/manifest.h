@@ -15,7 +15,8 @@
 // external), joints {hip, left_ankle, right_ankle} by name or index, up and forward (axes of the
 // BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
 // start_frame}] in addition to push_csv, initial_velocity (zero, estimated, free; default zero),
-// condition (label of the protocol; condition_code in older files), frames. At the top: length_unit or units.bvh_length for all recordings.
+// condition (label of the protocol; condition_code in older files), frames. At the top: length_unit
+// or units.bvh_length for all recordings.
 //
 // Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
 // with one file per subject; the same file may be named for several. A joint may then be a list of

@@ -11,9 +11,9 @@ namespace {
 
 std::vector<std::string> KnownKeys() {
   std::vector<std::string> keys = {
-      "id",      "setting",     "fps",         "subjects",      "pushed_person",
-      "mapping", "push_csv",    "push_kind",   "magnitude",     "joints",
-      "up",      "forward",     "length_unit", "pushes",        "initial_velocity",
+      "id",      "setting",     "fps",         "subjects",  "pushed_person",
+      "mapping", "push_csv",    "push_kind",   "magnitude", "joints",
+      "up",      "forward",     "length_unit", "pushes",    "initial_velocity",
       "frames",  "first_frame", "end_frame",   "condition", kOldConditionKey};
   for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
   return keys;

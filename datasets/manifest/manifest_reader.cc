@@ -130,8 +130,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
                                       "net, net_without_friction or external");
   recording.magnitude =
       fields.Text("magnitude", "the push's strength as a label, for instance weak, medium, strong");
-  recording.condition =
-      fields.OptionalText("condition", fields.OptionalText(kOldConditionKey, ""));
+  recording.condition = fields.OptionalText("condition", fields.OptionalText(kOldConditionKey, ""));
   recording.joints = ReadJointMapping(document, &fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);

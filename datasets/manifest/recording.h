@@ -50,7 +50,7 @@ struct RecordedPerson {
 struct Recording {
   std::string id;
   std::string setting;
-  std::string magnitude;       // strength label, e.g. weak, medium, strong
+  std::string magnitude;  // strength label, e.g. weak, medium, strong
   std::string condition;  // of the protocol, a free label; may be empty
   double fps = 0.0;
   int pushed_person = 0;

@@ -32,8 +32,8 @@ struct PushStrength {
   double acceleration;  // m/s^2
 };
 
-// The settled tail model for the person of 85 kg and 0.95 m: round values near those identified from
-// the published recordings of single people.
+// The settled tail model for the person of 85 kg and 0.95 m: round values near those identified
+// from the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
 
 struct SyntheticOptions {

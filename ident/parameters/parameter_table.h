@@ -67,8 +67,8 @@ struct ParameterTable {
 // Every parameter there is, fixed at a value that makes its term vanish, or at LDP's value.
 ParameterTable BaseTable();
 
-// Standard deviation of a unit's deviation on the fitted scale: on a log scale pooling_sigma itself,
-// on an identity scale that many typical sizes of the parameter.
+// Standard deviation of a unit's deviation on the fitted scale: on a log scale pooling_sigma
+// itself, on an identity scale that many typical sizes of the parameter.
 double PoolingSigma(const ParameterSpec& spec);
 
 // Whether some parameter may differ by unit.

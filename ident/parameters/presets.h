@@ -4,7 +4,7 @@
 //          the tail's time partially pooled by condition
 //   ldp:   one person: plain PD balance and friction from upright; six free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
-//          partially pooled by setting (condition); seventeen shared parameters
+//          partially pooled by setting (condition); eighteen shared parameters
 //   auto:  tail where every recording is of one person, otherwise group
 //
 //   FitOptions options = MakePreset("tail").value();

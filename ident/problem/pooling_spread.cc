@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 constexpr int kMaxSteps = 200;
-constexpr double kSmallChange = 1e-3;      // of a spread, that ends the steps
+constexpr double kSmallChange = 1e-3;       // of a spread, that ends the steps
 constexpr double kLeastInformation = 1e-6;  // units' worth; below it nothing is known of a spread
 
 // Hessian and gradient of the cost less the pooling priors, by deviation; everything else is
@@ -46,8 +46,7 @@ DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point
   p.hessian = hessian.topLeftCorner(deviations, deviations) -
               cross.transpose() * factor.solve(cross) -
               Eigen::MatrixXd(pooling_precision.asDiagonal());
-  p.gradient = gradient.head(deviations) -
-               cross.transpose() * factor.solve(gradient.tail(rest)) -
+  p.gradient = gradient.head(deviations) - cross.transpose() * factor.solve(gradient.tail(rest)) -
                pooling_precision.cwiseProduct(p.at);
   return p;
 }

@@ -201,14 +201,14 @@ TextTable SpreadTable(const FitResult& result) {
     const ParameterSpec* spec = o.table.Find(e.name);
     if (spec == nullptr || !spec->free || !spec->pooled) continue;
     const double sigma = PoolingSigma(*spec);
-    const std::string spread =
-        spec->transform == Transform::kLog ? "a factor of " + Rounded(std::exp(sigma), 3)
-        : spec->transform == Transform::kLogit
-            ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
-            : Rounded(sigma, 3);
-    const char* source = o.pooling_sigma                        ? ", given"
+    const std::string spread = spec->transform == Transform::kLog
+                                   ? "a factor of " + Rounded(std::exp(sigma), 3)
+                               : spec->transform == Transform::kLogit
+                                   ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
+                                   : Rounded(sigma, 3);
+    const char* source = o.pooling_sigma                             ? ", given"
                          : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none seen"
-                                                                : ", estimated";
+                                                                     : ", estimated";
     table.Add({e.name, Rounded(e.value, 4), Rounded(e.standard_error, 3), e.unit, spread + source});
   }
   return table;

@@ -34,9 +34,7 @@ struct PushRange {
   ValueRange external_s, net_s;  // durations of the rows, s
   ValueRange impulse_per_mass;   // m/s
 
-  ValueRange& Durations(PushKind kind) {
-    return kind == PushKind::kExternal ? external_s : net_s;
-  }
+  ValueRange& Durations(PushKind kind) { return kind == PushKind::kExternal ? external_s : net_s; }
   const ValueRange& Durations(PushKind kind) const {
     return const_cast<PushRange*>(this)->Durations(kind);
   }

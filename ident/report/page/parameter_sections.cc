@@ -179,8 +179,7 @@ ReportSection UnitSection(const FittedModel& model) {
     }
     section.folds.push_back(
         {name,
-         {{"units_" + name, name + " by " + by,
-           Forest(rows, name, true).Draw(legend), numbers}}});
+         {{"units_" + name, name + " by " + by, Forest(rows, name, true).Draw(legend), numbers}}});
   }
   section.tables.push_back({"", pooled});
   section.tables.push_back({"how far they differ", SpreadTable(result)});

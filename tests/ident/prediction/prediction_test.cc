@@ -177,7 +177,7 @@ TEST_F(TrajectoryCsv, UnwritablePathIsAnError) {
 TEST_F(TrajectoryCsv, AFallenPrediction) {
   const SyntheticOptions study = TinyStudy();
   PendulumRecording recording = MakePendulums(study)[0];
-  recording.scene = ScalePushes(recording.scene, 40.0);
+  recording.scene = ScalePushes(recording.scene, 120.0);
   const Prediction p = Predict(TruthOf(study), recording);
   ASSERT_FALSE(p.status.ok);
   EXPECT_GT(p.status.frame, 0);

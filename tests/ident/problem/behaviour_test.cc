@@ -46,11 +46,11 @@ TEST(Behaviour, FirmGainsSettle) {
   EXPECT_LT(b.fastest_growth, 0.0);
 }
 
-TEST(Behaviour, IdentifiedGainsBarelySettle) {
+TEST(Behaviour, IdentifiedGainsSettle) {
   const Behaviour b = Of(PublishedTailParameters());
   EXPECT_LT(b.fastest_growth, 0.0);
   for (const SettlingSimulation& d : b.simulations) {
-    EXPECT_EQ(d.settled, d.mass > 60.0 || d.impulse < 80.0) << d.mass << " kg, " << d.impulse;
+    EXPECT_TRUE(d.settled) << d.mass << " kg, " << d.impulse;
   }
 }
 
@@ -63,7 +63,8 @@ TEST(Behaviour, FreeModesKnowTheNetwork) {
   network.weights[network.shape.output_at() + 2] = -0.1 / kSmall;  // torque
   ModelOptions options = ModelOptions();
   options.self_network = std::make_shared<const SelfNetwork>(network);
-  const ParameterSet<double> p = FirmParameters();
+  ParameterSet<double> p = FirmParameters();
+  p[kKpTheta] = 1560.0, p[kAx] = -9.2;  // the slowest mode leans, and knows its stiffness
   ParameterSet<double> stiffer = p;
   const GainScale scale(options.gain_scaling, {80.0, kReferenceRod, 0.0});
   stiffer[kKpTheta] += 0.1 * kNetworkAcceleration * 80.0 / kNetworkAngle / scale.stiffness;
@@ -252,7 +253,7 @@ TEST(Behaviour, AnUndampedCartIsMarginal) {
 
 TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
   SyntheticOptions study;
-  study.parameters[kMu] = -25.0;
+  study.parameters[kMu] = -50.0;
   study.frames = 50;
   const auto made = MakeSyntheticRecordings(study);
   ASSERT_TRUE(made.ok()) << made.error().ToString();
@@ -265,6 +266,7 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
   options.table = MakePreset("tail").value().table;
   for (ParameterSpec& spec : options.table.specs) {
     if (!spec.free) spec.nominal = study.parameters[spec.id];
+    spec.pooled = false;
   }
   const FitResult walking = Fit(recordings, options);
   ASSERT_TRUE(walking.ok());

@@ -62,8 +62,7 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
   EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());  // a file without a range
   model.push_range = FittedPushRange(model, fitted);
   EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
-  EXPECT_TRUE(
-      ExtrapolationWarnings(model, {Pushed("c", PushKind::kExternal, 48, 60.0)}).empty());
+  EXPECT_TRUE(ExtrapolationWarnings(model, {Pushed("c", PushKind::kExternal, 48, 60.0)}).empty());
   // As long as the others and twice as strong.
   const auto strong = ExtrapolationWarnings(model, {Pushed("c", PushKind::kExternal, 40, 120.0)});
   ASSERT_EQ(strong.size(), 1u);
@@ -71,9 +70,9 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
             "the push's impulse over mass of c is 1 m/s; the model was fitted to 0.25 to 0.5 m/s: "
             "an extrapolation");
   // Weak and long; the farther of two is named.
-  const auto late = ExtrapolationWarnings(
-      model, {fitted[0], Pushed("c", PushKind::kExternal, 60, 30.0),
-              Pushed("d", PushKind::kExternal, 120, 10.0)});
+  const auto late =
+      ExtrapolationWarnings(model, {fitted[0], Pushed("c", PushKind::kExternal, 60, 30.0),
+                                    Pushed("d", PushKind::kExternal, 120, 10.0)});
   ASSERT_EQ(late.size(), 1u);
   EXPECT_TRUE(Contains(late[0], "duration of 2 of 3 recordings, farthest d is 2 s")) << late[0];
   // The rows of a net push are its beginning: their durations do not compare.

@@ -191,7 +191,7 @@ TEST(LargeNetworkFit, PriorsOfTheTable) {
 // One that falls at the start is held to the frames before, and named.
 TEST(LargeNetworkFit, HoldsAFallToTheFramesBefore) {
   Planted planted;
-  planted.recordings[6].scene = ScalePushes(planted.recordings[6].scene, 60.0);
+  planted.recordings[6].scene = ScalePushes(planted.recordings[6].scene, 200.0);
   LargeNetworkFit fit = planted.Fit(1);
   fit.training = planted.Some(0, 1);
   fit.options.max_iterations = 10;
