@@ -68,7 +68,9 @@ TEST(PushTail, StaysInProportionToTheWholePush) {
       for (int frame = 0; frame < 20000; ++frame) tail += TailForce(push, p, frame, kDt)[0] * kDt;
       EXPECT_NEAR(WholeImpulse(push, p, kDt), kImpulse + tail, 1e-9 * tail) << frames;
       const double share = tail / kImpulse;
-      if (exponent == 0.0 || frames > 24) EXPECT_LT(share, last_share) << frames;
+      if (exponent == 0.0 || frames > 24) {
+        EXPECT_LT(share, last_share) << frames;
+      }
       EXPECT_LT(share, 6.0) << frames;
       last_share = share;
     }
