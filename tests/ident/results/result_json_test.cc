@@ -65,6 +65,9 @@ FittedModel JudgedModel() {
                      "threshold",
                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
   model.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  model.bootstrap->drawn_by = ClusterBy::kSubject;
+  model.bootstrap->drawn_from = 4;
+  model.bootstrap->people_shared = true;
   Diagnostics& d = model.fit.diagnostics;
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
   d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
