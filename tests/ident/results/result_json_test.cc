@@ -119,7 +119,7 @@ TEST(ResultJson, NumbersThatAreNoneComeBack) {
   d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
   d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
   d.trace[0] = {8, 0, infinity, none};
-  result.uncertainty.sigma = result.uncertainty.t_quantile = infinity;
+  result.uncertainty.sigma = result.uncertainty.settling.free_seconds = infinity;
   result.behaviour.fastest_growth = none;
   SettlingSimulation& fallen = result.behaviour.simulations.front();
   fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;
