@@ -32,11 +32,13 @@ std::string Today() {
 }
 
 // The recordings of a bootstrap's replica, those drawn several times standing there several times.
-std::vector<Recording> Resampled(const std::vector<Recording>& recordings, int replica) {
+std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
+                                         int replica, ClusterBy cluster) {
   if (replica == 0) return recordings;
+  const ClusterBy by = BootstrapBy() == ClusterBy::kAuto ? cluster : BootstrapBy();
   const std::vector<int> counts =
-      DrawRecordings(static_cast<int>(recordings.size()), Seed(), replica);
-  std::vector<Recording> drawn;
+      DrawRecordings(MakeResamplingUnits(recordings, by), Seed(), replica);
+  std::vector<PendulumRecording> drawn;
   for (size_t i = 0; i < recordings.size(); ++i) {
     drawn.insert(drawn.end(), counts[i], recordings[i]);
   }
@@ -90,8 +92,9 @@ int Run() {
       LoadFlaggedRecordings({}, false, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
-  const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(
-      Resampled(recordings.value(), flags.value().resample), options.value().mapping);
+  const std::vector<PendulumRecording> pendulums =
+      Resampled(MakePendulumRecordings(recordings.value(), options.value().mapping),
+                flags.value().resample, options.value().cluster);
 
   options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());

@@ -24,9 +24,11 @@ std::string Joined(const std::vector<std::string>& sentences) {
   return text;
 }
 
-std::string WithError(double value, double error) {
+// A value that is not the data's own says so.
+std::string Shown(double value, double error, EstimateStatus status) {
   const std::string text = Rounded(value, 4);
-  return std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text + " (unidentifiable)";
+  return (std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text) +
+         (status == EstimateStatus::kIdentified ? "" : " (" + NameOf(status) + ")");
 }
 
 // "hipADE" -> "hip_ade"
@@ -57,16 +59,31 @@ JobColumn ParameterColumn(const std::string& name) {
   return {name, name, false, true, [name](const JobResult& row) {
             const auto found = row.parameters.find(name);
             if (found == row.parameters.end()) return Nothing();
-            return JobCell{DoubleText(found->second), WithError(found->second, row.errors.at(name)),
+            return JobCell{DoubleText(found->second),
+                           Shown(found->second, row.errors.at(name), row.statuses.at(name)),
                            found->second};
           }};
 }
 
-// On the page the error stands beside the value.
+// On the page error and status stand beside the value.
 JobColumn ParameterErrorColumn(const std::string& name) {
   return {name + "_se", "", false, false, [name](const JobResult& row) {
             const auto found = row.errors.find(name);
             return found == row.errors.end() ? Nothing() : Number(found->second, 3);
+          }};
+}
+
+JobColumn ParameterStatusColumn(const std::string& name) {
+  return {name + "_status", "", true, false, [name](const JobResult& row) {
+            const auto found = row.statuses.find(name);
+            return found == row.statuses.end() ? Nothing() : Words(NameOf(found->second));
+          }};
+}
+
+JobColumn ParameterDataShareColumn(const std::string& name) {
+  return {name + "_data_share", "", false, false, [name](const JobResult& row) {
+            const auto found = row.data_shares.find(name);
+            return found == row.data_shares.end() ? Nothing() : Number(found->second, 3);
           }};
 }
 
@@ -97,6 +114,8 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   const std::vector<std::string> names = ParameterNames(rows);
   for (const std::string& name : names) columns.push_back(ParameterColumn(name));
   for (const std::string& name : names) columns.push_back(ParameterErrorColumn(name));
+  for (const std::string& name : names) columns.push_back(ParameterStatusColumn(name));
+  for (const std::string& name : names) columns.push_back(ParameterDataShareColumn(name));
   const auto add = [&columns](JobColumn column) { columns.push_back(std::move(column)); };
   add({"cost", "", false, false, [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
   add({"settles", "settles", false, false,

@@ -12,6 +12,8 @@ void AddModel(const FitResult& fit, JobResult* result) {
     if (estimate.status == EstimateStatus::kFixed) continue;
     result->parameters[estimate.name] = estimate.value;
     result->errors[estimate.name] = estimate.standard_error;
+    result->statuses[estimate.name] = estimate.status;
+    result->data_shares[estimate.name] = estimate.shares.data;
   }
   result->cost = fit.cost;
   result->warnings = fit.warnings;

@@ -9,6 +9,7 @@
 #include "apps/batch/batch_jobs.h"
 #include "apps/batch/job_status.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 
@@ -16,6 +17,8 @@ struct JobResult {
   const BatchJob* job = nullptr;
   JobStatus status;
   std::map<std::string, double> parameters, errors;  // free ones, with standard errors
+  std::map<std::string, EstimateStatus> statuses;
+  std::map<std::string, double> data_shares;  // of their variance
   double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;

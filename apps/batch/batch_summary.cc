@@ -45,7 +45,9 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
     if (row.done()) {
       for (const auto& [name, value] : row.parameters) {
         job["parameters"][name] = {{"value", NumberJson(value)},
-                                   {"standard_error", NumberJson(row.errors.at(name))}};
+                                   {"standard_error", NumberJson(row.errors.at(name))},
+                                   {"status", NameOf(row.statuses.at(name))},
+                                   {"data_share", NumberJson(row.data_shares.at(name))}};
       }
       job["cost"] = NumberJson(row.cost);
       job["settles"] = row.settles;

@@ -11,6 +11,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/parameters/option_names.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
 #include "ident/report/design_text.h"
@@ -20,7 +21,11 @@
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
               "nothing after --profile): of every free one");
-DEFINE_int32(bootstrap, 0, "refit so many resamples of the recordings; 199 is a good number");
+DEFINE_int32(bootstrap, 0,
+             "refit so many resamples of the people or recordings; 199 is a good number");
+DEFINE_string(bootstrap_by, NameOf(pushid::BootstrapOptions{}.by),
+              "what a bootstrap (and --resample) draws: subject (all recordings of a person), "
+              "recording, or auto: as --cluster; where people share recordings, recordings");
 DEFINE_string(bootstrap_file, "",
               "keeps finished replicas, so that a run that was interrupted goes on from there");
 DEFINE_string(design, "",
@@ -82,12 +87,20 @@ MaybeError CheckConfidenceFlags() {
   if (Given("push_check_noise") && !FLAGS_push_check) {
     return Error{"--push_check_noise needs --push_check"};
   }
+  ClusterBy by;
+  if (MaybeError error = ParseName("--bootstrap_by", FLAGS_bootstrap_by, &by)) return error;
   return FLAGS_bootstrap_file.empty() ? std::nullopt : CheckWritable(FLAGS_bootstrap_file);
+}
+
+ClusterBy BootstrapBy() {
+  ClusterBy by = BootstrapOptions{}.by;
+  ParseName("--bootstrap_by", FLAGS_bootstrap_by, &by);  // CheckConfidenceFlags told of errors
+  return by;
 }
 
 MaybeError CheckConfidence(const FitOptions& options, int recordings) {
   if (FLAGS_bootstrap > 0 && recordings < 2) {
-    return Error{"--bootstrap draws recordings with replacement; it needs at least two"};
+    return Error{"--bootstrap draws people or recordings with replacement; it needs at least two"};
   }
   const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
   if (stopped_early && (FLAGS_bootstrap > 0 || !FLAGS_profile.empty())) {
@@ -124,6 +137,7 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
     options.seed = Seed();
     options.file = FLAGS_bootstrap_file;
     options.num_threads = NumThreads();
+    options.by = BootstrapBy();
     if (MaybeError error =
             AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), model)) {
       return *error;

@@ -14,6 +14,9 @@ void AllowBareProfile(int argc, char** argv);
 // What is wrong with the flags, before a long fit.
 MaybeError CheckConfidenceFlags();
 
+// What a bootstrap draws, by flag.
+ClusterBy BootstrapBy();
+
 // The same against what is to be fitted: recordings to draw from, a parameter to design for.
 MaybeError CheckConfidence(const FitOptions& options, int recordings);
 

@@ -6,8 +6,8 @@
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(
     resample, pushid::FitFlags{}.resample,
-    "fit replica k of a bootstrap: as many recordings drawn with replacement by --seed and "
-    "k; 0: the recordings as they are");
+    "fit replica k of a bootstrap: as many people or recordings (--bootstrap_by) drawn with "
+    "replacement by --seed and k; 0: the recordings as they are");
 DEFINE_bool(check, pushid::FitFlags{}.check,
             "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, pushid::FitFlags{}.list_parameters,

@@ -115,9 +115,9 @@ struct FitOptions {
   // How the recordings' rollouts are differentiated; autodiff to check the sensitivities.
   JacobianMethod jacobian = JacobianMethod::kSensitivities;
 
-  // Ceres; the defaults reach the optimum to about 1e-9 of the cost.
+  // Ceres; the defaults reach the optimum to a thousandth of a standard error.
   int max_iterations = 200;
-  double function_tolerance = 1e-10;
+  double function_tolerance = 1e-8;
   double gradient_tolerance = 1e-12;
   double parameter_tolerance = 1e-9;
 

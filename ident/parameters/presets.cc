@@ -34,7 +34,7 @@ FitOptions TailPreset() {
   // condition, and it sends people away who are pushed weakly for long.
   o.pool = "tail_time";
   o.pool_by = PoolBy::kCondition;
-  o.settling_weight = 10.0;
+  o.settling_weight = 30.0;
   return o;
 }
 

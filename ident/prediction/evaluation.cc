@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/uncertainty/clusters.h"
 #include "residuals/cost_functions/rest_residual.h"
 
 namespace pushid {
@@ -18,17 +19,20 @@ MeanScore Mean(const std::vector<const RecordingScore*>& scores, bool by_frames)
   for (const RecordingScore* s : scores) total += weight(s);
   mean.recordings = static_cast<int>(scores.size());
   if (scores.empty()) return mean;
-  const double n = static_cast<double>(scores.size());
+  std::vector<std::string> pushed;
+  for (const RecordingScore* s : scores) pushed.push_back(s->pushed);
+  const ScoreClusters clusters = ClustersOf(pushed);
+  mean.clustered_by = clusters.by;
+  mean.clusters = clusters.count;
   for (const HipMetric& metric : kHipMetrics) {
     const auto value = metric.value;
     for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
     mean.*value /= total;
-    if (scores.size() < 2) continue;
-    double squares = 0.0;
+    std::vector<double> deviations;
     for (const RecordingScore* s : scores) {
-      squares += std::pow(weight(s) / total * (s->*value - mean.*value), 2);
+      deviations.push_back(weight(s) / total * (s->*value - mean.*value));
     }
-    mean.error.*value = std::sqrt(squares * n / (n - 1.0));
+    mean.error.*value = clusters.ErrorOfMean(deviations);
   }
   return mean;
 }
@@ -130,9 +134,10 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
   Group all;
   std::map<std::string, Group> magnitude, subject, setting;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    const RecordingScore& score = summary.recordings[i];
-    if (!score.failure.empty()) continue;
+    RecordingScore& score = summary.recordings[i];
     const PendulumRecording& recording = recordings[i];
+    score.pushed = PersonKey(recording, recording.pushed_person);
+    if (!score.failure.empty()) continue;
     all.push_back(&score);
     magnitude[recording.magnitude].push_back(&score);
     subject[recording.subject_ids[recording.pushed_person]].push_back(&score);

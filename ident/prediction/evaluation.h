@@ -13,6 +13,7 @@
 #include "ident/figures/metric.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
+#include "ident/prediction/score_clusters.h"
 
 namespace pushid {
 
@@ -42,11 +43,14 @@ struct RecordingScore : HipMetrics {
   bool fell = false;                  // a person leaned beyond 1.0 rad
   bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
+  std::string pushed = {};            // who was (PersonKey); Summarize fills it in
 };
 
 struct MeanScore : HipMetrics {
   int recordings = 0;
-  HipMetrics error;  // standard error of the mean over recordings
+  HipMetrics error;  // standard error of the mean (score_clusters.h)
+  ClusterBy clustered_by = ClusterBy::kRecording;
+  int clusters = 0;
 };
 
 struct ScoreSummary {

@@ -13,6 +13,7 @@ namespace pushid {
 namespace {
 
 constexpr size_t kWorstRecordings = 5;
+constexpr int kFewUnits = 5;           // of fewer a bootstrap has too few distinct resamples
 constexpr double kDisagreement = 1.5;  // ratio of widths that is worth a word
 
 std::string IntervalText(const std::optional<Interval>& interval) {
@@ -107,10 +108,24 @@ std::string AgreementNote(const FittedModel& model) {
   const std::vector<Agreement> rows = CompareIntervals(model);
   if (rows.empty()) return "";
   std::string text = Disagreements(rows);
-  if (model.bootstrap) {
-    text += "bootstrap over recordings: " + std::to_string(model.bootstrap->values.size()) +
-            " of " + std::to_string(model.bootstrap->replicas) + " replicas, seed " +
-            std::to_string(model.bootstrap->seed) + "\n";
+  if (model.bootstrap) text += "bootstrap " + ResamplingText(*model.bootstrap) + "\n";
+  return text;
+}
+
+std::string ResamplingText(const Bootstrap& b) {
+  const std::string what = b.drawn_by == ClusterBy::kSubject ? "people" : "recordings";
+  const std::string number = b.drawn_from > 0 ? std::to_string(b.drawn_from) + " " : "";
+  std::string text = "resampling " + number + what + ": " + std::to_string(b.values.size()) +
+                     " of " + std::to_string(b.replicas) + " replicas, seed " +
+                     std::to_string(b.seed);
+  if (b.people_shared) {
+    text +=
+        "; people share recordings and cannot be drawn one by one, so what a person does in "
+        "all of them is left out";
+  }
+  if (b.drawn_from > 0 && b.drawn_from < kFewUnits) {
+    text += "; of " + number + what + " only " + Rounded(DistinctResamples(b.drawn_from), 3) +
+            " distinct resamples exist: read its intervals as rough, and mostly too narrow";
   }
   return text;
 }

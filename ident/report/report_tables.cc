@@ -73,6 +73,36 @@ TextTable EstimateTable(const FitResult& result) {
   return table;
 }
 
+std::string IdentifiedText(const FitResult& result) {
+  int free = 0, identified = 0;
+  std::string others;
+  for (const EnumName<EstimateStatus>& status : Names(EstimateStatus())) {
+    if (status.value == EstimateStatus::kFixed) continue;
+    std::string names;
+    for (const Estimate& e : result.estimates) {
+      if (e.status != status.value) continue;
+      ++free;
+      names += (names.empty() ? "" : ", ") + e.name;
+      identified += e.status == EstimateStatus::kIdentified;
+    }
+    if (status.value == EstimateStatus::kIdentified || names.empty()) continue;
+    others += "; " + std::string(status.name) + ": " + names;
+  }
+  const std::string all = std::to_string(free);
+  if (free > 0 && identified == free) {
+    return free == 1 ? "The free parameter is identified by the data."
+                     : "All " + all + " free parameters are identified by the data.";
+  }
+  return std::to_string(identified) + " of " + all + " free parameters " +
+         (identified == 1 ? "is" : "are") + " identified" + others + ".";
+}
+
+std::string SharesNote() {
+  return "Shares: what part of a value's variance the data, its prior and the demand to settle "
+         "account for. Pull: what prior and demand together moved the value by, in its standard "
+         "errors. Prior-held: the data have less than half a say.";
+}
+
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (!u.clustered) return "standard errors: naive (a single cluster tells no scatter)\n";

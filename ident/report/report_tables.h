@@ -14,6 +14,12 @@ std::string SharesText(const Shares& shares);
 std::string PullText(const Estimate& estimate);
 
 TextTable EstimateTable(const FitResult& result);
+// Which of the free parameters the data identify: "All 7 free parameters are identified by the
+// data.", or how many, and which are not and why.
+std::string IdentifiedText(const FitResult& result);
+// What the columns of shares and pulls mean.
+std::string SharesNote();
+
 std::string HowSure(const FitResult& result);
 
 // c_x, c_y and gains per mass, and by which convention mu is told from Kp.

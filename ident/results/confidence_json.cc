@@ -1,6 +1,7 @@
 // ident: how sure a result is, to JSON and back.
 #include "ident/results/confidence_json.h"
 
+#include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/json_pieces.h"
 
@@ -181,6 +182,9 @@ std::vector<Profile> ProfilesFromJson(const Json& json) {
 Json ToJson(const Bootstrap& b) {
   return {{"replicas", b.replicas},
           {"seed", b.seed},
+          {"drawn_by", NameOf(b.drawn_by)},
+          {"drawn_from", b.drawn_from},
+          {"people_shared", b.people_shared},
           {"failed", b.failed},
           {"parameters", BootstrapParametersJson(b)},
           {"values", RowsJson(b.values)}};
@@ -190,6 +194,11 @@ Bootstrap BootstrapFromJson(const Json& json) {
   Bootstrap b;
   b.replicas = json.at("replicas");
   b.seed = json.at("seed");
+  if (json.contains("drawn_by")) {  // added later; recordings were drawn before
+    b.drawn_by = EnumFrom<ClusterBy>(json, "drawn_by");
+    b.drawn_from = json.at("drawn_from");
+    b.people_shared = json.at("people_shared");
+  }
   b.failed = json.at("failed");
   for (const Json& row : json.at("parameters")) {
     b.names.push_back(row.at("name"));

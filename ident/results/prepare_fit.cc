@@ -11,6 +11,33 @@
 namespace pushid {
 namespace {
 
+// A bootstrap's replica holds a recording several times, under one id.
+bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
+  if (a.id == b.id) return false;
+  if (!a.content_hash.empty() && a.content_hash == b.content_hash) return true;
+  return a.num_frames() > 0 && a.hip == b.hip;
+}
+
+// A copy adds nothing that was not known, and narrows every interval as if it did.
+std::vector<std::string> DuplicateWarnings(const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::string> warnings;
+  std::vector<bool> told(recordings.size(), false);
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    std::string copies;
+    for (size_t j = i + 1; j < recordings.size(); ++j) {
+      if (told[i] || told[j] || !SameMotion(recordings[i], recordings[j])) continue;
+      told[j] = true;
+      copies += (copies.empty() ? "" : ",") + recordings[j].id;
+    }
+    if (copies.empty()) continue;
+    warnings.push_back("the motion of '" + recordings[i].id + "' is there again as " + copies +
+                       ": copies count as new evidence, and intervals come out too narrow; leave "
+                       "them out (--leave_out=" +
+                       copies + ")");
+  }
+  return warnings;
+}
+
 std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& recordings,
                                         const FitOptions& options) {
   std::vector<std::string> warnings = UnitWarnings(recordings);
@@ -22,6 +49,7 @@ std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& re
         "several people stand in one recording, and the model has nothing between them "
         "(--preset=group and --interaction=contact have)");
   }
+  for (const std::string& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
   return warnings;
 }
 

@@ -57,22 +57,20 @@ void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions&
   start->message = std::move(again.message);
 }
 
-Solution SolveAndWeigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                       const SolveProgress& progress) {
-  Solution solution = Solve(FitProblem(recordings, *options), progress);
+// Weighs and solves in turns, from a start that was solved.
+void Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+           SolveStart* best) {
   bool changed = false;
-  for (int round = 0; solution.best >= 0 && round < kMostRounds; ++round) {
-    SolveStart& best = solution.starts[solution.best];
+  for (int round = 0; round < kMostRounds; ++round) {
     FitOptions now = *options;
-    if (Reweigh(FitProblem(recordings, *options), best.to, &now) < kSettled) break;
+    if (Reweigh(FitProblem(recordings, *options), best->to, &now) < kSettled) break;
     *options = now;
     // On the way the optimum need not be exact.
     now.function_tolerance = std::max(kRough, now.function_tolerance);
-    SolveOn(recordings, now, &best);
+    SolveOn(recordings, now, best);
     changed = true;
   }
-  if (changed) SolveOn(recordings, *options, &solution.starts[solution.best]);
-  return solution;
+  if (changed) SolveOn(recordings, *options, best);
 }
 
 // Half of what the demand to settle adds to the cost at a point.
@@ -89,32 +87,31 @@ double SettlingCost(const FitProblem& problem, const FitPoint& point) {
   return built.rests_left_out > 0 ? std::numeric_limits<double>::infinity() : sum;
 }
 
-// Step 2 of the header.
+// Steps 2 and 3 of the header, for a fit that a demand of `weight` holds.
 void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
                 FitOptions* options, WeightedSolution* solved) {
   SolveStart& best = solved->solution.starts[solved->solution.best];
-  FitOptions demanding = *options;
+  FitOptions freed = *options;
+  freed.settling_weight = 0.0;
+  SolveStart free = best;
+  SolveOn(recordings, freed, &free);
+  Weigh(recordings, &freed, &free);
+  FitOptions demanding = freed;
   demanding.settling_weight = weight;
-  const FitProblem with(recordings, demanding), without(recordings, *options);
-  const double before = SettlingCost(without, best.to);
-  if (SettlingCost(with, best.to) <= before) {
-    *options = demanding;  // met already
-    return;
-  }
   SolveStart held = best;
   SolveOn(recordings, demanding, &held);
+  const FitProblem with(recordings, demanding), without(recordings, freed);
   // What the rest of the cost rises by. Demands that stay (on the modes) are in both.
   const double rise = held.cost - SettlingCost(with, held.to) + SettlingCost(without, held.to) -
-                      best.cost;
+                      free.cost;
   solved->settling.binds = true;
   solved->settling.rise = 2.0 * rise;
   solved->settling.free_seconds =
-      SettlingSeconds(without.ModelAt(best.to), without.Parameters(best.to, ""));
+      SettlingSeconds(without.ModelAt(free.to), without.Parameters(free.to, ""));
   solved->settling.contradicted = !held.converged || 2.0 * rise > kContradicted;
-  if (solved->settling.contradicted) return;
-  solved->free = best.to;
-  best = held;
-  *options = demanding;
+  if (!solved->settling.contradicted) solved->free = free.to;
+  best = solved->settling.contradicted ? free : held;
+  *options = solved->settling.contradicted ? freed : demanding;
 }
 
 }  // namespace
@@ -122,14 +119,23 @@ void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
 WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
                                FitOptions* options, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const double weight = options->settling_weight;
-  const FitProblem problem(recordings, *options);
-  const bool test = weight > 0.0 && problem.NominalPoint().Flat().size() <= kMostColumnsToTest;
-  if (test) options->settling_weight = 0.0;
   WeightedSolution solved;
-  solved.solution = SolveAndWeigh(recordings, options, progress);
-  if (test && solved.solution.best >= 0) TestDemand(recordings, weight, options, &solved);
-  solved.solution.seconds =
+  Solution& solution = solved.solution;
+  solution = Solve(FitProblem(recordings, *options), progress);
+  if (solution.best >= 0) {
+    SolveStart& best = solution.starts[solution.best];
+    Weigh(recordings, options, &best);
+    const double weight = options->settling_weight;
+    FitOptions freed = *options;
+    freed.settling_weight = 0.0;
+    const bool binds =
+        weight > 0.0 && SettlingCost(FitProblem(recordings, *options), best.to) >
+                            SettlingCost(FitProblem(recordings, freed), best.to);
+    if (binds && best.to.Flat().size() <= kMostColumnsToTest) {
+      TestDemand(recordings, weight, options, &solved);
+    }
+  }
+  solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solved;
 }

@@ -9,6 +9,7 @@
 #include "datasets/files/random.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap_file.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -39,12 +40,12 @@ ReplicaValues ValuesAt(const FitProblem& problem, const FitPoint& point,
   return values;
 }
 
-ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate, uint64_t seed,
-                         int replica, const std::vector<CombinationSpec>& combinations) {
-  const int total = static_cast<int>(problem.recordings().size());
+ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
+                         const std::vector<int>& counts,
+                         const std::vector<CombinationSpec>& combinations) {
   FitOptions options = problem.options();
   options.num_threads = 1;
-  const FitProblem drawn(problem.recordings(), options, DrawRecordings(total, seed, replica));
+  const FitProblem drawn(problem.recordings(), options, counts);
   SolveStart fit = Refit(drawn, estimate);
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
@@ -67,13 +68,38 @@ void Summarize(Bootstrap* bootstrap) {
 
 }  // namespace
 
-std::vector<int> DrawRecordings(int total, uint64_t seed, int replica) {
+ResamplingUnits MakeResamplingUnits(const std::vector<PendulumRecording>& recordings,
+                                    ClusterBy by) {
+  const Clusters clusters = MakeClusters(recordings, by);
+  ResamplingUnits from;
+  from.people_shared = clusters.two_way;
+  from.by = from.people_shared ? ClusterBy::kRecording : clusters.by;
+  from.units.resize(from.people_shared ? recordings.size() : clusters.names.size());
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const size_t unit = from.people_shared ? i : static_cast<size_t>(clusters.of[i][0]);
+    from.units[unit].push_back(static_cast<int>(i));
+  }
+  return from;
+}
+
+std::vector<int> DrawRecordings(const ResamplingUnits& from, uint64_t seed, int replica) {
   Random random(seed * 1000003u + static_cast<uint64_t>(replica));
-  std::vector<int> counts(total, 0);
-  for (int i = 0; i < total; ++i) {
-    ++counts[std::min(total - 1, static_cast<int>(random.Unit() * total))];
+  const size_t total = from.units.size();
+  size_t recordings = 0;
+  for (const std::vector<int>& unit : from.units) recordings += unit.size();
+  std::vector<int> counts(recordings, 0);
+  for (size_t i = 0; i < total; ++i) {
+    const size_t drawn =
+        std::min(total - 1, static_cast<size_t>(random.Unit() * static_cast<double>(total)));
+    for (int recording : from.units[drawn]) ++counts[recording];
   }
   return counts;
+}
+
+double DistinctResamples(int units) {
+  double number = 1.0;
+  for (int i = 1; i < units; ++i) number *= static_cast<double>(units + i) / i;
+  return number;
 }
 
 double Quantile(std::vector<double> values, double share) {
@@ -88,13 +114,22 @@ double Quantile(std::vector<double> values, double share) {
 
 Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& estimate,
                                    const BootstrapOptions& options, const JobProgress& progress) {
-  if (problem.recordings().size() < 2) {
-    return Error{"a bootstrap over recordings needs at least two of them"};
+  const ResamplingUnits from =
+      MakeResamplingUnits(problem.recordings(),
+                          options.by == ClusterBy::kAuto ? problem.options().cluster : options.by);
+  const bool people = from.by == ClusterBy::kSubject;
+  if (from.units.size() < 2) {
+    return Error{"a bootstrap over " + std::string(people ? "people" : "recordings") +
+                 " needs at least two of them" +
+                 (people ? "; --bootstrap_by=recording draws recordings" : "")};
   }
   const std::vector<CombinationSpec> combinations = MovingCombinations(problem);
   Bootstrap bootstrap;
   bootstrap.replicas = options.replicas;
   bootstrap.seed = options.seed;
+  bootstrap.drawn_by = from.by;
+  bootstrap.drawn_from = static_cast<int>(from.units.size());
+  bootstrap.people_shared = from.people_shared;
   for (const FittedParameter& f : problem.map().fitted) {
     bootstrap.names.push_back(problem.options().table[f.parameter].name);
     bootstrap.units.push_back(problem.options().table[f.parameter].unit);
@@ -105,7 +140,7 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   }
 
   BootstrapFile file;
-  if (MaybeError error = file.Open(problem, options, bootstrap.names)) return *error;
+  if (MaybeError error = file.Open(problem, options, bootstrap)) return *error;
   std::vector<ReplicaValues> replicas(options.replicas);
   std::mutex writing;
   std::atomic<bool> stopped{false};
@@ -119,7 +154,8 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
           replicas[k] = kept->second;
           return;
         }
-        replicas[k] = FitReplica(problem, estimate, options.seed, k, combinations);
+        replicas[k] =
+            FitReplica(problem, estimate, DrawRecordings(from, options.seed, k), combinations);
         const std::lock_guard<std::mutex> lock(writing);
         if (stopped) return;
         failed = file.Append(k, replicas[k]);

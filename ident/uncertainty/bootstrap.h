@@ -1,7 +1,10 @@
-// ident: bootstrap over recordings: the fit repeated on recordings drawn with replacement, as many
-// as there are. Whole recordings are drawn because the frames of one err together. Every replica
-// starts from the estimate; one that does not converge from there is tried from the nominal values
-// through all horizons.
+// ident: bootstrap over clusters: the fit repeated on people (or recordings) drawn with
+// replacement, as many as there are. What errs together is drawn together: all recordings of a
+// person, or all frames of a recording (clusters.h). Every replica starts from the estimate; one
+// that does not converge from there is tried from the nominal values through all horizons.
+//
+// Where people share recordings nobody can be drawn alone, and the published groups are all tied
+// together: there recordings are drawn, which leaves out what a person does in all of them.
 //
 // Replica k depends on the seed and k alone, so a run may be interrupted and resumed, in any number
 // of threads, and ends with the same rows. The file holds one line of JSON per replica after a
@@ -13,6 +16,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_point.h"
 #include "ident/problem/parallel.h"
 
@@ -28,6 +33,9 @@ struct Bootstrap {
   std::vector<std::vector<double>> values;  // one row per good replica, natural units
   // By parameter: standard deviation over replicas, and their 2.5 and 97.5 % quantiles.
   std::vector<double> standard_error, lower95, upper95;
+  ClusterBy drawn_by = ClusterBy::kRecording;
+  int drawn_from = 0;          // people or recordings to draw from; 0: an older file does not say
+  bool people_shared = false;  // recordings were drawn because people share them
 };
 
 struct BootstrapOptions {
@@ -35,15 +43,28 @@ struct BootstrapOptions {
   uint64_t seed = 1;
   std::string file;  // keeps finished replicas; empty: nothing is kept
   int num_threads = 1;
+  ClusterBy by = ClusterBy::kAuto;  // auto: as standard errors are clustered (FitOptions::cluster)
 };
 
-// Errors: fewer than two recordings, a file that cannot be used or belongs to another fit.
+// Errors: fewer than two people or recordings to draw, a file that cannot be used or belongs to
+// another fit.
 Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& estimate,
                                    const BootstrapOptions& options,
                                    const JobProgress& progress = nullptr);
 
-// How often each of `total` recordings is drawn in replica k.
-std::vector<int> DrawRecordings(int total, uint64_t seed, int replica);
+// What is drawn: recordings that go together, each in one unit.
+struct ResamplingUnits {
+  ClusterBy by = ClusterBy::kRecording;
+  bool people_shared = false;
+  std::vector<std::vector<int>> units;
+};
+ResamplingUnits MakeResamplingUnits(const std::vector<PendulumRecording>& recordings, ClusterBy by);
+
+// How often each recording is drawn in replica k.
+std::vector<int> DrawRecordings(const ResamplingUnits& from, uint64_t seed, int replica);
+
+// Resamples that differ, whatever the order: (2n - 1 choose n) of n units.
+double DistinctResamples(int units);
 
 // Linear between the sorted values, the i-th of n standing for i / (n + 1).
 double Quantile(std::vector<double> values, double share);

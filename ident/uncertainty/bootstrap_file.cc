@@ -17,15 +17,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // Two runs with the same header find the same replicas.
-std::string Header(const FitProblem& problem, const BootstrapOptions& options,
-                   const std::vector<std::string>& names) {
+std::string Header(const FitProblem& problem, const Bootstrap& bootstrap) {
   ContentHash fit;
   fit.Add(SettingsJson(problem.options()).dump());
   for (const PendulumRecording& recording : problem.recordings()) {
     fit.Add(recording.id + "\n" + recording.content_hash + "\n");
   }
-  const Json header = {
-      {"format", "pushid bootstrap"}, {"seed", options.seed}, {"fit", fit.Hex()}, {"names", names}};
+  const Json header = {{"format", "pushid bootstrap"},
+                       {"seed", bootstrap.seed},
+                       {"drawn_by", NameOf(bootstrap.drawn_by)},
+                       {"fit", fit.Hex()},
+                       {"names", bootstrap.names}};
   return header.dump();
 }
 
@@ -49,10 +51,10 @@ std::string Line(int replica, const ReplicaValues& values) {
 }  // namespace
 
 MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions& options,
-                               const std::vector<std::string>& names) {
+                               const Bootstrap& bootstrap) {
   path_ = options.file;
   if (path_.empty()) return std::nullopt;
-  const std::string header = Header(problem, options, names);
+  const std::string header = Header(problem, bootstrap);
   std::string kept = header + "\n";
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored)) {
@@ -62,7 +64,8 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
     std::string line;
     if (std::getline(old, line) && line != header) {
       return Error{
-          "this file holds the bootstrap of another fit, seed or data; name another one "
+          "this file holds the bootstrap of another fit, seed, way of drawing or data; name "
+          "another one "
           "with --bootstrap_file, or delete it",
           path_};
     }
@@ -71,7 +74,7 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
       if (!row.is_object() || !row.contains("replica") || !row.contains("values")) break;
       ReplicaValues values;
       if (!ReadValues(row, &values)) break;
-      if (!values.empty() && values.size() != names.size()) break;
+      if (!values.empty() && values.size() != bootstrap.names.size()) break;
       finished_[row["replica"].get<int>()] = values;
       kept += line + "\n";
     }

@@ -19,7 +19,7 @@ class BootstrapFile {
   // path keeps nothing. Errors: a file that cannot be read, written, or is not of this fit; what
   // it held stays.
   MaybeError Open(const FitProblem& problem, const BootstrapOptions& options,
-                  const std::vector<std::string>& names);
+                  const Bootstrap& bootstrap);
 
   const std::map<int, ReplicaValues>& finished() const { return finished_; }
 

@@ -7,15 +7,17 @@
 
 namespace pushid {
 
+std::string PersonKey(const PendulumRecording& recording, int person) {
+  const double mass = recording.scene.people[person].body.mass;
+  return recording.subject_ids[person] + " " + DoubleText(mass);
+}
+
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by) {
   std::map<std::string, int> times, index;
-  const auto person = [](const PendulumRecording& r, int n) {
-    return r.subject_ids[n] + " " + DoubleText(r.scene.people[n].body.mass);
-  };
   bool repeated = false, shared = false;
   for (const PendulumRecording& r : recordings) {
     shared = shared || r.num_people() > 1;
-    for (int n = 0; n < r.num_people(); ++n) repeated = ++times[person(r, n)] > 1 || repeated;
+    for (int n = 0; n < r.num_people(); ++n) repeated = ++times[PersonKey(r, n)] > 1 || repeated;
   }
   Clusters clusters;
   clusters.by = by;
@@ -28,7 +30,7 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
     const PendulumRecording& r = recordings[i];
     std::vector<int> of;
     for (int n = 0; n < r.num_people(); ++n) {
-      const std::string key = people ? person(r, n) : std::to_string(i);
+      const std::string key = people ? PersonKey(r, n) : std::to_string(i);
       const auto [found, added] = index.emplace(key, clusters.count());
       if (added) clusters.names.push_back(people ? r.subject_ids[n] : r.id);
       of.push_back(found->second);

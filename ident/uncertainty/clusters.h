@@ -31,6 +31,8 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
                        const JacobianBlocks& score);
 
 // A person is an id and a mass: who goes by one id with two masses is two people.
+std::string PersonKey(const PendulumRecording& recording, int person);
+
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by);
 
 }  // namespace pushid

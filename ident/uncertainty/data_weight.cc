@@ -11,13 +11,16 @@
 namespace pushid {
 namespace {
 
-// Kinds of residuals in a frame (frame_residual.h): first component, how many, and the median of
-// chi-squared with so many degrees of freedom.
+// Kinds of residuals in a frame (frame_residual.h): first component, how many, the median of
+// chi-squared with so many degrees of freedom, and the kind's weight in the composite likelihood.
 struct Kind {
   int first, size;
-  double median;
+  double median, weight;
 };
-constexpr Kind kKinds[] = {{0, 3, 2.3660}, {3, 2, 1.3863}, {5, 2, 1.3863}, {7, 2, 1.3863}};
+constexpr Kind kKinds[] = {{0, 3, 2.3660, 1.0},
+                           {3, 2, 1.3863, kRateWeight},
+                           {5, 2, 1.3863, kRateWeight},
+                           {7, 2, 1.3863, kRateWeight}};
 
 double Median(std::vector<double>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
@@ -54,8 +57,8 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   }
   for (size_t k = 0; k < squares.size(); ++k) {
     if (squares[k].empty()) continue;
-    *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median);
-    *scales[k] = std::max(*scales[k], floors[k]);
+    *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median) / kKinds[k].weight;
+    *scales[k] = std::max(*scales[k], floors[k] / kKinds[k].weight);
   }
   return sigmas;
 }

@@ -2,7 +2,6 @@
 #include "ident/validation/crossvalidation.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pushid {
 
@@ -114,6 +113,7 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   std::map<std::string, const RecordingScore*> of_a;
   for (const RecordingScore& score : a.summary.recordings) of_a[score.id] = &score;
   std::vector<HipMetrics> pairs;
+  std::vector<std::string> pushed;
   for (const RecordingScore& score : b.summary.recordings) {
     const auto found = of_a.find(score.id);
     if (found == of_a.end() || !score.failure.empty() || !found->second->failure.empty()) continue;
@@ -122,17 +122,20 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
       pair.*metric.value = score.*metric.value - found->second->*metric.value;
     }
     pairs.push_back(pair);
+    pushed.push_back(score.pushed);
   }
+  const ScoreClusters clusters = ClustersOf(pushed);
+  difference.clustered_by = clusters.by;
+  difference.clusters = clusters.count;
   difference.recordings = static_cast<int>(pairs.size());
   const double n = static_cast<double>(pairs.size());
   for (const HipMetric& metric : kHipMetrics) {
-    double mean = 0.0, squares = 0.0;
+    double mean = 0.0;
     for (const HipMetrics& pair : pairs) mean += pair.*metric.value / n;
-    for (const HipMetrics& pair : pairs) {
-      squares += (pair.*metric.value - mean) * (pair.*metric.value - mean);
-    }
+    std::vector<double> deviations;
+    for (const HipMetrics& pair : pairs) deviations.push_back((pair.*metric.value - mean) / n);
     difference.*metric.value = mean;
-    difference.error.*metric.value = n > 1 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
+    difference.error.*metric.value = clusters.ErrorOfMean(deviations);
   }
   return difference;
 }

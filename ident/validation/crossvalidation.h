@@ -1,7 +1,8 @@
 // ident: how well a configuration predicts recordings it has not seen.
 //
-// The standard error of a mean is over recordings (each one's score averaged over the repeats):
-// recordings are the independent units here, not frames and not folds.
+// The standard error of a mean is over pushed people, or over recordings where nobody was pushed
+// twice (score_clusters.h), each recording's score averaged over the repeats: not over frames and
+// not over folds.
 #pragma once
 
 #include <optional>
@@ -62,7 +63,9 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
 struct PairedDifference : HipMetrics {
   std::string a, b;
   int recordings = 0;
-  HipMetrics error;
+  HipMetrics error;  // clustered as those of means
+  ClusterBy clustered_by = ClusterBy::kRecording;
+  int clusters = 0;
 };
 PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 

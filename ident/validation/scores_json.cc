@@ -18,6 +18,8 @@ Json MeanJson(const MeanScore& mean) {
   AddMetrics(mean, &json);
   for (const HipMetric& metric : kHipMetrics) json[metric.ErrorKey()] = mean.error.*metric.value;
   json["recordings"] = mean.recordings;
+  json["clustered_by"] = NameOf(mean.clustered_by);
+  json["clusters"] = mean.clusters;
   return json;
 }
 
@@ -97,6 +99,8 @@ Json ToJson(const PairedDifference& difference) {
     json[metric.Key()] = difference.*metric.value;
     json[metric.ErrorKey()] = difference.error.*metric.value;
   }
+  json["clustered_by"] = NameOf(difference.clustered_by);
+  json["clusters"] = difference.clusters;
   return json;
 }
 

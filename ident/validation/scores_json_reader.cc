@@ -1,5 +1,6 @@
 // ident: scores from JSON. scores_json.cc is the inverse.
 #include "datasets/files/json_file.h"
+#include "ident/parameters/fit_options_json.h"
 #include "ident/validation/scores_json.h"
 
 namespace pushid {
@@ -18,6 +19,11 @@ MeanScore MeanFrom(const Json& json) {
     mean.error.*metric.value = json.at(metric.ErrorKey());
   }
   mean.recordings = json.at("recordings");
+  mean.clusters = mean.recordings;
+  if (json.contains("clustered_by")) {  // added later; they were recordings before
+    mean.clustered_by = EnumFrom<ClusterBy>(json, "clustered_by");
+    mean.clusters = json.at("clusters");
+  }
   return mean;
 }
 

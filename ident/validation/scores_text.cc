@@ -5,6 +5,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 namespace {
@@ -56,6 +57,16 @@ std::string MeanText(const MeanScore& mean) { return Together(MeanCells(mean)); 
 
 void Append(const std::vector<std::string>& cells, std::vector<std::string>* row) {
   row->insert(row->end(), cells.begin(), cells.end());
+}
+
+// Over what the errors of a summary's means are. A row of one person's recordings has no other
+// people to be clustered by.
+std::string ErrorsText(const ScoreSummary& summary) {
+  if (summary.mean.clusters < 2) return "";
+  const bool people = summary.mean.clustered_by == ClusterBy::kSubject;
+  return "+-: standard errors over " +
+         ClustersText(summary.mean.clustered_by, summary.mean.clusters) +
+         (people ? "; within one person, over recordings" : "") + "\n";
 }
 
 // Text stands to the left in the first column and in those from `text_from` on.
@@ -112,7 +123,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   const char* subject = m.propagation.recordings > 0 ? "pushed person " : "subject ";
   if (m.by_subject.size() > 1) groups(subject, &ScoreSummary::by_subject);
   if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
-  text += table.ToString();
+  text += table.ToString() + ErrorsText(m);
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
   if (m.propagation_by_setting.size() > 1) {
@@ -125,20 +136,24 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
 
 namespace {
 
-// One honest sentence on two configurations.
+// One honest sentence on two configurations: they differ where the 95 % interval of the difference
+// excludes zero.
 std::string ConclusionText(const PairedDifference& d) {
-  if (d.recordings == 0) return d.b + " cannot be compared with " + d.a + ".";
+  if (d.clusters < 2) return d.b + " cannot be compared with " + d.a + ".";
   const HipMetric& metric = kHipMetrics[0];
   const double change = d.*metric.value, error = d.error.*metric.value;
   const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
                          metric.unit + " of " + metric.name;
-  if (std::abs(change) <= error) {
-    return d.b + " is not distinguishable from " + d.a + " (" + by + ").";
+  const double half = StudentQuantile95(d.clusters - 1.0) * error;
+  const std::string interval = "95 % interval +- " + Rounded(half, 2) + " " + metric.unit + ": " +
+                               ClustersText(d.clustered_by, d.clusters) + ", Student's t with " +
+                               std::to_string(d.clusters - 1) + " degree" +
+                               (d.clusters > 2 ? "s" : "") + " of freedom";
+  if (std::abs(change) <= half) {
+    return d.b + " is not distinguishable from " + d.a + " (" + by + "; " + interval + ").";
   }
-  const std::string surely =
-      std::abs(change) > 2.0 * error ? "" : ", more than one standard error but less than two";
   return d.b + " predicts " + (change < 0.0 ? "better" : "worse") + " than " + d.a + " by " + by +
-         surely + ".";
+         " (" + interval + ").";
 }
 
 }  // namespace
@@ -188,7 +203,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
            &row);
     table.Add(row);
   }
-  text += table.ToString() +
+  text += table.ToString() + ErrorsText(candidates[0].summary) +
           "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
   for (size_t i = 1; i < candidates.size(); ++i) {
     text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";

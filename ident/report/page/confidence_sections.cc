@@ -153,12 +153,11 @@ ReportSection ProfileSection(const FittedModel& model) {
 
 ReportSection BootstrapSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"bootstrap", "Bootstrap over recordings", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"bootstrap", "Bootstrap", {}, {}, {}, {}, {}, ""};
   if (!model.bootstrap || model.bootstrap->values.empty()) return section;
   const Bootstrap& b = *model.bootstrap;
-  section.paragraphs = {std::to_string(b.values.size()) + " of " + std::to_string(b.replicas) +
-                        " replicas (seed " + std::to_string(b.seed) +
-                        "): the fit repeated on recordings drawn with replacement."};
+  section.paragraphs = {"The fit repeated on what is drawn with replacement, " + ResamplingText(b) +
+                        "."};
   if (model.profiles.empty()) {
     section.paragraphs.push_back(AgreementNote(model));
     section.tables.push_back({"two kinds of intervals", AgreementTable(model)});

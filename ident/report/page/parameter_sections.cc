@@ -1,6 +1,7 @@
 // ident: parameters with their intervals, and how they differ between people.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
@@ -94,6 +95,50 @@ class Forest {
   SvgPicture svg_;
 };
 
+constexpr char kDataLook[] = "stroke:none;fill:#3b82f6";
+constexpr char kPriorLook[] = "stroke:none;fill:#d55e00";
+constexpr char kSettlingLook[] = "stroke:none;fill:#009e73";
+constexpr double kBarRow = 26, kBarHeight = 14;
+
+// A bar a parameter, in three parts.
+ReportFigure SharesFigure(const FitResult& result) {
+  std::vector<const Estimate*> shown;
+  for (const Estimate& e : result.estimates) {
+    const bool split =
+        e.status != EstimateStatus::kFixed && e.status != EstimateStatus::kUnidentifiable;
+    if (split && result.options.table.Find(e.name) != nullptr) shown.push_back(&e);
+  }
+  SvgPicture svg(kForestWidth, 36 + kBarRow * static_cast<double>(shown.size()),
+                 "shares of data, prior and settling");
+  DrawLegend({{"data", kDataLook}, {"prior", kPriorLook}, {"settling", kSettlingLook}}, kForestLeft,
+             16, &svg);
+  TextTable numbers(
+      {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"},
+      std::vector<bool>(8, true));
+  double y = 32;
+  for (const Estimate* e : shown) {
+    svg.Text(kForestLeft - 12, y + kBarHeight - 3, e->name, "ink end");
+    double x = kForestLeft;
+    const Shares& s = e->shares;
+    const std::tuple<const char*, double, const char*> parts[] = {
+        {"data", s.data, kDataLook},
+        {"prior", s.prior, kPriorLook},
+        {"settling", s.settling, kSettlingLook}};
+    for (const auto& [name, share, look] : parts) {
+      const double width = std::clamp(share, 0.0, 1.0) * (kForestRight - kForestLeft);
+      svg.Rect({x, y, width, kBarHeight}, look,
+               std::string(name) + " " + Rounded(100.0 * share, 3) + " %");
+      x += width;
+    }
+    svg.Text(kForestRight + 8, y + kBarHeight - 3, NameOf(e->status), "faint small");
+    numbers.Add({e->name, DoubleText(s.data), DoubleText(s.prior), DoubleText(s.settling),
+                 DoubleText(s.prior_pull), DoubleText(s.settling_pull), e->unit,
+                 NameOf(e->status)});
+    y += kBarRow;
+  }
+  return {"shares", "Whose word each value is: shares of its variance.", svg.ToInline(), numbers};
+}
+
 const Agreement* Find(const std::vector<Agreement>& rows, const std::string& name) {
   const auto found = std::find_if(rows.begin(), rows.end(),
                                   [&name](const Agreement& row) { return row.name == name; });
@@ -105,8 +150,9 @@ const Agreement* Find(const std::vector<Agreement>& rows, const std::string& nam
 ReportSection ParameterSection(const FittedModel& model) {
   const FitResult& result = model.fit;
   ReportSection section{"parameters", "Parameters", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {HowSure(result), ConventionText(result)};
-  section.tables.push_back({"identified and held", EstimateTable(result)});
+  section.paragraphs = {IdentifiedText(result), SharesNote(), HowSure(result),
+                        ConventionText(result)};
+  section.tables.push_back({"fitted and held", EstimateTable(result)});
   section.tables.push_back({"derived", DerivedTable(result)});
   const std::vector<Agreement> agreements = CompareIntervals(model);
   std::vector<ForestRow> rows;
@@ -139,9 +185,11 @@ ReportSection ParameterSection(const FittedModel& model) {
   if (!model.profiles.empty()) legend.push_back({"profile", kProfileLook});
   if (model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});
+  const ReportFigure shares = SharesFigure(result);
+  if (shares.numbers.rows().size() > 1) section.figures.push_back(shares);
   section.figures.push_back(
       {"forest",
-       "Identified values (dots) with their 95 % intervals against the nominal values (diamonds). "
+       "Fitted values (dots) with their 95 % intervals against the nominal values (diamonds). "
        "Every row has its own scale; an open interval runs to the edge.",
        Forest(rows, "parameters against nominal values", false).Draw(legend), numbers});
   return section;

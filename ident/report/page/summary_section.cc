@@ -14,13 +14,7 @@ namespace {
 
 std::string VerdictText(const FitResult& result) {
   std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
-  int unsure = 0, free = 0;
-  for (const Estimate& e : result.estimates) {
-    free += e.status != EstimateStatus::kFixed;
-    unsure += e.status != EstimateStatus::kFixed && e.status != EstimateStatus::kIdentified;
-  }
-  text += std::to_string(free - unsure) + " of " + std::to_string(free) +
-          " free parameters are identified by the data. ";
+  text += IdentifiedText(result) + " ";
   const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
   text += Capitalized(VerdictSentence(verdict, result.behaviour)) + ".";
   if (result.behaviour.self_propelling) text += " Do not use the gains.";

@@ -202,6 +202,33 @@ TEST(PrepareFit, HoldsWhatHasNoEffectAndSaysWhatIsLeft) {
   EXPECT_TRUE(Contains(error->ToString(), "every parameter is fixed"));
 }
 
+// By content or by motion; a replica's copies go by one id and are meant.
+TEST(PrepareFit, WarnsOfIdenticalRecordings) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  const auto warnings = [&recordings] {
+    FitOptions options = MakePreset("tail").value();
+    std::vector<std::string> told;
+    EXPECT_FALSE(PrepareFit(recordings, &options, &told));
+    std::string text;
+    for (const std::string& warning : told) text += warning + "\n";
+    return text;
+  };
+  EXPECT_FALSE(Contains(warnings(), "is there again"));
+  recordings.push_back(recordings[0]);
+  EXPECT_FALSE(Contains(warnings(), "is there again"));
+  recordings.back().id = "copy";
+  recordings.push_back(recordings[1]);
+  recordings.back().id = "other";
+  recordings.back().content_hash = "another file";  // and yet the same motion
+  EXPECT_TRUE(
+      Contains(warnings(), "the motion of '" + recordings[0].id + "' is there again as copy:"));
+  EXPECT_TRUE(Contains(warnings(), "'" + recordings[1].id + "' is there again as other:"));
+  EXPECT_TRUE(Contains(warnings(), "--leave_out=other"));
+  recordings[6].content_hash = recordings[0].content_hash = "same";
+  for (auto& point : recordings[6].hip[0]) point[1] += 1e-9;
+  EXPECT_TRUE(Contains(warnings(), "is there again as copy:"));
+}
+
 TEST(PrepareFit, RefusesWhatCannotBeFitted) {
   const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   FitOptions options = MakePreset("tail").value();

@@ -65,6 +65,9 @@ FittedModel JudgedModel() {
                      "threshold",
                      {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
   model.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  model.bootstrap->drawn_by = ClusterBy::kSubject;
+  model.bootstrap->drawn_from = 4;
+  model.bootstrap->people_shared = true;
   Diagnostics& d = model.fit.diagnostics;
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
   d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
@@ -124,7 +127,7 @@ TEST(ResultJson, NumbersThatAreNoneComeBack) {
   d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
   d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
   d.trace[0] = {8, 0, infinity, none};
-  result.uncertainty.sigma = result.uncertainty.t_quantile = infinity;
+  result.uncertainty.sigma = result.uncertainty.settling.free_seconds = infinity;
   result.behaviour.fastest_growth = none;
   SettlingSimulation& fallen = result.behaviour.simulations.front();
   fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;

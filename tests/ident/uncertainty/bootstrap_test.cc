@@ -6,8 +6,10 @@
 
 #include <filesystem>
 #include <numeric>
+#include <set>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/report/confidence_text.h"
 #include "ident/results/confidence.h"
 #include "ident/results/fit.h"
 #include "ident/results/interval_agreement.h"
@@ -19,15 +21,72 @@ namespace pushid {
 namespace {
 
 TEST(Bootstrap, DrawsAsManyAsThereAre) {
+  const ResamplingUnits eight = {
+      ClusterBy::kRecording, false, {{0}, {1}, {2}, {3}, {4}, {5}, {6}, {7}}};
   std::vector<double> mean(8, 0.0);
   for (int k = 0; k < 2000; ++k) {
-    const std::vector<int> counts = DrawRecordings(8, 5, k);
+    const std::vector<int> counts = DrawRecordings(eight, 5, k);
     EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 8);
     for (int i = 0; i < 8; ++i) mean[i] += counts[i] / 2000.0;
   }
   for (double m : mean) EXPECT_NEAR(m, 1.0, 0.1);
-  EXPECT_NE(DrawRecordings(8, 5, 0), DrawRecordings(8, 5, 1));
-  EXPECT_NE(DrawRecordings(8, 5, 0), DrawRecordings(8, 6, 0));
+  EXPECT_NE(DrawRecordings(eight, 5, 0), DrawRecordings(eight, 5, 1));
+  EXPECT_NE(DrawRecordings(eight, 5, 0), DrawRecordings(eight, 6, 0));
+}
+
+// Three recordings of each of two people, and what (2n - 1 choose n) makes of it.
+TEST(Bootstrap, RecordingsOfAPersonAreDrawnTogether) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  const ResamplingUnits people = MakeResamplingUnits(recordings, ClusterBy::kAuto);
+  EXPECT_EQ(people.by, ClusterBy::kSubject);
+  EXPECT_FALSE(people.people_shared);
+  ASSERT_EQ(people.units.size(), 2u);
+  std::set<std::vector<int>> seen;
+  for (int k = 0; k < 200; ++k) {
+    const std::vector<int> counts = DrawRecordings(people, 1, k);
+    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0), 6);
+    for (const std::vector<int>& unit : people.units) {
+      for (int recording : unit) {
+        EXPECT_EQ(recordings[recording].subject_ids, recordings[unit[0]].subject_ids);
+        EXPECT_EQ(counts[recording], counts[unit[0]]);
+      }
+    }
+    seen.insert(counts);
+  }
+  EXPECT_EQ(seen.size(), 3u);
+  EXPECT_EQ(DistinctResamples(2), 3.0);
+  EXPECT_EQ(DistinctResamples(4), 35.0);
+  const ResamplingUnits single = MakeResamplingUnits(recordings, ClusterBy::kRecording);
+  EXPECT_EQ(single.units.size(), 6u);
+}
+
+// Nobody can be drawn without the others in the recording.
+TEST(Bootstrap, WherePeopleShareRecordingsRecordingsAreDrawn) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  for (PendulumRecording& r : recordings) {  // somebody else is in all of them
+    r.subject_ids.push_back("other");
+    r.scene.people.push_back(r.scene.people[0]);
+    r.hip.push_back(r.hip[0]);
+  }
+  const ResamplingUnits from = MakeResamplingUnits(recordings, ClusterBy::kSubject);
+  EXPECT_TRUE(from.people_shared);
+  EXPECT_EQ(from.by, ClusterBy::kRecording);
+  EXPECT_EQ(from.units.size(), 6u);
+}
+
+TEST(Bootstrap, SaysWhatItDrewAndHowFewResamplesThereAre) {
+  Bootstrap bootstrap;
+  bootstrap.replicas = 199;
+  bootstrap.drawn_by = ClusterBy::kSubject;
+  bootstrap.drawn_from = 4;
+  EXPECT_TRUE(Contains(ResamplingText(bootstrap), "resampling 4 people: 0 of 199"));
+  EXPECT_TRUE(Contains(ResamplingText(bootstrap), "only 35 distinct resamples"));
+  bootstrap.drawn_from = 5;
+  EXPECT_FALSE(Contains(ResamplingText(bootstrap), "distinct"));
+  bootstrap.drawn_by = ClusterBy::kRecording;
+  bootstrap.people_shared = true;
+  EXPECT_TRUE(Contains(ResamplingText(bootstrap), "5 recordings"));
+  EXPECT_TRUE(Contains(ResamplingText(bootstrap), "people share recordings"));
 }
 
 TEST(Bootstrap, QuantilesAreThoseOfTheSample) {

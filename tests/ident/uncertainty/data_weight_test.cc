@@ -31,7 +31,7 @@ TEST(DataWeight, SigmasAreThoseOfTheNoise) {
     ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
     EXPECT_NEAR(options.sigmas.hip / noise, 1.0, 0.1);
     // The cart is the mean of two ankles, its velocity a difference of two frames.
-    EXPECT_NEAR(options.sigmas.velocity / (noise * study.fps), 1.0, 0.1);
+    EXPECT_NEAR(options.sigmas.velocity * kRateWeight / (noise * study.fps), 1.0, 0.1);
   }
 }
 
@@ -42,7 +42,7 @@ TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
   options.marker_noise = 0.003;
   ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
   EXPECT_DOUBLE_EQ(options.sigmas.hip, 0.003);
-  EXPECT_DOUBLE_EQ(options.sigmas.velocity, 0.003 * study.fps);
+  EXPECT_DOUBLE_EQ(options.sigmas.velocity, 0.003 * study.fps / kRateWeight);
 }
 
 // What counts is weight over sigma squared: told that errors are twice as large, a frame counts four

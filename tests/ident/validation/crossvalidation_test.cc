@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "ident/validation/predictors.h"
+#include "ident/validation/scores_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -25,6 +27,7 @@ std::vector<PendulumRecording> Labels() {
         r.id = std::to_string(recordings.size());
         r.magnitude = strengths[strength];
         r.subject_ids = {"S" + std::to_string(subject)};
+        r.scene.people.resize(1);
         recordings.push_back(r);
       }
     }
@@ -235,6 +238,52 @@ TEST(CrossValidation, PairedDifferenceByHand) {
   EXPECT_NEAR(d.error.hip_fde, 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
   EXPECT_EQ(d.a, "a");
   EXPECT_EQ(d.b, "b");
+  EXPECT_EQ(d.clustered_by, ClusterBy::kRecording);
+  EXPECT_EQ(d.clusters, 3);
+}
+
+// Two people, of whom the second was pushed three times. By hand: scores 1 | 2 3 6, mean 3;
+// deviations over 4: -0.5 | -0.25 0 0.75, so that the clusters' sums are -0.5 and 0.5, and the
+// error is sqrt(2 / 1 * (0.25 + 0.25)) = 1. By recording it would be sqrt(4 / 3 * 0.875) = 1.08.
+TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
+  std::vector<PendulumRecording> recordings(4);
+  std::vector<RecordingScore> scores(4), none(4);
+  const double values[] = {1.0, 2.0, 3.0, 6.0};
+  for (int i = 0; i < 4; ++i) {
+    recordings[i].id = scores[i].id = none[i].id = std::to_string(i);
+    recordings[i].subject_ids = {i == 0 ? "S0" : "S1"};
+    recordings[i].scene.people.resize(1);
+    scores[i].hip_ade = values[i];
+    scores[i].frames = none[i].frames = 5;
+  }
+  CrossValidation model, zero;
+  model.predictor = "model";
+  zero.predictor = "zero";
+  model.summary = Summarize(recordings, scores);
+  zero.summary = Summarize(recordings, none);
+  const MeanScore& mean = model.summary.mean;
+  EXPECT_EQ(mean.clustered_by, ClusterBy::kSubject);
+  EXPECT_EQ(mean.clusters, 2);
+  EXPECT_NEAR(mean.error.hip_ade, 1.0, 1e-14);
+  const PairedDifference d = Compare(zero, model);
+  EXPECT_EQ(d.clustered_by, ClusterBy::kSubject);
+  EXPECT_EQ(d.clusters, 2);
+  EXPECT_NEAR(d.hip_ade, 3.0, 1e-14);
+  EXPECT_NEAR(d.error.hip_ade, 1.0, 1e-14);
+  // Three standard errors, and yet nothing: Student's t of one degree of freedom is 12.7.
+  const std::string text = CrossValidationText({zero, model});
+  EXPECT_TRUE(Contains(text, "model is not distinguishable from zero"));
+  EXPECT_TRUE(Contains(text, "95 % interval +- 13 m: 2 people, Student's t with 1 degree of"));
+  EXPECT_TRUE(Contains(text, "+-: standard errors over 2 people"));
+  // Of one person there are recordings only: 2 3 6 by hand.
+  const MeanScore& one = model.summary.by_subject.at("S1");
+  EXPECT_EQ(one.clustered_by, ClusterBy::kRecording);
+  EXPECT_NEAR(one.error.hip_ade, std::sqrt(13.0 / 9.0), 1e-14);
+  // A second mass behind the id is another person: 1 | 2 3 | 6.
+  recordings[3].scene.people[0].body.mass += 10.0;
+  const MeanScore three = Summarize(recordings, scores).mean;
+  EXPECT_EQ(three.clusters, 3);
+  EXPECT_NEAR(three.error.hip_ade, std::sqrt(1.5 * (0.25 + 0.0625 + 0.5625)), 1e-14);
 }
 
 }  // namespace
