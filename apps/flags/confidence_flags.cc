@@ -37,8 +37,7 @@ DEFINE_bool(push_check, false,
             "smoothing of inverse dynamics, sensor noise and a frame's shift of measured ones");
 DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
               "noise of the push's sensor, as a share of the push's peak, for --push_check");
-DEFINE_bool(prior_check, false,
-            "refit with centres and widths of all priors halved, and doubled");
+DEFINE_bool(prior_check, false, "refit with centres and widths of all priors halved, and doubled");
 DEFINE_bool(horizon_check, false,
             "fit again the first 8, 16, 32 and 64 frames: a parameter that means something keeps "
             "its value");
@@ -108,9 +107,11 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
         "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
         "reaches; let --network_prior guard the training instead"};
   }
-  if (NeedsGradientTraining(options) && (FLAGS_push_check || FLAGS_horizon_check || FLAGS_prior_check)) {
+  if (NeedsGradientTraining(options) &&
+      (FLAGS_push_check || FLAGS_horizon_check || FLAGS_prior_check)) {
     return Error{
-        "--push_check, --horizon_check and --prior_check fit many times, and this network is trained by its "
+        "--push_check, --horizon_check and --prior_check fit many times, and this network is "
+        "trained by its "
         "gradient; choose a smaller one"};
   }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;

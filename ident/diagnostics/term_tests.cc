@@ -66,9 +66,8 @@ std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estim
   std::vector<int> known, tested;
   for (int i = 0; i < score.jacobian.cols(); ++i) {
     const bool shared = i < large.map().num_shared();
-    const bool is_term =
-        shared && std::find(terms.begin(), terms.end(), large.map().fitted[i].parameter) !=
-                      terms.end();
+    const bool is_term = shared && std::find(terms.begin(), terms.end(),
+                                             large.map().fitted[i].parameter) != terms.end();
     (is_term ? tested : known).push_back(i);
   }
   const Eigen::MatrixXd of_known = score.jacobian(Eigen::all, known);

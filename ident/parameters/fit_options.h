@@ -69,8 +69,8 @@ struct FitOptions {
   SigmaSource sigma_source = SigmaSource::kEstimate;
   double marker_noise = 0.001;  // m, of hip and ankles: no residual is taken for more exact
   RecordingWeight recording_weight = RecordingWeight::kEffective;
-  // Independent frames per frame, where recording_weight is effective: found by the fit; 0: not yet,
-  // every recording counts as one frame.
+  // Independent frames per frame, where recording_weight is effective: found by the fit; 0: not
+  // yet, every recording counts as one frame.
   double effective_weight = 0.0;
   ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
   // Weight of the demand that people settle (settling_residual.h): 0 where nobody need settle, more

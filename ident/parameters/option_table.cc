@@ -128,7 +128,8 @@ std::vector<Row> WeightRows() {
           kPositive, "standard deviation of the angular rates, rad/s"),
       MayBeAbsent(NameRow<SigmaSource>(
           "sigmas", "/sigmas/source", [](O & o) -> auto& { return o.sigma_source; },
-          "the residuals' standard deviations: estimate (from the residuals, starting at --sigma_*), "
+          "the residuals' standard deviations: estimate (from the residuals, starting at "
+          "--sigma_*), "
           "or fixed (as --sigma_* say)")),
       MayBeAbsent(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", [](O & o) -> auto& { return o.marker_noise; },
@@ -143,7 +144,8 @@ std::vector<Row> WeightRows() {
           "counts as one) or recording (every recording counts as one frame)"),
       MayBeAbsent(NumberRow(
           "effective_weight", "/effective_weight",
-          [](O & o) -> auto& { return o.effective_weight; }, {0.0, 1e6, false, "must be a number of at least 0"},
+          [](O & o) -> auto& { return o.effective_weight; },
+          {0.0, 1e6, false, "must be a number of at least 0"},
           "independent frames per frame, with --recording_weight=effective: where their estimation "
           "starts; 0: at one frame a recording")),
       MayBeAbsent(NameRow<ClusterBy>(

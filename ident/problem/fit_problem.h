@@ -59,7 +59,7 @@ class FitProblem {
   std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
 
   // Clusters of what is not data.
-  static constexpr int kPriorCluster = -1;  // priors on parameters
+  static constexpr int kPriorCluster = -1;     // priors on parameters
   static constexpr int kPoolingCluster = -2;   // what ties the units' deviations to zero
   static constexpr int kSettlingCluster = -3;  // demands on the person: settling, modes, stability
   static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero

@@ -115,9 +115,9 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     std::vector<double*> rollout_blocks = blocks;
     if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
     const auto settle = [&](double mass, double impulse, int people) {
-      add(std::make_unique<SettlingResidual>(
-              SettlingProblem(SettlingScene(mass, impulse, people), options_.model, map_,
-                              options_.sigmas, options_.settling_weight, unit)),
+      add(std::make_unique<SettlingResidual>(SettlingProblem(SettlingScene(mass, impulse, people),
+                                                             options_.model, map_, options_.sigmas,
+                                                             options_.settling_weight, unit)),
           rollout_blocks);
     };
     if (options_.settling_weight > 0.0) {
@@ -139,9 +139,9 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
       if (Count(i) == 0) continue;
       const double weight = options_.stability_weight * std::sqrt(static_cast<double>(Count(i)));
       for (double factor : {1.0, kStrongerPush}) {
-        add(std::make_unique<StabilityResidual>(
-                StabilityProblem(recordings_[i], factor, kFramesPastTheEnd, options_.model, map_,
-                                 options_.sigmas, weight)),
+        add(std::make_unique<StabilityResidual>(StabilityProblem(recordings_[i], factor,
+                                                                 kFramesPastTheEnd, options_.model,
+                                                                 map_, options_.sigmas, weight)),
             RecordingBlocks(point, i));
       }
     }

@@ -98,8 +98,9 @@ void Adviser::Identifiability() {
     if (e.status == EstimateStatus::kWeak && weak.empty()) weak = e.name;
   }
   if (!weak.empty()) {
-    Add(weak + " is only weakly identified; see which pushes, people or sensor would lower its "
-        "error most.",
+    Add(weak +
+            " is only weakly identified; see which pushes, people or sensor would lower its "
+            "error most.",
         Same().Set("design", weak));
   }
   const Uncertainty& u = result_.uncertainty;
@@ -194,7 +195,8 @@ void Adviser::Recordings() {
   if (result_.uncertainty.num_clusters < kFewRecordings) {
     const bool people = result_.uncertainty.clustered_by == ClusterBy::kSubject;
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
-            (people ? " people" : " recordings") + " the clustered errors are uncertain too; record more, where the "
+            (people ? " people" : " recordings") +
+            " the clustered errors are uncertain too; record more, where the "
             "design says it helps.",
         Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }
@@ -262,8 +264,8 @@ void Adviser::Terms() {
   if (surest == nullptr) return;
   FitCommand compare("pushid-crossvalidate", model_.provenance);
   compare.Set("compare", "more: --free=" + compare.Appended("free", surest->parameter));
-  Add("The recordings ask for " + surest->parameter + " (score test: t = " +
-          Rounded(surest->t, 2) + " with " + std::to_string(surest->freedom) +
+  Add("The recordings ask for " + surest->parameter + " (score test: t = " + Rounded(surest->t, 2) +
+          " with " + std::to_string(surest->freedom) +
           " degrees of freedom); see whether it predicts better.",
       compare);
 }

@@ -39,7 +39,8 @@ FitCommand::FitCommand(std::string program, const Provenance& provenance)
   for (const std::string& name : provenance.changed_flags) {
     const bool leads = std::find(names.begin(), names.begin() + 4, name) != names.begin() + 4;
     const bool tells_more = name == "profile" || name == "bootstrap" || name == "design" ||
-                            name == "push_check" || name == "prior_check" || name == "horizon_check";
+                            name == "push_check" || name == "prior_check" ||
+                            name == "horizon_check";
     if (!leads && !tells_more) names.push_back(name);
   }
   for (const std::string& name : names) {

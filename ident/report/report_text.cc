@@ -89,7 +89,8 @@ std::string ReportText(const FittedModel& model) {
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
-  for (const std::string& held : result.uncertainty.held_directions) text += "put in: " + held + "\n";
+  for (const std::string& held : result.uncertainty.held_directions)
+    text += "put in: " + held + "\n";
   const TextTable agreement = AgreementTable(model);
   if (agreement.rows().size() > 1) {
     text += agreement.ToString() + AgreementNote(model) + "\n";

@@ -33,8 +33,7 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
 void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model) {
   FitResult& fit = model->fit;
   const FitProblem problem(recordings, fit.options);
-  model->prior_check =
-      CheckPriors(problem, fit.starts[fit.best_start].to, fit.uncertainty);
+  model->prior_check = CheckPriors(problem, fit.starts[fit.best_start].to, fit.uncertainty);
   const RefitTable& check = *model->prior_check;
   for (size_t i = 0; i < check.parameters.size(); ++i) {
     Estimate& known = fit.uncertainty.estimates[i];

@@ -169,13 +169,13 @@ void AddSettlingWarning(const Uncertainty& u, std::vector<std::string>* warnings
   for (const Estimate& e : u.estimates) {
     const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
     if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
-    moved += (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") +
-             Rounded(pull, 2);
+    moved +=
+        (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
   }
-  warnings->push_back("the data " + wanted + "; the demand to settle within " +
-                      Rounded(kWaitSeconds, 2) + " s moved " +
-                      (moved.empty() ? "no parameter by half a standard error"
-                                     : moved + " standard errors"));
+  warnings->push_back(
+      "the data " + wanted + "; the demand to settle within " + Rounded(kWaitSeconds, 2) +
+      " s moved " +
+      (moved.empty() ? "no parameter by half a standard error" : moved + " standard errors"));
 }
 
 std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& result) {
@@ -247,13 +247,11 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.cost = best.cost;
   result.message = best.message;
   result.parameters = problem.Parameters(best.to, "");
-  if (const auto network = problem.ModelAt(best.to).self_network;
-      network && network->shape.any()) {
+  if (const auto network = problem.ModelAt(best.to).self_network; network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
-  result.uncertainty =
-      ComputeUncertainty(problem, best.to, solved.free ? &*solved.free : nullptr);
+  result.uncertainty = ComputeUncertainty(problem, best.to, solved.free ? &*solved.free : nullptr);
   result.uncertainty.settling = solved.settling;
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),

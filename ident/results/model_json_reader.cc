@@ -100,7 +100,8 @@ Uncertainty UncertaintyFrom(const Json& json) {
   u.covariance = MatrixFrom(json.at("covariance_fitted_scale"));
   u.correlation = MatrixFrom(json.at("correlation"));
   u.null_directions = NullDirectionsFrom(json.at("null_directions"));
-  if (json.contains("held_directions")) u.held_directions = json.at("held_directions").get<std::vector<std::string>>();
+  if (json.contains("held_directions"))
+    u.held_directions = json.at("held_directions").get<std::vector<std::string>>();
   if (json.contains("settling")) {
     const Json& s = json.at("settling");
     u.settling = {s.at("binds"), s.at("contradicted"), NumberFrom(s.at("rise")),

@@ -30,8 +30,10 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* opt
   if (options->sigma_source == SigmaSource::kEstimate) {
     options->sigmas = EstimateSigmas(problem, point);
     const ResidualSigmas& now = options->sigmas;
-    for (const auto& [a, b] : {std::pair(before.hip, now.hip), {before.velocity, now.velocity},
-                               {before.angle, now.angle}, {before.rate, now.rate}}) {
+    for (const auto& [a, b] : {std::pair(before.hip, now.hip),
+                               {before.velocity, now.velocity},
+                               {before.angle, now.angle},
+                               {before.rate, now.rate}}) {
       change = std::max(change, Change(a, b));
     }
   }
@@ -102,8 +104,8 @@ void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
   SolveOn(recordings, demanding, &held);
   const FitProblem with(recordings, demanding), without(recordings, freed);
   // What the rest of the cost rises by. Demands that stay (on the modes) are in both.
-  const double rise = held.cost - SettlingCost(with, held.to) + SettlingCost(without, held.to) -
-                      free.cost;
+  const double rise =
+      held.cost - SettlingCost(with, held.to) + SettlingCost(without, held.to) - free.cost;
   solved->settling.binds = true;
   solved->settling.rise = 2.0 * rise;
   solved->settling.free_seconds =
@@ -128,9 +130,8 @@ WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
     const double weight = options->settling_weight;
     FitOptions freed = *options;
     freed.settling_weight = 0.0;
-    const bool binds =
-        weight > 0.0 && SettlingCost(FitProblem(recordings, *options), best.to) >
-                            SettlingCost(FitProblem(recordings, freed), best.to);
+    const bool binds = weight > 0.0 && SettlingCost(FitProblem(recordings, *options), best.to) >
+                                           SettlingCost(FitProblem(recordings, freed), best.to);
     if (binds && best.to.Flat().size() <= kMostColumnsToTest) {
       TestDemand(recordings, weight, options, &solved);
     }

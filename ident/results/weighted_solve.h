@@ -1,13 +1,15 @@
-// ident: a solve whose data weigh as much as they know, and in which the demand to settle is tested.
+// ident: a solve whose data weigh as much as they know, and in which the demand to settle is
+// tested.
 //
 // 1. Sigmas and effective frames (uncertainty/data_weight.h) and the spread of pooled units
 //    (problem/pooling_spread.h) are estimated and the fit solved on from there, until none changes
 //    by more than 1 %.
-// 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved on
+// 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
+// on
 //    without it, and weighed anew: the demand must not make the data look worse than they are.
 // 3. With the same weights it is solved with the demand. Where twice the log likelihood (composite,
-//    adjusted; priors included) falls by more than 3.84, chi-squared's 95 % point with one degree of
-//    freedom, the data contradict the demand: it is dropped, and the result says so.
+//    adjusted; priors included) falls by more than 3.84, chi-squared's 95 % point with one degree
+//    of freedom, the data contradict the demand: it is dropped, and the result says so.
 // With many columns (pooled groups) steps 2 and 3 would triple the time: the demand stays.
 #pragma once
 

@@ -46,8 +46,9 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
         (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all) * base;
     gathered.information.push_back(own.transpose() * own);
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
-    gathered.scores.rightCols(1) = base.transpose() * (score.jacobian(of_cluster, Eigen::all).transpose() *
-                                   score.residuals(of_cluster));
+    gathered.scores.rightCols(1) =
+        base.transpose() *
+        (score.jacobian(of_cluster, Eigen::all).transpose() * score.residuals(of_cluster));
   }
   return gathered;
 }
@@ -59,8 +60,8 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
   const Eigen::MatrixXd b = root * coefficients.transpose();  // H^-1/2 c
   const Eigen::Index groups = scores.scores.cols(), size = b.cols();
   Eigen::MatrixXd moves(hessian.rows(), groups);
-  Eigen::MatrixXd own(size, groups);                // |p_g|^2
-  std::vector<Eigen::MatrixXd> u;                   // J_g' p_g over H^1/2, a column a coefficient
+  Eigen::MatrixXd own(size, groups);  // |p_g|^2
+  std::vector<Eigen::MatrixXd> u;     // J_g' p_g over H^1/2, a column a coefficient
   for (Eigen::Index g = 0; g < groups; ++g) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(
         root * scores.information[static_cast<size_t>(g)] * root);

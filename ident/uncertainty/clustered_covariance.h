@@ -6,8 +6,9 @@
 //           (Bell & McCaffrey 2002; Pustejovsky & Tipton 2018, with the identity as working model)
 //   df_c    Satterthwaite's degrees of freedom of c'Vc: with p_g = (1 - P_gg)^-1/2 J_g H^-1 c and
 //           W_gh = p_g' (1 - P)_gh p_h,  P = J H^-1 J':  df = (sum W_gg)^2 / sum W_gh^2
-// It assumes that clusters are independent and the rest of the model right on average. A coefficient
-// that leans on few of the clusters has few degrees of freedom, however many clusters there are.
+// It assumes that clusters are independent and the rest of the model right on average. A
+// coefficient that leans on few of the clusters has few degrees of freedom, however many clusters
+// there are.
 //
 // Rejected, by the share of 95 % intervals that held the truth where recordings differ
 // (tests/studies/coverage_study.cc): J'J alone for H, which the robust loss makes too large (73 to

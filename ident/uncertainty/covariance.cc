@@ -112,8 +112,8 @@ void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
       c->inverse_hessian *
       Information(score, RowsWhere(score, false, FitProblem::kPoolingCluster)) * c->inverse_hessian;
   for (Eigen::Index i = 0; i < c->freedom.size(); ++i) {
-    c->freedom[i] = Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i),
-                            clustering.pooled_units - 1.0);
+    c->freedom[i] =
+        Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i), clustering.pooled_units - 1.0);
   }
   c->clustered += scatter;
 }

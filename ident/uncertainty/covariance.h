@@ -4,14 +4,15 @@
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
 // it was computed, jacobian_blocks.h):
 //   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
-//   clustered  CR2 over clusters of rows (clustered_covariance.h). Where rows are clustered two ways,
+//   clustered  CR2 over clusters of rows (clustered_covariance.h). Where rows are clustered two
+//   ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
 //              scatter is added, by their own prior's spread: H^-1 J_p'J_p H^-1.
 // What leaving a recording out would move: H^-1 s_g G / (G - 1), one step with the mean Hessian of
 // the rest. Against refits of the 32 single-person recordings it is off by 15 % (root mean square
-// over all moves); by H less the recording's own J_g'J_g by 39 %, less its second derivatives too by
-// 42 %, by J'J less J_g'J_g by 28 %.
-// By singular values, on the subspace that the rows determine; nothing is said of the rest.
+// over all moves); by H less the recording's own J_g'J_g by 39 %, less its second derivatives too
+// by 42 %, by J'J less J_g'J_g by 28 %. By singular values, on the subspace that the rows
+// determine; nothing is said of the rest.
 #pragma once
 
 #include <Eigen/Core>
@@ -61,8 +62,7 @@ struct Clustering {
 
 // unit: the size of one step in each column, for judging what counts as null; 0 holds a column.
 Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
-                             const Clustering& clustering,
-                             double null_value = kNullSingularValue);
+                             const Clustering& clustering, double null_value = kNullSingularValue);
 
 // What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
 struct ScoredFit {

@@ -1,11 +1,11 @@
 // ident: how much the recordings weigh against what was put in beside them.
 //
 // Sigmas. Each kind of residual (hip, velocity, angles, rates) is counted in its own robust scale:
-// with e its d components in one frame, s^2 = median |e|^2 / median of chi-squared with d degrees of
-// freedom. Markers are never more exact than their noise. Velocities, angles and rates are made of
-// the same markers as the hip's path and repeat much of what it says: they count for 0.3 of it, that
-// is their sigma is s / 0.3 (chosen on the folds of the 32 single-person recordings: hipADE 0.090 m
-// against 0.095 with all kinds alike; it leaves estimates of a right model unbiased).
+// with e its d components in one frame, s^2 = median |e|^2 / median of chi-squared with d degrees
+// of freedom. Markers are never more exact than their noise. Velocities, angles and rates are made
+// of the same markers as the hip's path and repeat much of what it says: they count for 0.3 of it,
+// that is their sigma is s / 0.3 (chosen on the folds of the 32 single-person recordings: hipADE
+// 0.090 m against 0.095 with all kinds alike; it leaves estimates of a right model unbiased).
 //
 // Effective frames. The errors of one recording last, and its nine residuals a frame err together,
 // so the sum of their log densities is a composite likelihood: its maximum is right and its

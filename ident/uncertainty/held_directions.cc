@@ -48,7 +48,9 @@ std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen
   }
   std::string names;
   for (size_t k = 0; k < order.size(); ++k) {
-    names += (k == 0 ? "" : k + 1 == order.size() ? " and " : ", ") +
+    names += (k == 0                  ? ""
+              : k + 1 == order.size() ? " and "
+                                      : ", ") +
              specs[static_cast<size_t>(order[k])]->name;
   }
   return "the data alone hardly tell " + names + " apart: where they stand together is put in " +
@@ -80,8 +82,7 @@ std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoin
   }
   std::vector<std::string> sentences;
   if (kept.empty()) return sentences;
-  const Eigen::MatrixXd data =
-      Marginal(covariance.by_data + covariance.by_pooling, kept, rest);
+  const Eigen::MatrixXd data = Marginal(covariance.by_data + covariance.by_pooling, kept, rest);
   const Eigen::MatrixXd put_in = (covariance.by_prior + covariance.by_settling)(kept, kept);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(data + put_in);
   if (!(all.eigenvalues().minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere

@@ -1,9 +1,9 @@
 // ident: directions that the data hardly know: where priors and demands decide.
 //
 // H = H_data + H_put_in over the shared parameters (deviations of units integrated out). The
-// eigenvalues of H^-1/2 H_data H^-1/2 are the data's shares, direction by direction; along one whose
-// share is below 50 % the estimate is what was put in. Where two parameters make most of it, the
-// data still know a combination of the two.
+// eigenvalues of H^-1/2 H_data H^-1/2 are the data's shares, direction by direction; along one
+// whose share is below 50 % the estimate is what was put in. Where two parameters make most of it,
+// the data still know a combination of the two.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// ident: what the estimates become where the priors were others: centres and widths halved, doubled.
+// ident: what the estimates become where the priors were others: centres and widths halved,
+// doubled.
 //
 // A parameter that the recordings know keeps its value. Profiles and bootstrap cannot tell: they
 // carry the same priors.

@@ -30,7 +30,8 @@ class FitProblem;
 
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a
-  // standard error, and the interval's half-width is below half the value (where the parameter may take
+  // standard error, and the interval's half-width is below half the value (where the parameter may
+  // take
   // either sign: or the sign is certain).
   kIdentified,
   kWeak,            // neither this nor anything below

@@ -1,5 +1,5 @@
-// residuals: a pushed person shall have settled in time, and shall not fall soon after the recording
-// ends (stability). With n = frames times people, for frames first .. last - 1:
+// residuals: a pushed person shall have settled in time, and shall not fall soon after the
+// recording ends (stability). With n = frames times people, for frames first .. last - 1:
 //
 //   settling   r = weight / sqrt(n) [ hinge(speed / a_v - 1)            1
 //                                     hinge(|angles - rest| / a_q - 1)  2 ]
@@ -10,8 +10,8 @@
 // Settling is a demand, no pull: the people of the settling simulations (models/scene.h), from two
 // seconds after the push for a second. a_v and a_q are nine tenths of what counts as settled, so
 // that a demand of finite weight is met: whoever settles so is not moved at all. Stability: a
-// recording's rollout continued beyond the data, with its push times a factor; it is non-zero at the
-// truth of synthetic data, so it biases a fit.
+// recording's rollout continued beyond the data, with its push times a factor; it is non-zero at
+// the truth of synthetic data, so it biases a fit.
 #pragma once
 
 #include <ceres/cost_function.h>

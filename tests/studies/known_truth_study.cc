@@ -7,7 +7,8 @@
 // who differ by 10 %, 4 to 8 pushes each, net or external, 1 to 5 mm of noise in every frame, 60 or
 // 120 Hz. It is fitted with default flags, and every estimate is compared with what the people were
 // drawn around. A person who would fall, or whose recording leaves the domain, makes a new draw. A
-// run of many minutes, not a unit test; tests/studies/known_truth.py makes a table of what it found.
+// run of many minutes, not a unit test; tests/studies/known_truth.py makes a table of what it
+// found.
 #include <gflags/gflags.h>
 
 #include <cmath>
@@ -27,7 +28,8 @@ DEFINE_int32(studies, 200, "synthetic studies");
 DEFINE_int32(only, -1, "the one study to run");
 DEFINE_uint64(seed, 1, "of the first study; the others follow");
 DEFINE_double(people_spread, 0.1, "of the gains between people, on a log scale");
-DEFINE_bool(noise_at_first_frame, true, "whether frame 0, which sets rod and posture, is noisy too");
+DEFINE_bool(noise_at_first_frame, true,
+            "whether frame 0, which sets rod and posture, is noisy too");
 DEFINE_double(noise, -1.0, "of hip and ankles, m; negative: 1 to 5 mm");
 DEFINE_string(options, "", "of the fits, as in '--cluster=recording'; empty: the defaults");
 DEFINE_bool(details, false, "a line for every estimate, on stderr");
@@ -100,8 +102,7 @@ void Judge(int index, std::mutex* mutex, Study* all) {
       std::exit(1);
     }
     const MaybeError unprepared = PrepareFit(recordings, &options.value());
-    const FitResult result =
-        unprepared ? FitResult() : Fit(recordings, options.value());
+    const FitResult result = unprepared ? FitResult() : Fit(recordings, options.value());
     const std::lock_guard<std::mutex> lock(*mutex);
     if (!result.ok()) {
       ++all->failed;
@@ -110,10 +111,12 @@ void Judge(int index, std::mutex* mutex, Study* all) {
     ++all->fitted;
     all->seconds += result.solve_seconds;
     if (FLAGS_details) {
-      std::fprintf(stderr, "%d sigmas %.4g m, %.4g m/s, %.4g rad, %.4g rad/s; %.3g frames a frame; settles %d\n", index,
-                   result.options.sigmas.hip, result.options.sigmas.velocity,
-                   result.options.sigmas.angle, result.options.sigmas.rate,
-                   result.options.effective_weight, result.behaviour.settles);
+      std::fprintf(
+          stderr,
+          "%d sigmas %.4g m, %.4g m/s, %.4g rad, %.4g rad/s; %.3g frames a frame; settles %d\n",
+          index, result.options.sigmas.hip, result.options.sigmas.velocity,
+          result.options.sigmas.angle, result.options.sigmas.rate, result.options.effective_weight,
+          result.behaviour.settles);
     }
     for (const Estimate& e : result.estimates) {
       if (e.status == EstimateStatus::kFixed) continue;
@@ -124,14 +127,15 @@ void Judge(int index, std::mutex* mutex, Study* all) {
       ++count;
       held += holds;
       if (!FLAGS_details) continue;
-      std::fprintf(stderr,
-                   "%d %s people %d noise %.4f fps %.0f %s truth %.4g value %.4g error %.3g df %.1f "
-                   "data %.2f settling %.2f pull %.2f %s %s\n",
-                   index, study.push_kind == PushKind::kNet ? "net" : "ext", study.subjects,
-                   study.joint_noise_m, study.fps, e.name.c_str(), truth, e.value,
-                   e.standard_error, e.freedom, e.shares.data, e.shares.settling,
-                   (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error,
-                   NameOf(e.status).c_str(), holds ? "held" : "MISSED");
+      std::fprintf(
+          stderr,
+          "%d %s people %d noise %.4f fps %.0f %s truth %.4g value %.4g error %.3g df %.1f "
+          "data %.2f settling %.2f pull %.2f %s %s\n",
+          index, study.push_kind == PushKind::kNet ? "net" : "ext", study.subjects,
+          study.joint_noise_m, study.fps, e.name.c_str(), truth, e.value, e.standard_error,
+          e.freedom, e.shares.data, e.shares.settling,
+          (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error,
+          NameOf(e.status).c_str(), holds ? "held" : "MISSED");
     }
     return;
   }

@@ -74,7 +74,8 @@ ReportSection PriorCheckSection(const FittedModel& model) {
   ReportSection section{"prior_check", "Under other priors", {}, {}, {}, {}, {}, ""};
   if (!model.prior_check || model.prior_check->rows.empty()) return section;
   section.paragraphs = {
-      "The fit repeated with centres and widths of all priors halved, and doubled. A parameter that "
+      "The fit repeated with centres and widths of all priors halved, and doubled. A parameter "
+      "that "
       "the recordings know keeps its value; profiles and bootstrap cannot tell, for they carry the "
       "same priors."};
   section.tables.push_back({"values under other priors", PriorTable(*model.prior_check)});

@@ -34,8 +34,8 @@ TEST(WeightedSolve, DataThatContradictTheDemandAreFollowed) {
   EXPECT_GT(result.uncertainty.settling.free_seconds, 2.0);
   EXPECT_EQ(result.options.settling_weight, 0.0);
   EXPECT_NEAR(result.parameters[kMu], study.parameters[kMu], 2.0);
-  const bool told = std::any_of(
-      result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
+  const bool told =
+      std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
         return warning.find("contradict the demand to settle") != std::string::npos;
       });
   EXPECT_TRUE(told);

@@ -45,8 +45,8 @@ TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
   EXPECT_DOUBLE_EQ(options.sigmas.velocity, 0.003 * study.fps / kRateWeight);
 }
 
-// What counts is weight over sigma squared: told that errors are twice as large, a frame counts four
-// times as much.
+// What counts is weight over sigma squared: told that errors are twice as large, a frame counts
+// four times as much.
 TEST(DataWeight, MakesUpForSigmas) {
   const SyntheticOptions study = Noisy(0.003);
   const auto recordings = MakePendulums(study);
@@ -109,8 +109,7 @@ TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
   FitOptions options = Estimated(study);
   const Solution solution = SolveWeighted(recordings, &options).solution;
   ASSERT_GE(solution.best, 0);
-  const Uncertainty u =
-      ComputeUncertainty(FitProblem(recordings, options), solution.Best().to);
+  const Uncertainty u = ComputeUncertainty(FitProblem(recordings, options), solution.Best().to);
   const Estimate* stiffness = FindEstimate(u.estimates, "Kp_theta");
   ASSERT_NE(stiffness, nullptr);
   EXPECT_LT(stiffness->shares.data, 0.5);
