@@ -1,0 +1,90 @@
+// What is advised after a fit of people whose model is known.
+#include "ident/report/advice.h"
+
+#include <algorithm>
+
+#include "ident/results/confidence.h"
+#include "ident/results/fit.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+SyntheticOptions Study(uint64_t seed) {
+  SyntheticOptions study;
+  study.subjects = 6;
+  study.recordings_per_subject = 3;
+  study.frames = 70;
+  study.push_kind = PushKind::kExternal;
+  study.joint_noise_m = 0.003;
+  study.subject_spread = 0.1;
+  study.seed = seed;
+  return study;
+}
+
+FittedModel FitOf(const SyntheticOptions& study) {
+  const auto recordings = MakePendulums(study);
+  FitOptions options = MakePreset("tail").value();
+  EXPECT_FALSE(PrepareFit(recordings, &options));
+  FittedModel model{Fit(recordings, options)};
+  EXPECT_TRUE(model.fit.ok());
+  return model;
+}
+
+bool ProposesTerms(const FittedModel& model) {
+  for (const Advice& advice : Advise(model)) {
+    for (const char* words : {"--self_force", "--free", "--rod", "--interaction"}) {
+      if (advice.command.find(words) != std::string::npos) return true;
+    }
+  }
+  return false;
+}
+
+// The model made the recordings: every further term is truly zero.
+TEST(Advice, ProposesNoTermThatIsZero) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    const FittedModel model = FitOf(Study(seed));
+    EXPECT_FALSE(model.fit.diagnostics.terms.empty());
+    EXPECT_FALSE(ProposesTerms(model));
+  }
+}
+
+// A term that is there, and left out of the fit, is found by its score.
+TEST(Advice, ScoresFindAMissingTerm) {
+  SyntheticOptions study = Study(3);
+  study.subject_spread = 0.02;
+  study.parameters[kTx] = 1.5;
+  const FittedModel model = FitOf(study);
+  double least = 1.0;
+  for (const TermTest& test : model.fit.diagnostics.terms) least = std::min(least, test.p);
+  EXPECT_LT(least, 0.01);
+}
+
+// Where priors decide, the advice is to look at them, and no term.
+TEST(Advice, LooksAtSharesBeforeTerms) {
+  SyntheticOptions study = Study(5);
+  study.subjects = 4;
+  study.recordings_per_subject = 1;
+  study.frames = 8;
+  study.joint_noise_m = 0.02;
+  FittedModel model = FitOf(study);
+  const auto held =
+      std::find_if(model.fit.estimates.begin(), model.fit.estimates.end(),
+                   [](const Estimate& e) { return e.status == EstimateStatus::kPriorHeld; });
+  ASSERT_NE(held, model.fit.estimates.end());
+  const auto asks = [](const FittedModel& m) {
+    const std::vector<Advice> advice = Advise(m);
+    return std::any_of(advice.begin(), advice.end(), [](const Advice& a) {
+      return a.command.find("--prior_check") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(asks(model));
+  EXPECT_FALSE(ProposesTerms(model));
+  AddPriorCheck(MakePendulums(study), &model);
+  ASSERT_EQ(model.prior_check->rows.size(), 2u);
+  EXPECT_FALSE(asks(model));
+}
+
+}  // namespace
+}  // namespace pushid
