@@ -32,9 +32,9 @@ say "Making recordings of two other people, held out: the same parameters, other
 "$bin/pushid-simulate" --out="$out/held-out" --people=2 --recordings_per_person=3 --seed=2 | tail -n 1
 
 say "Identifying friction, balance gains and the push tail from the four people's recordings"
-# Without priors and settling residuals: the truth must come from the data alone.
+# With default flags: the priors know nothing of this truth.
 "$bin/pushid-fit" --recordings="$out/recordings/manifest.json" --setting=single \
-  --preset_priors=false --settling_weight=0 --model_out="$out/model.json" >"$out/report.txt"
+  --model_out="$out/model.json" >"$out/report.txt"
 "$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json"
 
 say "Predicting the held-out pushes: mean and last error of the hip, beside two simple guesses"
