@@ -81,7 +81,8 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = Name(recording.push_kind);
   json["magnitude"] = recording.magnitude;
-  json.erase(kOldConditionKey);
+  // A file that has both keeps both; one that has the old key alone gets the new one.
+  if (!json.contains("condition")) json.erase(kOldConditionKey);
   SetOrKeep(recording.condition.empty(), "condition", recording.condition, &json);
   const Json joints = JointsJson(recording.joints, json);
   SetUnless(joints.empty(), "joints", joints, &json);

@@ -44,9 +44,13 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
 }
 
 TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
-  FitModel("model.json", {"--bootstrap=2", "--seed=7", "--settling_weight=0"});
+  // With given weights: a replica of a batch estimates its own, the bootstrap keeps the fit's.
+  FitModel("model.json", {"--bootstrap=2", "--seed=7", "--settling_weight=0", "--sigmas=fixed",
+                          "--recording_weight=recording"});
   const nlohmann::ordered_json model = Json(Path("model.json"));
-  Batch(Plan("bootstrap = 2\nseed = 7", {{"physics", "\"--settling_weight=0\""}}));
+  Batch(Plan("bootstrap = 2\nseed = 7",
+             {{"physics",
+               "\"--settling_weight=0\", \"--sigmas=fixed\", \"--recording_weight=recording\""}}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   ASSERT_EQ(summary["jobs"].size(), 3u);
   EXPECT_NEAR(summary["jobs"][0]["parameters"]["mu"]["value"].get<double>(),

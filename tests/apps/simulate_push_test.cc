@@ -40,7 +40,7 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
   }
   const AppRun report =
       RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
-  EXPECT_TRUE(Contains(report.out, "7 of 7 intervals cover the truth"));
+  EXPECT_TRUE(Contains(report.out, "6 of 6 intervals cover the truth"));
 }
 
 TEST_F(SimulateAppTest, TheSameSeedWritesTheSameFiles) {

@@ -18,12 +18,10 @@ def rows_of(arguments):
 
 def truths():
     spread, told = rows_of(STUDY)
-    alike, told_alike = rows_of([*STUDY, "--people_spread=0"])
     header = ["how many, and % of the intervals that hold the truth", "identified", "weak", "prior-held",
               "unidentifiable", "at bound"]
     rows = [[f"`{row[0]}`" if row[0] != "all" else "**all**", *row[1:]] for row in spread]
-    rows.append(["all, people alike", *alike[-1][1:]])
-    return f"{studies.table(header, rows)}\n\n{told}. People alike: {told_alike}."
+    return f"{studies.table(header, rows)}\n\n{told}."
 
 
 if __name__ == "__main__":

@@ -264,6 +264,8 @@ TEST_F(SyntheticRecordings, UnsoundOptionsAndFallsAreErrors) {
   options.strengths = {{"a/b", 1.0}};
   EXPECT_NE(message(options).find("a/b"), std::string::npos);
   options = {};
+  options.push_kind = PushKind::kExternal;
+  options.min_push_s = options.max_push_s = 0.8;
   options.strengths = {{"hurricane", 90.0}};
   const std::string fall = message(options);
   EXPECT_NE(fall.find("S01_00_hurricane"), std::string::npos) << fall;

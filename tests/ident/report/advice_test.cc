@@ -26,7 +26,8 @@ FittedModel FitOf(const SyntheticOptions& study) {
   const auto recordings = MakePendulums(study);
   FitOptions options = MakePreset("tail").value();
   EXPECT_FALSE(PrepareFit(recordings, &options));
-  FittedModel model{Fit(recordings, options)};
+  FittedModel model;
+  model.fit = Fit(recordings, options);
   EXPECT_TRUE(model.fit.ok());
   return model;
 }

@@ -17,7 +17,8 @@ void ExpectTruth(const FitProblem& problem, const FitPoint& point,
                  const ParameterSet<double>& truth) {
   const ParameterSet<double> found = problem.Parameters(point, "");
   for (const FittedParameter& f : problem.map().fitted) {
-    EXPECT_NEAR(found[f.parameter], truth[f.parameter], kRelative * std::abs(truth[f.parameter]))
+    EXPECT_NEAR(found[f.parameter], truth[f.parameter],
+                kRelative * std::max(1e-3, std::abs(truth[f.parameter])))
         << kParameterNames[f.parameter];
   }
 }

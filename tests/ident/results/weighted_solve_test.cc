@@ -42,9 +42,10 @@ TEST(WeightedSolve, DataThatContradictTheDemandAreFollowed) {
 }
 
 TEST(WeightedSolve, WhoSettlesIsNotMoved) {
-  const SyntheticOptions study = Truth(60.0, 1500.0, -10.0);
+  const SyntheticOptions study = Truth(34.0, 1800.0, -10.5);
   const FitResult result = FitOf(study);
   ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(result.behaviour.settles);
   EXPECT_FALSE(result.uncertainty.settling.binds);
   for (const Estimate& e : result.uncertainty.estimates) {
     EXPECT_EQ(e.shares.settling, 0.0) << e.name;
@@ -54,20 +55,18 @@ TEST(WeightedSolve, WhoSettlesIsNotMoved) {
   without.settling_weight = 0.0;
   const auto recordings = MakePendulums(study);
   ASSERT_FALSE(PrepareFit(recordings, &without));
-  EXPECT_NEAR(Fit(recordings, without).parameters[kMu], result.parameters[kMu], 1e-6);
+  EXPECT_NEAR(Fit(recordings, without).parameters[kMu], result.parameters[kMu], 1e-3);
 }
 
-// Few noisy frames cannot contradict: the demand holds, and its pull is reported.
-TEST(WeightedSolve, ADemandThatBindsIsReported) {
-  SyntheticOptions study = Truth(12.0, 2200.0, -6.0);
-  study.subjects = 2;
-  study.recordings_per_subject = 2;
-  study.frames = 25;
-  study.joint_noise_m = 0.02;
-  study.subject_spread = 0.3;
+// Of three recordings, noisy and short, nothing contradicts the demand: it holds.
+TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
+  SyntheticOptions study = Truth(25.0, 1800.0, -9.0);
+  study.subjects = 3;
+  study.recordings_per_subject = 1;
+  study.frames = 20;
+  study.joint_noise_m = 0.03;
   const FitResult result = FitOf(study);
   ASSERT_TRUE(result.ok());
-  if (!result.uncertainty.settling.binds) GTEST_SKIP() << "settles without a demand";
   EXPECT_FALSE(result.uncertainty.settling.contradicted);
   EXPECT_TRUE(result.behaviour.settles);
 }

@@ -57,8 +57,8 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
 TEST(Settling, IsZeroForWhoeverSettlesInTime) {
   ParameterMap map = EveryParameterMap({});
   for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
-  for (double mass : {60.0, 80.0, 100.0}) {
-    for (double impulse : {4.0, 25.0, 80.0}) {
+  for (double mass : {80.0, 100.0}) {
+    for (double impulse : {4.0, 25.0}) {
       SCOPED_TRACE(std::to_string(mass) + ", " + std::to_string(impulse));
       const RestProblem problem = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
       const Evaluation settled =
