@@ -30,7 +30,7 @@ std::vector<Estimate> EstimatesOf(int study, bool noise_at_first_frame) {
   const std::vector<PendulumRecording> recordings = MakePendulums(made);
   FitOptions options = UnbiasedFit(made);
   options.cluster = ClusterBy::kRecording;  // people are alike here
-  options.sigmas = ResidualSigmas();  // the robust loss as a user has it
+  options.sigmas = ResidualSigmas();        // the robust loss as a user has it
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);
   if (solution.best < 0) return {};
