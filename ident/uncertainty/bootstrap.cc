@@ -96,12 +96,6 @@ std::vector<int> DrawRecordings(const ResamplingUnits& from, uint64_t seed, int 
   return counts;
 }
 
-double DistinctResamples(int units) {
-  double number = 1.0;
-  for (int i = 1; i < units; ++i) number *= static_cast<double>(units + i) / i;
-  return number;
-}
-
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());
