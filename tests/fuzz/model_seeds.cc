@@ -24,7 +24,7 @@ FittedModel OfPreset(const std::string& name) {
   for (const ParameterSpec& spec : preset.table.specs) {
     const EstimateStatus status = spec.free ? EstimateStatus::kIdentified : EstimateStatus::kFixed;
     result.estimates.push_back(
-        {spec.name, spec.unit, spec.nominal, 0.1, 0.02, spec.lower, spec.upper, status});
+        {spec.name, spec.unit, spec.nominal, 0.1, 0.02, spec.lower, spec.upper, 3.0, {}, status});
     if (spec.free) result.uncertainty.estimates.push_back(result.estimates.back());
   }
   const int free = static_cast<int>(result.uncertainty.estimates.size());
