@@ -82,7 +82,8 @@ struct FitOptions {
   double mode_margin = 0.2;
   // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
   double stability_weight = 0.0;
-  // Which parameters may differ by unit: names, comma-separated, "all" or "none".
+  // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
+  // or "none".
   std::string pool = "none";
   PoolBy pool_by = PoolBy::kSubject;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on

@@ -243,7 +243,8 @@ std::vector<Row> TableRows() {
       EditRow("prior", &TableEdits::prior,
               "priors: name:mean:sigma in the parameter's unit, comma-separated"),
       Decided(WordsRow("pool", OptionStage::kModel,
-                       "parameters that may differ by unit, comma-separated, or all, or none",
+                       "parameters that may differ by unit, comma-separated, or all, or none; "
+                       "all,-mu: all but mu",
                        [](const std::string& text, FitOptions* o) -> MaybeError {
                          o->pool = text;
                          return std::nullopt;

@@ -77,12 +77,15 @@ bool AnyPooled(const ParameterTable& table);
 // The flags --fix, --free, --prior, --set and --pool: comma-separated
 //   fix:   name or name=value      free: name or name=start value
 //   prior: name:mean:sigma         set:  name=value (also of a fixed one)
-//   pool:  names, or all, or none
+//   pool:  names, or all, or none; -name leaves out, as in all,-mu
 struct TableEdits {
   std::string fix, free, prior, set, pool;
   PoolBy pool_by = PoolBy::kSubject;
 };
 MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
+
+// Whether what a pool lists holds for any table: no name in it need be free.
+bool PoolsAllOrNone(const std::string& pool);
 
 // name=value pairs, for --set in what-ifs.
 struct NamedValue {

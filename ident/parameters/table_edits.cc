@@ -112,6 +112,10 @@ Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const 
   return values;
 }
 
+bool PoolsAllOrNone(const std::string& pool) {
+  return pool == "none" || pool.substr(0, pool.find(',')) == "all";
+}
+
 MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   if (MaybeError error = Assign(edits.set, "--set", std::nullopt, true, table)) return error;
   if (MaybeError error = Assign(edits.free, "--free", true, false, table)) return error;
@@ -120,14 +124,20 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   const auto may_differ = [&edits](const ParameterSpec& spec) {
     return HoldsForRecording(edits.pool_by) || !IsPairParameter(spec.id);
   };
-  for (const std::string& name : Split(edits.pool, ',')) {
-    if (name == "none") continue;
+  for (const std::string& entry : Split(edits.pool, ',')) {
+    if (entry == "none") continue;
+    const bool left_out = entry[0] == '-';
+    const std::string name = entry.substr(left_out ? 1 : 0);
     if (name == "all") {
       for (ParameterSpec& spec : table->specs) spec.pooled = spec.free && may_differ(spec);
       continue;
     }
     ParameterSpec* spec = table->Find(name);
     if (spec == nullptr) return UnknownName(name, "--pool", *table);
+    if (left_out) {
+      spec->pooled = false;
+      continue;
+    }
     if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
     if (!may_differ(*spec)) {
       return Error{"--pool names " + spec->name +

@@ -45,6 +45,29 @@ SettlingSimulation SimulateSettling(const ModelOptions& options,
   return result;
 }
 
+// How long after the push until everybody stands still for good; infinite as in SettlingSeconds.
+double SecondsUntilStill(const Scene& scene, const ModelOptions& options,
+                         const ParameterSet<double>& parameters) {
+  constexpr double kLongest = 10.0;  // s
+  const int end = scene.LastPushEnd();
+  const int frames = end + static_cast<int>(std::lround(kLongest / scene.dt));
+  RolloutPath<double> path;
+  const RolloutStatus status =
+      Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
+  if (!status.ok) return std::numeric_limits<double>::infinity();
+  int last_moving = end;
+  for (int t = end; t < frames; ++t) {
+    for (int n = 0; n < scene.num_people(); ++n) {
+      const PendulumState<double>& state = path.At(t, n);
+      const bool still = state.qd.head<2>().norm() < kSettledSpeed &&
+                         state.q.tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
+      if (!still) last_moving = t + 1;
+    }
+  }
+  if (last_moving >= frames) return std::numeric_limits<double>::infinity();
+  return (last_moving - end) * scene.dt;
+}
+
 // The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
 // cart's derivative is made), and what is learned of the rod and a network's memory.
 constexpr int kPreviousAt = 6, kRodAt = 8, kMemoryAt = 9;
@@ -123,26 +146,15 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 }  // namespace
 
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters) {
-  constexpr double kLongest = 10.0;  // s
   double slowest = 0.0;
   for (double impulse : kSettlingImpulses) {
     const Scene scene = SettlingScene(kSettlingMasses[0], impulse);
-    const int end = scene.LastPushEnd();
-    const int frames = end + static_cast<int>(std::lround(kLongest / scene.dt));
-    RolloutPath<double> path;
-    if (!Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path)
-             .ok) {
-      return std::numeric_limits<double>::infinity();
-    }
-    int last_moving = end;
-    for (int t = end; t < frames; ++t) {
-      const PendulumState<double>& state = path.At(t, 0);
-      const bool still = state.qd.head<2>().norm() < kSettledSpeed &&
-                         state.q.tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
-      if (!still) last_moving = t + 1;
-    }
-    if (last_moving >= frames) return std::numeric_limits<double>::infinity();
-    slowest = std::max(slowest, (last_moving - end) * scene.dt);
+    slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
+  }
+  if (!options.interaction.Any()) return slowest;
+  for (double impulse : kLineImpulses) {
+    const Scene scene = SettlingScene(kSettlingMass, impulse, kLinePeople);
+    slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
   }
   return slowest;
 }

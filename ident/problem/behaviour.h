@@ -60,7 +60,7 @@ struct Behaviour {
   void Add(const Behaviour& other, const std::string& setting);
 };
 
-// How long after a push the slowest of the single people whom a fit is held to settles for good, s;
+// How long after a push the slowest of the people whom a fit is held to settles for good, s;
 // infinite: not within 10 s, or they fall.
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters);
 

@@ -44,6 +44,10 @@ class FitProblem {
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
 
+  // Whose settling is simulated: that of the shared parameters (""), and of each setting or
+  // condition where these differ in what acts then.
+  std::vector<std::string> SettlingUnits(const FitPoint& point) const;
+
   // What people do after a push at a point; where settings or conditions differ, in each.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
@@ -94,9 +98,6 @@ class FitProblem {
   void AddPriors(FitPoint* point, Built* built) const;
   void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;
-  // Whose settling is simulated: that of the shared parameters (""), and of each setting or
-  // condition where these differ in what acts then.
-  std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;

@@ -18,6 +18,27 @@ std::string ValueText(double value, double error) {
   return Rounded(value, 4) + " +- " + Rounded(error, 2);
 }
 
+// A row a parameter, a column a refit, and the fit itself last.
+TextTable SideBySide(const RefitTable& check, const std::string& refits, const std::string& fit,
+                     bool with_errors) {
+  std::vector<std::string> header = {refits};
+  for (const RefitRow& row : check.rows) header.push_back(row.name);
+  header.insert(header.end(), {fit, "unit"});
+  TextTable table(header, std::vector<bool>(header.size(), true));
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    std::vector<std::string> cells = {check.parameters[i]};
+    for (const RefitRow& row : check.rows) {
+      cells.push_back(row.value.empty() ? "-"
+                      : with_errors     ? ValueText(row.value[i], row.standard_error[i])
+                                        : Rounded(row.value[i], 4));
+    }
+    cells.push_back(ValueText(check.value[i], check.standard_error[i]));
+    cells.push_back(check.units[i]);
+    table.Add(cells);
+  }
+  return table;
+}
+
 }  // namespace
 
 TextTable PushErrorTable(const RefitTable& check) {
@@ -53,38 +74,11 @@ TextTable MovesTable(const RefitTable& check) {
 }
 
 TextTable HorizonTable(const RefitTable& check) {
-  std::vector<std::string> header = {"first frames"};
-  for (const RefitRow& row : check.rows) header.push_back(row.name);
-  header.insert(header.end(), {"all", "unit"});
-  std::vector<bool> left(header.size(), true);
-  TextTable table(header, left);
-  for (size_t i = 0; i < check.parameters.size(); ++i) {
-    std::vector<std::string> cells = {check.parameters[i]};
-    for (const RefitRow& row : check.rows) {
-      cells.push_back(row.value.empty() ? "-" : ValueText(row.value[i], row.standard_error[i]));
-    }
-    cells.push_back(ValueText(check.value[i], check.standard_error[i]));
-    cells.push_back(check.units[i]);
-    table.Add(cells);
-  }
-  return table;
+  return SideBySide(check, "first frames", "all", true);
 }
 
 TextTable PriorTable(const RefitTable& check) {
-  std::vector<std::string> header = {"priors"};
-  for (const RefitRow& row : check.rows) header.push_back(row.name);
-  header.insert(header.end(), {"as fitted", "unit"});
-  TextTable table(header, std::vector<bool>(header.size(), true));
-  for (size_t i = 0; i < check.parameters.size(); ++i) {
-    std::vector<std::string> cells = {check.parameters[i]};
-    for (const RefitRow& row : check.rows) {
-      cells.push_back(row.value.empty() ? "-" : Rounded(row.value[i], 4));
-    }
-    cells.push_back(ValueText(check.value[i], check.standard_error[i]));
-    cells.push_back(check.units[i]);
-    table.Add(cells);
-  }
-  return table;
+  return SideBySide(check, "priors", "as fitted", false);
 }
 
 std::string DriftText(const RefitTable& check) {

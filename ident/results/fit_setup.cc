@@ -73,7 +73,7 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
 // What the preset pools by name may have been fixed since, or not act any more; and some networks
 // cannot be trained beside deviations of units.
 void PoolOnlyFree(FitOptions* options) {
-  if (options->pool == "all" || options->pool == "none") return;
+  if (PoolsAllOrNone(options->pool)) return;
   std::string free;
   if (NeedsGradientTraining(*options) || options->ensemble > 1) options->pool.clear();
   std::stringstream names(options->pool);

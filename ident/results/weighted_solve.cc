@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
+#include <unsupported/Eigen/SpecialFunctions>
 
 #include "ident/problem/behaviour.h"
 #include "ident/problem/pooling_spread.h"
@@ -15,9 +15,11 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 12;
-constexpr double kRough = 1e-5;         // function tolerance between rounds
-constexpr double kContradicted = 3.84;  // of twice the log likelihood
-constexpr size_t kMostColumnsToTest = 60;
+constexpr double kRough = 1e-3;  // function tolerance on the way
+constexpr double kContradicted = 0.05;
+// The demand joins in two steps: all of it at once outweighs everything else where people are far
+// from settled, and the solver creeps along its edge.
+constexpr double kFirstStep = 0.1;
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
@@ -45,11 +47,20 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* opt
   return std::max(change, UpdatePoolingSpread(problem, point, &options->table));
 }
 
+// On the way an optimum need not be exact; a network that stops learning in time must not be
+// stopped before.
+FitOptions Roughly(FitOptions options) {
+  if (options.early_stopping > 0.0) return options;
+  options.function_tolerance = std::max(kRough, options.function_tolerance);
+  return options;
+}
+
 // From the optimum under other weights to that under these.
 void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
              SolveStart* start) {
   const FitProblem problem(recordings, options);
-  SolveStart again = Refit(problem, start->to);
+  const bool hold_network = options.early_stopping > 0.0;
+  SolveStart again = Refit(problem, start->to, hold_network, options.num_threads);
   start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
   start->iterations += again.iterations;
   start->to = std::move(again.to);
@@ -59,61 +70,73 @@ void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions&
   start->message = std::move(again.message);
 }
 
-// Weighs and solves in turns, from a start that was solved.
+// Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
 void Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-           SolveStart* best) {
-  bool changed = false;
+           SolveStart* start) {
+  bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
     FitOptions now = *options;
-    if (Reweigh(FitProblem(recordings, *options), best->to, &now) < kSettled) break;
-    *options = now;
-    // On the way the optimum need not be exact.
-    now.function_tolerance = std::max(kRough, now.function_tolerance);
-    SolveOn(recordings, now, best);
-    changed = true;
+    const bool settled = Reweigh(FitProblem(recordings, *options), start->to, &now) < kSettled;
+    if (settled && exact) return;
+    exact = exact || settled;
+    if (!settled) *options = now;
+    SolveOn(recordings, exact ? *options : Roughly(*options), start);
   }
-  if (changed) SolveOn(recordings, *options, best);
 }
 
-// Half of what the demand to settle adds to the cost at a point.
-double SettlingCost(const FitProblem& problem, const FitPoint& point) {
-  FitPoint copy = point;
-  const FitProblem::Built built = problem.Build(&copy, 0);
-  double sum = 0.0;
-  for (const auto& [id, cluster] : built.blocks) {
-    if (cluster != FitProblem::kSettlingCluster) continue;
-    double cost = 0.0;
-    built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
-    sum += cost;
+// In which the slowest of those whom the demand is put to settle.
+double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
+  double slowest = 0.0;
+  for (const std::string& unit : problem.SettlingUnits(point)) {
+    slowest =
+        std::max(slowest, SettlingSeconds(problem.ModelAt(point), problem.Parameters(point, unit)));
   }
-  return built.rests_left_out > 0 ? std::numeric_limits<double>::infinity() : sum;
+  return slowest;
 }
 
-// Steps 2 and 3 of the header, for a fit that a demand of `weight` holds.
-void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
-                FitOptions* options, WeightedSolution* solved) {
+// Step 2 of the header, from the optimum without the demand.
+void Demand(const std::vector<PendulumRecording>& recordings, double weight, FitOptions* options,
+            WeightedSolution* solved) {
   SolveStart& best = solved->solution.starts[solved->solution.best];
-  FitOptions freed = *options;
-  freed.settling_weight = 0.0;
-  SolveStart free = best;
-  SolveOn(recordings, freed, &free);
-  Weigh(recordings, &freed, &free);
-  FitOptions demanding = freed;
-  demanding.settling_weight = weight;
+  const FitOptions freed = *options;
+  options->settling_weight = weight;
+  const FitProblem with(recordings, *options), without(recordings, freed);
+  if (CostAt(with, best.to) == CostAt(without, best.to)) return;
   SolveStart held = best;
-  SolveOn(recordings, demanding, &held);
-  const FitProblem with(recordings, demanding), without(recordings, freed);
-  // What the rest of the cost rises by. Demands that stay (on the modes) are in both.
-  const double rise =
-      held.cost - SettlingCost(with, held.to) + SettlingCost(without, held.to) - free.cost;
-  solved->settling.binds = true;
-  solved->settling.rise = 2.0 * rise;
-  solved->settling.free_seconds =
-      SettlingSeconds(without.ModelAt(free.to), without.Parameters(free.to, ""));
-  solved->settling.contradicted = !held.converged || 2.0 * rise > kContradicted;
-  if (!solved->settling.contradicted) solved->free = free.to;
-  best = solved->settling.contradicted ? free : held;
-  *options = solved->settling.contradicted ? freed : demanding;
+  FitOptions first = Roughly(*options);
+  first.settling_weight = kFirstStep * weight;
+  SolveOn(recordings, first, &held);
+  SolveOn(recordings, *options, &held);
+
+  SettlingDemand& settling = solved->settling;
+  settling.binds = true;
+  settling.rise = 2.0 * (CostAt(without, held.to) - best.cost);
+  settling.free_seconds = SlowestSeconds(without, best.to);
+  const double units = static_cast<double>(without.SettlingUnits(best.to).size());
+  const double chance = Eigen::numext::igammac(0.5 * units, 0.5 * std::max(0.0, settling.rise));
+  settling.contradicted = chance < kContradicted;
+  if (settling.contradicted) {
+    *options = freed;
+    return;
+  }
+  solved->free = best.to;
+  best = std::move(held);
+}
+
+// The other starts, by the weights and demands of the best, so that their costs compare.
+void SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                 WeightedSolution* solved) {
+  Solution& solution = solved->solution;
+  const int found = solution.best;
+  for (int i = 0; i < static_cast<int>(solution.starts.size()); ++i) {
+    SolveStart& start = solution.starts[i];
+    if (i == found || !start.usable) continue;
+    SolveOn(recordings, options, &start);
+    const bool better = start.failed.size() <= solution.Best().failed.size() && start.converged &&
+                        start.cost < solution.Best().cost;
+    if (better) solution.best = i;
+  }
+  if (solution.best != found) solved->free.reset();
 }
 
 }  // namespace
@@ -121,20 +144,16 @@ void TestDemand(const std::vector<PendulumRecording>& recordings, double weight,
 WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
                                FitOptions* options, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
+  const double weight = options->settling_weight;
+  options->settling_weight = 0.0;
+  const FitOptions roughly = Roughly(*options);
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(FitProblem(recordings, *options), progress);
+  solution = Solve(FitProblem(recordings, roughly), progress);
   if (solution.best >= 0) {
-    SolveStart& best = solution.starts[solution.best];
-    Weigh(recordings, options, &best);
-    const double weight = options->settling_weight;
-    FitOptions freed = *options;
-    freed.settling_weight = 0.0;
-    const bool binds = weight > 0.0 && SettlingCost(FitProblem(recordings, *options), best.to) >
-                                           SettlingCost(FitProblem(recordings, freed), best.to);
-    if (binds && best.to.Flat().size() <= kMostColumnsToTest) {
-      TestDemand(recordings, weight, options, &solved);
-    }
+    Weigh(recordings, options, &solution.starts[solution.best]);
+    Demand(recordings, weight, options, &solved);
+    SolveOthers(recordings, *options, &solved);
   }
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

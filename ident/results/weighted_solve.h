@@ -1,16 +1,17 @@
 // ident: a solve whose data weigh as much as they know, and in which the demand to settle is
 // tested.
 //
-// 1. Sigmas and effective frames (uncertainty/data_weight.h) and the spread of pooled units
-//    (problem/pooling_spread.h) are estimated and the fit solved on from there, until none changes
-//    by more than 1 %.
+// 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/data_weight.h)
+//    and the spread of pooled units (problem/pooling_spread.h) are estimated at its optimum and the
+//    fit solved on from there, until none changes by more than 1 %: the demand shall not make the
+//    data look worse than they are.
 // 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
-// on
-//    without it, and weighed anew: the demand must not make the data look worse than they are.
-// 3. With the same weights it is solved with the demand. Where twice the log likelihood (composite,
-//    adjusted; priors included) falls by more than 3.84, chi-squared's 95 % point with one degree
-//    of freedom, the data contradict the demand: it is dropped, and the result says so.
-// With many columns (pooled groups) steps 2 and 3 would triple the time: the demand stays.
+//    on with the demand, by the same weights. Twice what the rest of the cost rises by is a
+//    likelihood ratio (composite, adjusted; priors included) of as many constraints as units have
+//    people of their own to settle. Beyond the 95 % point of chi-squared with so many degrees of
+//    freedom the data contradict the demand: it is dropped, and the result says so. A constraint
+//    that need not bind has less than one degree of freedom, so this keeps the demand too often
+//    rather than too seldom.
 #pragma once
 
 #include <optional>
@@ -26,7 +27,7 @@ namespace pushid {
 struct WeightedSolution {
   Solution solution;
   SettlingDemand settling;
-  std::optional<FitPoint> free;  // the optimum without the demand, where that binds
+  std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
 };
 
 // options: on return with what was estimated, and without a demand that was dropped.

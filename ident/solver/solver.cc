@@ -82,11 +82,12 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
   return stage;
 }
 
-SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
+SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
+                 int num_threads) {
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
-  FitProblem::Built built = problem.Build(&start.to, 0);
+  FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
   const SolveStage stage =
       SolveBuilt(&built, SolverOptions(problem.options(), *built.problem), 0, &start.message);
   start.failed = std::move(built.shortened);
@@ -98,9 +99,11 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from) {
   return start;
 }
 
-double CostAt(const FitProblem& problem, FitPoint* point) {
+double CostAt(const FitProblem& problem, FitPoint point) {
+  const FitProblem::Built built = problem.Build(&point, 0);
+  if (built.rests_left_out > 0) return std::numeric_limits<double>::infinity();
   double cost = 0.0;
-  problem.Build(point, 0).problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  built.problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
   return cost;
 }
 
@@ -138,7 +141,7 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
   start->iterations += stage.iterations;
   start->failed = problem.Failures(start->to, 0);
   // Of all recordings, whatever the training saw.
-  start->cost = stop_early ? CostAt(problem, &start->to) : stage.final_cost;
+  start->cost = stop_early ? CostAt(problem, start->to) : stage.final_cost;
   start->converged = stage.converged || stopping.stopped();
   start->usable = start->converged || stage.final_cost < stage.initial_cost;
 }

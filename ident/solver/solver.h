@@ -18,9 +18,13 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
                       std::string* message);
 
-// All frames from a point near the optimum (profiles, bootstrap, leaving recordings out); one
-// thread, as refits run in parallel.
-SolveStart Refit(const FitProblem& problem, const FitPoint& from);
+// All frames from a point near the optimum (profiles, bootstrap, leaving recordings out); in one
+// thread where refits run in parallel. hold_network: its weights are constant.
+SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
+                 int num_threads = 1);
+
+// Of all blocks that can be rolled out from a point; infinite where a settling simulation cannot.
+double CostAt(const FitProblem& problem, FitPoint point);
 
 // Runs one start through the horizons.
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,

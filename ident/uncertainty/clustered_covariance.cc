@@ -20,6 +20,18 @@ Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) {
   return (rest > kDetermined).select(rest, 1.0);
 }
 
+// J'J, most columns of which are zero where units have columns of their own.
+Eigen::MatrixXd Information(const Eigen::MatrixXd& jacobian) {
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
+    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
+  }
+  const Eigen::MatrixXd packed = jacobian(Eigen::all, used);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+  information(used, used) = packed.transpose() * packed;
+  return information;
+}
+
 }  // namespace
 
 RowClusters ClusterByRecording(const JacobianBlocks& score) {
@@ -43,8 +55,8 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
     if (of_cluster.empty()) continue;
     const bool robust = score.robust_jacobian.size() > 0;
     const Eigen::MatrixXd own =
-        (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all) * base;
-    gathered.information.push_back(own.transpose() * own);
+        (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all);
+    gathered.information.push_back(base.transpose() * Information(own) * base);
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
     gathered.scores.rightCols(1) =
         base.transpose() *

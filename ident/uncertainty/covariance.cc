@@ -120,6 +120,14 @@ void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
 
 }  // namespace
 
+Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+    if (score.cluster_of_row[row] < 0) rows.push_back(row);
+  }
+  return Information(score, rows);
+}
+
 double Directions::Condition() const {
   return rank > 0 ? singular[0] / singular[rank - 1] : std::numeric_limits<double>::infinity();
 }

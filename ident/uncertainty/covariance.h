@@ -64,6 +64,9 @@ struct Clustering {
 Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
                              const Clustering& clustering, double null_value = kNullSingularValue);
 
+// J'J of what is no data: priors, demands, pooling.
+Eigen::MatrixXd InformationBeside(const JacobianBlocks& score);
+
 // What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
 struct ScoredFit {
   JacobianBlocks score;

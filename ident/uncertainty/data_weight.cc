@@ -29,7 +29,8 @@ double Median(std::vector<double>* values) {
 }
 
 // What the markers' noise makes of a residual of each kind: a velocity is the difference of two
-// positions, one frame apart, of the mean of two ankles; an angle is that of a rod.
+// positions, one frame apart, of the mean of two ankles; an angle is that of a rod. Where rates
+// differ, the slowest has the least noise: one floor for all must not lie above it.
 std::array<double, 4> Floors(const FitProblem& problem) {
   const double noise = problem.options().marker_noise;
   double dt = problem.recordings()[0].scene.dt;

@@ -19,6 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pooled fits of many subjects: two Jacobians for each column would take longer than the fit.
 constexpr Eigen::Index kMostColumnsWithCurvature = 60;
+constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
 constexpr double kTouched = 1e-4;  // share of a null direction that counts
 
 // What is known of each fitted number besides its estimate.
@@ -249,13 +250,27 @@ Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& poin
 }
 
 double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
-  Evaluated e = Evaluate(problem, point, false);
-  e.clustering = {ClusterByRecording(e.score), {}, 0};
-  const Covariance c = ComputeCovariance(e.score, e.unit, e.clustering);
-  if (c.clustered.size() == 0) return 0.0;
-  // tr(H^-1 V_s) = tr(V H), on the subspace that the rows determine.
-  const Eigen::MatrixXd all = c.by_data + c.by_prior + c.by_settling + c.by_pooling;
-  return (c.clustered * all).trace() / (c.inverse_of_parts * c.by_data).trace();
+  const Evaluated e = Evaluate(problem, point, false);
+  const Eigen::MatrixXd unit = e.unit.asDiagonal();
+  const ClusterScores own = GatherScores(e.score, ClusterByRecording(e.score), unit);
+  if (own.scores.cols() < 2) return 0.0;
+  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(unit.rows(), unit.cols());
+  for (const Eigen::MatrixXd& information : own.information) data += information;
+  const Eigen::MatrixXd all = data + unit * InformationBeside(e.score) * unit;
+  // On the subspace that the rows determine, by normal equations: exact enough for a trace.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all);
+  const Eigen::ArrayXd values = eigen.eigenvalues();
+  const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
+  const Eigen::MatrixXd base = eigen.eigenvectors().rightCols(rank) *
+                               values.tail(rank).sqrt().inverse().matrix().asDiagonal();
+  ClusterScores inside{{}, base.transpose() * own.scores};
+  for (const Eigen::MatrixXd& information : own.information) {
+    inside.information.push_back(base.transpose() * information * base);
+  }
+  // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.
+  const ClusteredCovariance v =
+      Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
+  return v.covariance.trace() / (base.transpose() * data * base).trace();
 }
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
@@ -312,12 +327,12 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
     }
   }
   // That of the term which is known least: a lower bound for the sum.
-  double freedom = uncertainty.freedom;
+  double freedom = kInfinity;
   for (size_t i = 0; i < std::min(fitted.size(), uncertainty.estimates.size()); ++i) {
     if (gradient[static_cast<Eigen::Index>(i)] == 0.0) continue;
     freedom = std::min(freedom, uncertainty.estimates[i].freedom);
   }
-  result.freedom = std::max(1.0, freedom);
+  result.freedom = std::max(1.0, std::isfinite(freedom) ? freedom : uncertainty.freedom);
   const double quantile = StudentQuantile95(result.freedom);
   const double variance = gradient.dot(uncertainty.covariance * gradient);
   result.standard_error = std::sqrt(std::max(0.0, variance));

@@ -11,31 +11,6 @@ namespace {
 constexpr double kWatched = 1.0;  // s, of settled people
 constexpr double kMet = 0.9;      // of what counts as settled: where the hinge begins
 
-// A rollout of the problem, with sensitivities where Jacobians are asked for; false when it leaves
-// the model's domain.
-struct RolledOut {
-  RolloutPath<double> path;
-  RolloutSensitivities sensitivities;
-  std::vector<SelfForce> self;
-};
-bool RollOut(const RestProblem& p, double const* const* blocks, bool with_sensitivities,
-             RolledOut* rolled) {
-  const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
-  rolled->self = SelfForces(p.scene, p.options);
-  const RolloutStatus status =
-      with_sensitivities
-          ? RolloutWithSensitivities(p.scene, p.options, inputs, p.last_frame, &rolled->path,
-                                     &rolled->sensitivities)
-          : Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity,
-                            p.last_frame, &rolled->path, nullptr, inputs.network_weights);
-  return status.ok;
-}
-
-void SetSizes(const RestProblem& p, int rows, std::vector<int32_t>* blocks, int* residuals) {
-  for (int size : p.layout.BlockSizes()) blocks->push_back(size);
-  *residuals = (p.last_frame - p.first_frame) * p.scene.num_people() * rows;
-}
-
 // max(0, |v| / limit - 1) and its derivative by v.
 template <int kSize>
 double Hinge(const Eigen::Matrix<double, kSize, 1>& v, double limit,
@@ -85,85 +60,70 @@ RestProblem StabilityProblem(const PendulumRecording& recording, double factor, 
   return problem;
 }
 
-SettlingResidual::SettlingResidual(RestProblem problem) : problem_(std::move(problem)) {
-  int residuals = 0;
-  SetSizes(problem_, kRows, mutable_parameter_block_sizes(), &residuals);
-  set_num_residuals(residuals);
+RestResidual::RestResidual(RestProblem problem, int rows)
+    : problem_(std::move(problem)), rows_(rows) {
+  for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
+  set_num_residuals((problem_.last_frame - problem_.first_frame) * problem_.scene.num_people() *
+                    rows_);
 }
 
-bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
-                                double** jacobians) const {
+bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
+                            double** jacobians) const {
   const RestProblem& p = problem_;
-  RolledOut rolled;
-  if (!RollOut(p, blocks, jacobians != nullptr, &rolled)) return false;
-  const double scale = p.Scale();
+  const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
+  RolloutPath<double> path;
+  RolloutSensitivities sensitivities;
+  const RolloutStatus status =
+      jacobians != nullptr
+          ? RolloutWithSensitivities(p.scene, p.options, inputs, p.last_frame, &path,
+                                     &sensitivities)
+          : Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity,
+                            p.last_frame, &path, nullptr, inputs.network_weights);
+  if (!status.ok) return false;
+  const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
   const std::vector<int> sizes = p.layout.BlockSizes();
+  const double scale = p.Scale();
+  RestRows by_state(rows_, 8);
   RowMajorMatrix by_column;
   int row = 0;
   for (int t = p.first_frame; t < p.last_frame; ++t) {
-    for (int n = 0; n < p.scene.num_people(); ++n, row += kRows) {
-      const PendulumState<double>& state = rolled.path.At(t, n);
-      const Eigen::Vector2d velocity = state.qd.head<2>();
-      Eigen::Matrix<double, 1, 2> by_velocity;
-      Eigen::Matrix<double, 1, 1> by_angle[2];
-      residuals[row] = scale * Hinge<2>(velocity, kMet * kSettledSpeed, &by_velocity);
-      for (int axis = 0; axis < 2; ++axis) {
-        const Eigen::Matrix<double, 1, 1> lean(state.q[2 + axis] - rolled.self[n].posture[axis]);
-        residuals[row + 1 + axis] = scale * Hinge<1>(lean, kMet * kSettledLean, &by_angle[axis]);
-      }
+    for (int n = 0; n < p.scene.num_people(); ++n, row += rows_) {
+      OfState(path.At(t, n), self[n], residuals + row, jacobians != nullptr ? &by_state : nullptr);
+      for (int k = 0; k < rows_; ++k) residuals[row + k] *= scale;
       if (jacobians == nullptr) continue;
-      const auto by = rolled.sensitivities.At(t, n);  // of [q, qd] by column
-      by_column.resize(kRows, by.cols());
-      by_column.row(0) = scale * by_velocity * by.middleRows<2>(4);
-      for (int axis = 0; axis < 2; ++axis) {
-        by_column.row(1 + axis) = scale * by_angle[axis](0) * by.row(2 + axis);
-      }
+      by_column = scale * by_state * sensitivities.At(t, n);
       ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
     }
   }
   return true;
 }
 
-StabilityResidual::StabilityResidual(RestProblem problem) : problem_(std::move(problem)) {
-  int residuals = 0;
-  SetSizes(problem_, kRows, mutable_parameter_block_sizes(), &residuals);
-  set_num_residuals(residuals);
+void SettlingResidual::OfState(const PendulumState<double>& state, const SelfForce& self,
+                               double* residuals, RestRows* by_state) const {
+  Eigen::Matrix<double, 1, 2> by_velocity;
+  Eigen::Matrix<double, 1, 1> by_angle[2];
+  residuals[0] = Hinge<2>(state.qd.head<2>(), kMet * kSettledSpeed, &by_velocity);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Matrix<double, 1, 1> lean(state.q[2 + axis] - self.posture[axis]);
+    residuals[1 + axis] = Hinge<1>(lean, kMet * kSettledLean, &by_angle[axis]);
+  }
+  if (by_state == nullptr) return;
+  by_state->setZero();
+  by_state->block<1, 2>(0, 4) = by_velocity;
+  for (int axis = 0; axis < 2; ++axis) (*by_state)(1 + axis, 2 + axis) = by_angle[axis](0);
 }
 
-bool StabilityResidual::Evaluate(double const* const* blocks, double* residuals,
-                                 double** jacobians) const {
-  const RestProblem& p = problem_;
-  RolledOut rolled;
-  if (!RollOut(p, blocks, jacobians != nullptr, &rolled)) return false;
-  const double w = p.Scale();
-  // Component by component: index into [q, qd] and its scale.
-  struct Component {
-    int state;
-    double scale;
-  };
-  const Component components[kRows] = {{2, w / p.sigmas.angle},
-                                       {3, w / p.sigmas.angle},
-                                       {6, w / p.sigmas.rate},
-                                       {7, w / p.sigmas.rate}};
-  const std::vector<int> sizes = p.layout.BlockSizes();
-  RowMajorMatrix by_column;
-  int row = 0;
-  for (int t = p.first_frame; t < p.last_frame; ++t) {
-    for (int n = 0; n < p.scene.num_people(); ++n) {
-      const PendulumState<double>& state = rolled.path.At(t, n);
-      for (const Component& c : components) {
-        const double value = c.state < 4 ? state.q[c.state] - rolled.self[n].posture[c.state - 2]
-                                         : state.qd[c.state - 4];
-        residuals[row] = c.scale * value;
-        if (jacobians != nullptr) {
-          by_column = c.scale * rolled.sensitivities.At(t, n).row(c.state);
-          ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
-        }
-        ++row;
-      }
-    }
+void StabilityResidual::OfState(const PendulumState<double>& state, const SelfForce& self,
+                                double* residuals, RestRows* by_state) const {
+  const ResidualSigmas& sigmas = problem_.sigmas;
+  if (by_state != nullptr) by_state->setZero();
+  for (int axis = 0; axis < 2; ++axis) {
+    residuals[axis] = (state.q[2 + axis] - self.posture[axis]) / sigmas.angle;
+    residuals[2 + axis] = state.qd[2 + axis] / sigmas.rate;
+    if (by_state == nullptr) continue;
+    (*by_state)(axis, 2 + axis) = 1.0 / sigmas.angle;
+    (*by_state)(2 + axis, 6 + axis) = 1.0 / sigmas.rate;
   }
-  return true;
 }
 
 }  // namespace pushid

@@ -27,6 +27,8 @@ namespace pushid {
 inline constexpr int kFramesPastTheEnd = 40;
 inline constexpr double kStrongerPush = 1.4;
 
+using RestRows = Eigen::Matrix<double, Eigen::Dynamic, 8>;  // residuals by [q, qd]
+
 struct RestProblem {
   Scene scene;
   ModelOptions options;
@@ -51,24 +53,38 @@ RestProblem StabilityProblem(const PendulumRecording& recording, double factor, 
                              const ModelOptions& options, const ParameterMap& map,
                              const ResidualSigmas& sigmas, double weight);
 
-class SettlingResidual : public ceres::CostFunction {
+// What the two have in common: a rollout of `problem`, `rows` residuals for each frame and person.
+class RestResidual : public ceres::CostFunction {
  public:
-  static constexpr int kRows = 3;  // a frame and person
-  explicit SettlingResidual(RestProblem problem);
+  RestResidual(RestProblem problem, int rows);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
- private:
-  RestProblem problem_;
+ protected:
+  // The residuals of one frame and person, unweighted, and (where by_state is given) their
+  // derivatives by [q, qd].
+  virtual void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
+                       RestRows* by_state) const = 0;
+
+  const RestProblem problem_;
+  const int rows_;
 };
 
-class StabilityResidual : public ceres::CostFunction {
+class SettlingResidual : public RestResidual {
  public:
-  static constexpr int kRows = 4;  // a frame and person
-  explicit StabilityResidual(RestProblem problem);
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
+  explicit SettlingResidual(RestProblem problem) : RestResidual(std::move(problem), 3) {}
 
- private:
-  RestProblem problem_;
+ protected:
+  void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
+               RestRows* by_state) const override;
+};
+
+class StabilityResidual : public RestResidual {
+ public:
+  explicit StabilityResidual(RestProblem problem) : RestResidual(std::move(problem), 4) {}
+
+ protected:
+  void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
+               RestRows* by_state) const override;
 };
 
 }  // namespace pushid

@@ -120,6 +120,20 @@ TEST(TableEdits, FixFreePriorSetPool) {
   EXPECT_FALSE(table[kKpTheta].pooled);
 }
 
+TEST(TableEdits, PoolsAllButOne) {
+  ParameterTable table = Tail();
+  TableEdits edits;
+  edits.pool = "all,-mu,-Kp_phi";  // Kp_phi is fixed: nothing to leave out
+  ASSERT_FALSE(EditTable(edits, &table));
+  for (const ParameterSpec& spec : table.specs) {
+    EXPECT_EQ(spec.pooled, spec.free && spec.id != kMu) << spec.name;
+  }
+  edits.pool = "all,-nu";
+  const MaybeError error = EditTable(edits, &table);
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->ToString().find("--pool names 'nu'"), std::string::npos);
+}
+
 TEST(TableEdits, AFixedGainMayBeZero) {
   ParameterTable table = Tail();
   EXPECT_FALSE(EditTable({"tail_gain=0", "", "", "", ""}, &table));
