@@ -94,12 +94,14 @@ std::string DiagnosticsText(const FittedModel& model) {
 }
 
 TextTable AgreementTable(const FittedModel& model) {
-  TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class"},
-                  {true, false, true, true, true, true, true});
+  TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class",
+                   "by the data alone"},
+                  {true, false, true, true, true, true, true, true});
   for (const Agreement& row : CompareIntervals(model)) {
     table.Add({row.name, Rounded(row.value, 4), IntervalText(row.clustered),
                IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
-               row.classification ? NameOf(*row.classification) : ""});
+               row.classification ? NameOf(*row.classification) : "",
+               row.by_data_alone ? NameOf(*row.by_data_alone) : ""});
   }
   return table;
 }

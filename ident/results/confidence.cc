@@ -2,10 +2,38 @@
 #include "ident/results/confidence.h"
 
 #include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
 #include "ident/uncertainty/horizon_check.h"
 #include "ident/uncertainty/prior_check.h"
 
 namespace pushid {
+
+namespace {
+
+// The fit without what was put in beside its recordings, by the same weights.
+FitOptions OfDataAlone(FitOptions options) {
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = options.mode_weight = options.stability_weight = 0.0;
+  return options;
+}
+
+void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
+                         const std::vector<std::string>& names, int num_threads,
+                         const JobProgress& progress, std::vector<Profile>* profiles) {
+  const FitOptions options = OfDataAlone(with.options());
+  const FitProblem alone(with.recordings(), options);
+  if (CostAt(alone, estimate) == CostAt(with, estimate)) return;  // nothing was put in
+  const SolveStart refit = Refit(alone, estimate);
+  if (!refit.usable) return;
+  const auto found = ComputeProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
+                                     num_threads, progress);
+  if (!found.ok()) return;
+  for (size_t i = 0; i < profiles->size(); ++i) {
+    (*profiles)[i].by_data_alone = found.value()[i].classification;
+  }
+}
+
+}  // namespace
 
 MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
                        const std::vector<std::string>& names, int num_threads,
@@ -15,6 +43,8 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
       ComputeProfiles(problem, model->fit.starts[model->fit.best_start].to, model->fit.uncertainty,
                       names, num_threads, progress);
   if (!profiles.ok()) return profiles.error();
+  ClassifyByDataAlone(problem, model->fit.starts[model->fit.best_start].to, names, num_threads,
+                      progress, &profiles.value());
   model->profiles = std::move(profiles.value());
   return std::nullopt;
 }

@@ -130,6 +130,14 @@ Leverage LeverageFrom(const Json& json) {
   return l;
 }
 
+ProfileClass ClassFrom(const Json& row, const std::string& key) {
+  ProfileClass found;
+  if (MaybeError error = ParseName(key, row.at(key), &found)) {
+    throw std::runtime_error(error->ToString());
+  }
+  return found;
+}
+
 }  // namespace
 
 Json ToJson(const std::vector<Profile>& profiles) {
@@ -137,15 +145,17 @@ Json ToJson(const std::vector<Profile>& profiles) {
   for (const Profile& p : profiles) {
     Json points = Json::array();
     for (const ProfilePoint& point : p.points) points.push_back(PointJson(point));
-    rows.push_back({{"name", p.name},
-                    {"unit", p.unit},
-                    {"estimate", NumberJson(p.estimate)},
-                    {"class", NameOf(p.classification)},
-                    {"interval_95", {NumberJson(p.lower95), NumberJson(p.upper95)}},
-                    {"cost", NumberJson(p.cost)},
-                    {"threshold", NumberJson(p.threshold)},
-                    {"ends", {p.lower_end, p.upper_end}},
-                    {"points", points}});
+    rows.push_back(
+        {{"name", p.name},
+         {"unit", p.unit},
+         {"estimate", NumberJson(p.estimate)},
+         {"class", NameOf(p.classification)},
+         {"class_by_data_alone", p.by_data_alone ? Json(NameOf(*p.by_data_alone)) : Json()},
+         {"interval_95", {NumberJson(p.lower95), NumberJson(p.upper95)}},
+         {"cost", NumberJson(p.cost)},
+         {"threshold", NumberJson(p.threshold)},
+         {"ends", {p.lower_end, p.upper_end}},
+         {"points", points}});
   }
   return rows;
 }
@@ -157,9 +167,9 @@ std::vector<Profile> ProfilesFromJson(const Json& json) {
     p.name = row.at("name");
     p.unit = row.at("unit");
     p.estimate = NumberFrom(row.at("estimate"));
-    const std::string name = row.at("class");
-    if (MaybeError error = ParseName("class", name, &p.classification)) {
-      throw std::runtime_error(error->ToString());
+    p.classification = ClassFrom(row, "class");
+    if (!row.at("class_by_data_alone").is_null()) {
+      p.by_data_alone = ClassFrom(row, "class_by_data_alone");
     }
     p.lower95 = NumberFrom(row.at("interval_95").at(0));
     p.upper95 = NumberFrom(row.at("interval_95").at(1));

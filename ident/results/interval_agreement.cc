@@ -13,12 +13,12 @@ std::vector<Agreement> ClusteredRows(const FitResult& result) {
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
     rows.push_back(
-        {e.name, e.unit, e.value, e.freedom, {e.standard_error, e.lower95, e.upper95}, {}, {}, {}});
+        {e.name, e.unit, e.value, e.freedom, {e.standard_error, e.lower95, e.upper95}, {}, {}, {}, {}});
   }
   for (const Combination& c : result.derived) {
     if (c.standard_error == 0.0) continue;
     rows.push_back(
-        {c.name, c.unit, c.value, c.freedom, {c.standard_error, c.lower95, c.upper95}, {}, {}, {}});
+        {c.name, c.unit, c.value, c.freedom, {c.standard_error, c.lower95, c.upper95}, {}, {}, {}, {}});
   }
   return rows;
 }
@@ -44,6 +44,7 @@ std::vector<Agreement> CompareIntervals(const FittedModel& model) {
       const double t = StudentQuantile95(row.freedom);
       row.profile = Interval{(p.upper95 - p.lower95) / (2.0 * t), p.lower95, p.upper95};
       row.classification = p.classification;
+      row.by_data_alone = p.by_data_alone;
     }
     if (model.bootstrap) {
       const Bootstrap& b = *model.bootstrap;

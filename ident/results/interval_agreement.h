@@ -21,7 +21,7 @@ struct Agreement {
   double freedom = 1.0;  // of the clustered interval's and the profile's Student's t
   Interval clustered;
   std::optional<Interval> profile, bootstrap;
-  std::optional<ProfileClass> classification;
+  std::optional<ProfileClass> classification, by_data_alone;
   // Largest width over smallest, of those that are finite; infinite when only some are.
   double ratio = 1.0;
 };

@@ -19,6 +19,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ struct Profile {
   std::string unit;
   double estimate = 0.0;
   ProfileClass classification = ProfileClass::kPracticallyNot;
+  // The class without priors and demands, by the recordings alone; empty where there are none of
+  // either, and where the recordings alone have no optimum to start from.
+  std::optional<ProfileClass> by_data_alone;
   // Infinite on a side where the threshold is not crossed.
   double lower95 = -std::numeric_limits<double>::infinity();
   double upper95 = std::numeric_limits<double>::infinity();

@@ -3,7 +3,7 @@
 summary     the drag of the feet in a sentence (README.md)
 transcript  the report of pushid-fit (ident/README.md)
 depends     the same fit with other assumptions and without one person (ident/README.md)
-intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); half a minute
+intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); a minute
 coupled     mu, Kp_x and Kp_y all free (ident/uncertainty/README.md); a second
 starts      another optimum from other starts? (ident/README.md); ten seconds
 
@@ -79,9 +79,10 @@ def intervals():
         name = p["name"]
         rows.append([f"`{name}`", p["unit"], with_error(p["value"], p["standard_error"]),
                      number(p["standard_error_naive"], 2), interval(p["interval_95"]),
-                     interval(profiles[name]["interval_95"]), interval(resampled[name]["interval_95"])])
+                     interval(profiles[name]["interval_95"]), interval(resampled[name]["interval_95"]),
+                     profiles[name]["class_by_data_alone"].replace("_", " ")])
     return studies.table(["parameter", "unit", "estimate, clustered error", "naive error", "clustered 95 %",
-                          "profile 95 %", "bootstrap 95 %, 199 replicas"], rows)
+                          "profile 95 %", "bootstrap 95 %, 199 replicas", "by the data alone"], rows)
 
 
 def coupled():

@@ -58,6 +58,7 @@ FittedModel JudgedModel() {
                      "N s/m",
                      20.1,
                      ProfileClass::kPracticallyNot,
+                     ProfileClass::kStructurallyNot,
                      -infinity,
                      30.7,
                      1.1,

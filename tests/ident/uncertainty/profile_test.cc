@@ -8,6 +8,7 @@
 
 #include <array>
 
+#include "ident/results/confidence.h"
 #include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "residuals/cost_functions/prior_residual.h"
@@ -206,6 +207,31 @@ TEST(Profiles, SeparateWhatIsIdentifiedFromWhatIsNot) {
   EXPECT_EQ(sum.classification, ProfileClass::kIdentifiable);
   EXPECT_LT(sum.lower95, sum.estimate);
   EXPECT_LT(sum.estimate, sum.upper95);
+}
+
+// A few noisy frames under narrow priors: these close the profile, and the data alone do not.
+TEST(Profiles, TellWhatTheDataAloneSay) {
+  SyntheticOptions study = TinyStudy();
+  study.joint_noise_m = 0.01;
+  study.frames = 8;
+  FittedModel model;
+  const auto recordings = MakePendulums(study);
+  FitOptions options = DefaultFit(study);
+  for (Parameter id : {kAx, kTailGain, kTailTorque, kTailTime}) options.table[id].free = false;
+  options.table[kKpTheta].prior = Prior{1800.0, 100.0};
+  model.fit = Fit(recordings, options);
+  ASSERT_TRUE(model.fit.ok());
+  ASSERT_FALSE(AddProfiles(recordings, {"Kp_theta"}, 1, nullptr, &model));
+  const Profile& profile = model.profiles.at(0);
+  EXPECT_EQ(profile.classification, ProfileClass::kIdentifiable);
+  ASSERT_TRUE(profile.by_data_alone.has_value());
+  EXPECT_NE(*profile.by_data_alone, ProfileClass::kIdentifiable);
+
+  FittedModel unbiased;
+  const SyntheticOptions exact = TinyStudy();
+  unbiased.fit = Fit(MakePendulums(exact), UnbiasedFit(exact));
+  ASSERT_FALSE(AddProfiles(MakePendulums(exact), {"Kp_theta"}, 1, nullptr, &unbiased));
+  EXPECT_FALSE(unbiased.profiles.at(0).by_data_alone.has_value()) << "nothing was put in";
 }
 
 TEST(Profiles, NamesThatDoNotMoveAreErrors) {
