@@ -73,8 +73,8 @@ struct FitOptions {
   // yet, every recording counts as one frame.
   double effective_weight = 0.0;
   ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
-  // Weight of the demand that people settle (settling_residual.h): 0 where nobody need settle, more
-  // where a fit keeps walking all the same.
+  // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
+  // contradict (results/weighted_solve.h): 0 where nobody need settle.
   double settling_weight = 0.0;
   // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
   // for models with no term that could feed a mode.

@@ -145,7 +145,7 @@ std::vector<Row> WeightRows() {
       MayBeAbsent(NumberRow(
           "effective_weight", "/effective_weight",
           [](O & o) -> auto& { return o.effective_weight; },
-          {0.0, 1e6, false, "must be a number of at least 0"},
+          {0.0, 1e6, false, "must be a number from 0 to 1e6"},
           "independent frames per frame, with --recording_weight=effective: where their estimation "
           "starts; 0: at one frame a recording")),
       MayBeAbsent(NameRow<ClusterBy>(

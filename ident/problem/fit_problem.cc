@@ -41,6 +41,17 @@ FitPoint FitProblem::NominalPoint() const {
   return point;
 }
 
+std::optional<FitPoint> FitProblem::PointAt(std::vector<double> row) const {
+  FitPoint point = NominalPoint();
+  const size_t size = point.Flat().size();
+  if (row.size() + point.weights.size() == size) {
+    row.insert(row.end(), point.weights.begin(), point.weights.end());
+  }
+  if (row.size() != size) return std::nullopt;
+  point.SetFlat(row);
+  return point;
+}
+
 ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::string& unit) const {
   const auto found = point.unit.find(unit);
   return map_.Apply<double>(point.shared.data(),

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ class FitProblem {
   // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them,
   // weights as the options' network holds them.
   FitPoint NominalPoint() const;
+
+  // The point whose Flat() is `row`, weights excepted where it has none; none where sizes differ.
+  std::optional<FitPoint> PointAt(std::vector<double> row) const;
 
   // The parameters of a unit (any name, even one that was not fitted) at a point.
   ParameterSet<double> Parameters(const FitPoint& point, const std::string& unit) const;

@@ -16,11 +16,7 @@ RefitRow FitVariant(const PushVariant& variant, const FitOptions& options,
   if (!fit.usable || !fit.converged) {
     fit = SolveFrom(problem, problem.NominalPoint(), "nominal", "", nullptr);
   }
-  if (fit.usable && fit.failed.empty()) {
-    row.value = SharedValues(problem, fit.to);
-  } else {
-    row.failure = fit.usable ? "some rollouts leave the model's domain" : fit.message;
-  }
+  Take(problem, fit, &row);
   return row;
 }
 

@@ -72,7 +72,8 @@ MaybeError AddWindows(const std::vector<PendulumRecording>& recordings,
   for (int smoothing : {0, kSmoothingFrames}) {
     for (int longer : kLonger) {
       const std::string name =
-          (longer > 0 ? "+" : "") + std::to_string(longer) + " frames" +
+          (longer == 0 ? kSameWindow
+                       : (longer > 0 ? "+" : "") + std::to_string(longer) + " frames") +
           (smoothing > 0 ? ", smoothed over " + std::to_string(smoothing) : "");
       Result<PushVariant> made = Changed(recordings, false, "window", name,
                                          [&](const PendulumRecording& recording, ScenePush* push) {

@@ -23,6 +23,7 @@
 namespace pushid {
 
 inline constexpr int kSmoothingFrames = 7;
+inline constexpr const char* kSameWindow = "0 frames";  // neither longer nor smoothed
 
 struct PushVariantOptions {
   double sensor_noise = 0.01;  // share of the peak, one standard deviation

@@ -42,8 +42,12 @@ class Adviser {
   }
 
  private:
+  // A command that was given already says no more.
   void Add(const std::string& sentence, const FitCommand& command) {
-    advice_.push_back({sentence, command.ToString()});
+    const std::string text = command.ToString();
+    const bool given = std::any_of(advice_.begin(), advice_.end(),
+                                   [&text](const Advice& a) { return a.command == text; });
+    if (!given) advice_.push_back({sentence, text});
   }
   FitCommand Same() const { return FitCommand("pushid-fit", model_.provenance); }
   FitCommand Bootstrap(int replicas) const {
@@ -146,11 +150,13 @@ void Adviser::Person() {
     case Verdict::kSettles:
       return;
     case Verdict::kSlowToSettle:
+      if (result_.uncertainty.settling.dropped()) return;  // it was held, and let go
       return Add(sentence + "; see what holding it to settle costs.", SettleHarder(kSomeSettling));
     case Verdict::kRodRunsAway:
       return Add(sentence + "; see what is lost without a rod that moves.",
                  Same().Set("rod", "constant"));
     case Verdict::kSelfPropelling:
+      if (result_.uncertainty.settling.dropped()) return;
       if (tail) return Add(sentence + "; hold it to settle.", SettleHarder(kMuchSettling));
       break;
     case Verdict::kUnstableThoughSettled:
@@ -212,12 +218,14 @@ void Adviser::Intervals() {
     Add("Resampling the recordings checks the standard errors without any formula.",
         Bootstrap(kReplicas));
   }
+  const bool few = model_.bootstrap && model_.bootstrap->drawn_from > 0 &&
+                   model_.bootstrap->drawn_from < kFewRecordings;
   const int had = model_.bootstrap ? model_.bootstrap->replicas : 0;
   for (const Agreement& row : CompareIntervals(model_)) {
-    if (!several) break;
+    if (!several || few) break;  // of few there are no more resamples to draw
     if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
     Add("The intervals of " + row.name + " differ by a factor of " + Rounded(row.ratio, 2) +
-            " in width: its cost is far from quadratic; quote the widest, and more replicas.",
+            " in width: its cost is far from quadratic; quote the widest, and draw more replicas.",
         Bootstrap(std::max(kManyReplicas, 2 * had)));
     break;  // one command serves all
   }
@@ -228,7 +236,7 @@ void Adviser::Intervals() {
 void Adviser::Shares() {
   std::string held;
   for (const Estimate& e : result_.estimates) {
-    if (e.status != EstimateStatus::kPriorHeld) continue;
+    if (e.status != EstimateStatus::kPriorHeld || e.shares.settling > e.shares.prior) continue;
     held += (held.empty() ? "" : ", ") + e.name;
   }
   if (!held.empty() && !model_.prior_check) {
@@ -240,7 +248,7 @@ void Adviser::Shares() {
 void Adviser::Pushes() {
   const bool measured = !result_.push_range || result_.push_range->net_s.empty();
   if (measured || model_.push_check) return;
-  Add("The pushes were made by inverse dynamics; see how far their windows decide.",
+  Add("The pushes are net forces, as inverse dynamics makes them; see how far its window decides.",
       Same().Set("push_check", "true"));
 }
 
@@ -252,7 +260,7 @@ void Adviser::Horizons() {
 
 void Adviser::Terms() {
   const bool explained =
-      result_.uncertainty.settling.binds ||
+      result_.uncertainty.settling.holds() ||
       std::any_of(result_.estimates.begin(), result_.estimates.end(), [](const Estimate& e) {
         return e.status != EstimateStatus::kIdentified && e.status != EstimateStatus::kFixed;
       });

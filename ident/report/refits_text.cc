@@ -1,14 +1,19 @@
 // ident: refits beside the fit.
 #include "ident/report/refits_text.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 #include "ident/push/push_errors.h"
+#include "ident/push/push_variants.h"
 #include "ident/uncertainty/horizon_check.h"
 
 namespace pushid {
 namespace {
+
+constexpr double kFarMove = 2.0;  // standard errors
 
 std::string WithUnit(const RefitTable& check, size_t i) {
   return check.parameters[i] + (check.units[i] == "1" ? "" : ", " + check.units[i]);
@@ -95,25 +100,60 @@ std::string DriftText(const RefitTable& check) {
   return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
 }
 
-std::string PushCheckText(const RefitTable& check) {
-  std::string text = PushErrorTable(check).ToString() +
-                     "total error: the pushes are not known exactly either; each refit moves\n" +
-                     MovesTable(check).ToString();
+std::string FailuresText(const RefitTable& check) {
+  std::string text;
   for (const RefitRow& row : check.rows) {
     if (!row.failure.empty()) text += row.source + " " + row.name + ": " + row.failure + "\n";
   }
   return text;
 }
 
+// Pushes made anew with the fit's own window should leave it where it is.
+std::string SameWindowText(const RefitTable& check) {
+  for (const RefitRow& row : check.rows) {
+    if (row.name != kSameWindow || row.value.empty()) continue;
+    for (size_t i = 0; i < check.parameters.size(); ++i) {
+      const double errors = std::abs(row.value[i] - check.value[i]) / check.standard_error[i];
+      if (!(errors > kFarMove)) continue;
+      return "even the same window moves " + check.parameters[i] + " by " + Rounded(errors, 2) +
+             " of its errors: inverse dynamics cannot make these pushes again, and the total "
+             "errors say what they would be, had it made them\n";
+    }
+  }
+  return "";
+}
+
+std::string PushCheckText(const RefitTable& check) {
+  return PushErrorTable(check).ToString() +
+         "total error: the pushes are not known exactly either; each refit moves\n" +
+         MovesTable(check).ToString() + SameWindowText(check) + FailuresText(check);
+}
+
+// Which parameters other priors move by more than twice their error.
+std::string PriorVerdict(const RefitTable& check) {
+  std::string moved;
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    double most = 0.0;
+    for (const RefitRow& row : check.rows) {
+      if (!row.value.empty()) most = std::max(most, std::abs(row.value[i] - check.value[i]));
+    }
+    if (!(most > kFarMove * check.standard_error[i])) continue;
+    moved += (moved.empty() ? "" : ", ") + check.parameters[i];
+  }
+  return moved.empty() ? "no parameter moves by more than twice its error\n"
+                       : "more than twice its error moves " + moved + ": priors decide\n";
+}
+
 std::string PriorCheckText(const RefitTable& check) {
   if (check.rows.empty()) return "no free parameter has a prior\n";
   return PriorTable(check).ToString() +
-         "centres and widths of all priors halved and doubled, everything refitted\n";
+         "centres and widths of all priors halved and doubled, everything refitted\n" +
+         PriorVerdict(check) + FailuresText(check);
 }
 
 std::string HorizonCheckText(const RefitTable& check) {
   if (check.rows.empty()) return "no recording is longer than the shortest horizon\n";
-  return HorizonTable(check).ToString() + DriftText(check);
+  return HorizonTable(check).ToString() + DriftText(check) + FailuresText(check);
 }
 
 }  // namespace pushid

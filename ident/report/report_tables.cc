@@ -66,9 +66,10 @@ TextTable EstimateTable(const FitResult& result) {
             ? Rounded(spec->prior->mean, 3) + " +- " + Rounded(spec->prior->sigma, 3)
             : "";
     const bool unknown = e.status == EstimateStatus::kUnidentifiable;
+    const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : Rounded(e.standard_error, 3),
                unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
-               unknown ? "-" : SharesText(e.shares), unknown ? "-" : PullText(e), prior});
+               no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
   }
   return table;
 }

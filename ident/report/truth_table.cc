@@ -40,7 +40,7 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
 }
 
 std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth) {
-  TextTable table({"parameter", "truth", "identified", "std error", "95 % interval", "unit", ""},
+  TextTable table({"parameter", "truth", "fitted", "std error", "95 % interval", "unit", ""},
                   {true, false, false, false, true, true, true});
   int covered = 0, compared = 0;
   for (const Estimate& e : result.estimates) {

@@ -168,7 +168,7 @@ std::vector<Profile> ProfilesFromJson(const Json& json) {
     p.unit = row.at("unit");
     p.estimate = NumberFrom(row.at("estimate"));
     p.classification = ClassFrom(row, "class");
-    if (!row.at("class_by_data_alone").is_null()) {
+    if (row.contains("class_by_data_alone") && !row.at("class_by_data_alone").is_null()) {
       p.by_data_alone = ClassFrom(row, "class_by_data_alone");
     }
     p.lower95 = NumberFrom(row.at("interval_95").at(0));

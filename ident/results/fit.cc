@@ -77,6 +77,14 @@ std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitPro
       const double error = std::sqrt(std::max(0.0, variance));
       Estimate e;
       e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
+      e.standard_error_naive =
+          std::hypot(u.estimates[i].standard_error_naive, u.estimates[b].standard_error_naive);
+      // No better known than the shared value and its own deviation.
+      const Estimate& worse =
+          u.estimates[i].shares.data < u.estimates[b].shares.data ? u.estimates[i] : u.estimates[b];
+      e.status = std::max(u.estimates[i].status, u.estimates[b].status);
+      e.shares = worse.shares;
+      e.shares.prior_pull = e.shares.settling_pull = 0.0;
       const double quantile = StudentQuantile95(e.freedom);
       e.name = spec.name;
       e.unit = spec.unit;
@@ -135,10 +143,12 @@ void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
   const Verdict verdict = VerdictOf(result.behaviour, model);
   if (verdict == Verdict::kSettles) return;
   const bool slow = verdict == Verdict::kSlowToSettle;
+  // Holding it harder was tried, and dropped.
+  const bool tried = slow && result.uncertainty.settling.dropped();
   warnings->push_back(
       VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
-      (slow ? "" : "; such a fit may score well and predicts nothing beyond the data") + " (" +
-      VerdictRemedy(verdict, model) + ")");
+      (slow ? "" : "; such a fit may score well and predicts nothing beyond the data") +
+      (tried ? "" : " (" + VerdictRemedy(verdict, model) + ")"));
 }
 
 void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
@@ -153,12 +163,17 @@ void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings)
 }
 
 // What the demand to settle did, if anything.
-void AddSettlingWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
+void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::string>* warnings) {
   const SettlingDemand& s = u.settling;
   if (!s.binds) return;
   const std::string wanted = std::isfinite(s.free_seconds)
                                  ? "want to settle in " + Rounded(s.free_seconds, 2) + " s"
-                                 : "want not to settle within 10 s";
+                                 : "alone do not settle within 10 s";
+  if (s.unmet) {
+    warnings->push_back("the data " + wanted + ", and no fit that settles within " +
+                        Rounded(kWaitSeconds, 2) + " s was found: the demand was dropped");
+    return;
+  }
   if (s.contradicted) {
     warnings->push_back("the data " + wanted + ": they contradict the demand to settle within " +
                         Rounded(kWaitSeconds, 2) + " s (twice the log likelihood would fall by " +
@@ -166,7 +181,8 @@ void AddSettlingWarning(const Uncertainty& u, std::vector<std::string>* warnings
     return;
   }
   std::string moved;
-  for (const Estimate& e : u.estimates) {
+  for (size_t i = 0; i < shared; ++i) {
+    const Estimate& e = u.estimates[i];
     const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
     if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
     moved +=
@@ -195,7 +211,7 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
                        SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   AddClusterWarning(result.uncertainty, &warnings);
-  AddSettlingWarning(result.uncertainty, &warnings);
+  AddSettlingWarning(result.uncertainty, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
@@ -263,6 +279,11 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
+  if (!solved.weights_settled) {
+    result.warnings.push_back(
+        "the data's weight still changed by more than 1 % when the rounds "
+        "of weighing ended: priors may count too much or too little");
+  }
   result.options.model = problem.ModelAt(best.to);
   ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);
   return result;

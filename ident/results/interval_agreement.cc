@@ -12,13 +12,27 @@ std::vector<Agreement> ClusteredRows(const FitResult& result) {
   std::vector<Agreement> rows;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
-    rows.push_back(
-        {e.name, e.unit, e.value, e.freedom, {e.standard_error, e.lower95, e.upper95}, {}, {}, {}, {}});
+    rows.push_back({e.name,
+                    e.unit,
+                    e.value,
+                    e.freedom,
+                    {e.standard_error, e.lower95, e.upper95},
+                    {},
+                    {},
+                    {},
+                    {}});
   }
   for (const Combination& c : result.derived) {
     if (c.standard_error == 0.0) continue;
-    rows.push_back(
-        {c.name, c.unit, c.value, c.freedom, {c.standard_error, c.lower95, c.upper95}, {}, {}, {}, {}});
+    rows.push_back({c.name,
+                    c.unit,
+                    c.value,
+                    c.freedom,
+                    {c.standard_error, c.lower95, c.upper95},
+                    {},
+                    {},
+                    {},
+                    {}});
   }
   return rows;
 }

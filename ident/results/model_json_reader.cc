@@ -104,8 +104,8 @@ Uncertainty UncertaintyFrom(const Json& json) {
     u.held_directions = json.at("held_directions").get<std::vector<std::string>>();
   if (json.contains("settling")) {
     const Json& s = json.at("settling");
-    u.settling = {s.at("binds"), s.at("contradicted"), NumberFrom(s.at("rise")),
-                  NumberFrom(s.at("free_seconds"))};
+    u.settling = {s.at("binds"), s.at("contradicted"), s.value("unmet", false),
+                  NumberFrom(s.at("rise")), NumberFrom(s.at("free_seconds"))};
   }
   return u;
 }

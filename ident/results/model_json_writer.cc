@@ -61,6 +61,7 @@ Json UncertaintyJson(const Uncertainty& u) {
           {"settling",
            {{"binds", u.settling.binds},
             {"contradicted", u.settling.contradicted},
+            {"unmet", u.settling.unmet},
             {"rise", NumberJson(u.settling.rise)},
             {"free_seconds", NumberJson(u.settling.free_seconds)}}}};
 }

@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 12;
-constexpr double kRough = 1e-3;  // function tolerance on the way
+constexpr int kMostChanges = 2;     // of which start is the best
+constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
+constexpr double kRough = 1e-3;     // function tolerance on the way
 constexpr double kContradicted = 0.05;
 // The demand joins in two steps: all of it at once outweighs everything else where people are far
 // from settled, and the solver creeps along its edge.
@@ -71,17 +73,20 @@ void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions&
 }
 
 // Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
-void Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+// False where they do not stay.
+bool Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
            SolveStart* start) {
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
     FitOptions now = *options;
     const bool settled = Reweigh(FitProblem(recordings, *options), start->to, &now) < kSettled;
-    if (settled && exact) return;
+    if (settled && exact) return true;
     exact = exact || settled;
     if (!settled) *options = now;
     SolveOn(recordings, exact ? *options : Roughly(*options), start);
   }
+  if (!exact) SolveOn(recordings, *options, start);
+  return false;
 }
 
 // In which the slowest of those whom the demand is put to settle.
@@ -94,6 +99,23 @@ double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
   return slowest;
 }
 
+// A fit that meets the demand, from one that does not. Where simulated people fall or run out of
+// the domain there, Ceres cannot see them: then on the way from the start, where they need not.
+SolveStart SolveHeld(const std::vector<PendulumRecording>& recordings, const FitOptions& demanding,
+                     const SolveStart& free) {
+  FitOptions first = Roughly(demanding);
+  first.settling_weight = kFirstStep * demanding.settling_weight;
+  SolveStart held = free;
+  const FitProblem with(recordings, first);
+  if (std::isinf(CostAt(with, free.to))) {
+    held = SolveFrom(with, with.NominalPoint(), "nominal", "", nullptr);
+  } else {
+    SolveOn(recordings, first, &held);
+  }
+  SolveOn(recordings, demanding, &held);
+  return held;
+}
+
 // Step 2 of the header, from the optimum without the demand.
 void Demand(const std::vector<PendulumRecording>& recordings, double weight, FitOptions* options,
             WeightedSolution* solved) {
@@ -102,20 +124,20 @@ void Demand(const std::vector<PendulumRecording>& recordings, double weight, Fit
   options->settling_weight = weight;
   const FitProblem with(recordings, *options), without(recordings, freed);
   if (CostAt(with, best.to) == CostAt(without, best.to)) return;
-  SolveStart held = best;
-  FitOptions first = Roughly(*options);
-  first.settling_weight = kFirstStep * weight;
-  SolveOn(recordings, first, &held);
-  SolveOn(recordings, *options, &held);
+  SolveStart held = SolveHeld(recordings, *options, best);
 
   SettlingDemand& settling = solved->settling;
   settling.binds = true;
-  settling.rise = 2.0 * (CostAt(without, held.to) - best.cost);
   settling.free_seconds = SlowestSeconds(without, best.to);
-  const double units = static_cast<double>(without.SettlingUnits(best.to).size());
-  const double chance = Eigen::numext::igammac(0.5 * units, 0.5 * std::max(0.0, settling.rise));
-  settling.contradicted = chance < kContradicted;
-  if (settling.contradicted) {
+  settling.unmet = !held.converged || held.failed.size() > best.failed.size() ||
+                   !std::isfinite(CostAt(with, held.to));
+  if (!settling.unmet) {
+    settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
+    const double units = static_cast<double>(without.SettlingUnits(best.to).size());
+    settling.contradicted =
+        Eigen::numext::igammac(0.5 * units, 0.5 * settling.rise) < kContradicted;
+  }
+  if (!settling.holds()) {
     *options = freed;
     return;
   }
@@ -123,20 +145,21 @@ void Demand(const std::vector<PendulumRecording>& recordings, double weight, Fit
   best = std::move(held);
 }
 
-// The other starts, by the weights and demands of the best, so that their costs compare.
-void SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
-                 WeightedSolution* solved) {
-  Solution& solution = solved->solution;
-  const int found = solution.best;
-  for (int i = 0; i < static_cast<int>(solution.starts.size()); ++i) {
-    SolveStart& start = solution.starts[i];
+// The other starts, by the weights and demands of the best, so that their costs compare. Whether
+// one of them is better, which is then the best.
+bool SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                 Solution* solution) {
+  const int found = solution->best;
+  for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
+    SolveStart& start = solution->starts[i];
     if (i == found || !start.usable) continue;
     SolveOn(recordings, options, &start);
-    const bool better = start.failed.size() <= solution.Best().failed.size() && start.converged &&
-                        start.cost < solution.Best().cost;
-    if (better) solution.best = i;
+    const SolveStart& best = solution->Best();
+    const bool better = start.converged && start.failed.size() <= best.failed.size() &&
+                        start.cost < best.cost - kSameCost * std::abs(best.cost);
+    if (better) solution->best = i;
   }
-  if (solution.best != found) solved->free.reset();
+  return solution->best != found;
 }
 
 }  // namespace
@@ -150,10 +173,14 @@ WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
   WeightedSolution solved;
   Solution& solution = solved.solution;
   solution = Solve(FitProblem(recordings, roughly), progress);
-  if (solution.best >= 0) {
-    Weigh(recordings, options, &solution.starts[solution.best]);
+  bool again = solution.best >= 0;
+  for (int change = 0; again && change <= kMostChanges; ++change) {
+    options->settling_weight = 0.0;
+    solved.settling = {};
+    solved.free.reset();
+    solved.weights_settled = Weigh(recordings, options, &solution.starts[solution.best]);
     Demand(recordings, weight, options, &solved);
-    SolveOthers(recordings, *options, &solved);
+    again = SolveOthers(recordings, *options, &solution);
   }
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -11,7 +11,9 @@
 //    people of their own to settle. Beyond the 95 % point of chi-squared with so many degrees of
 //    freedom the data contradict the demand: it is dropped, and the result says so. A constraint
 //    that need not bind has less than one degree of freedom, so this keeps the demand too often
-//    rather than too seldom.
+//    rather than too seldom. Where no fit that meets the demand is found, it is dropped as well.
+// With several starts the others are solved by the same weights and demand, so that their costs
+// compare; where one of them turns out better, it is weighed in turn.
 #pragma once
 
 #include <optional>
@@ -26,6 +28,7 @@ namespace pushid {
 
 struct WeightedSolution {
   Solution solution;
+  bool weights_settled = false;  // within 1 %
   SettlingDemand settling;
   std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
 };

@@ -7,18 +7,16 @@
 namespace pushid {
 namespace {
 
-constexpr double kDetermined = 1e-9;  // share of a direction's information that is left
+constexpr double kLeastKept = 0.01;
 
 Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
   return columns.colwise() - columns.rowwise().mean().eval();
 }
 
-// What leaving a cluster's direction out would leave of it, by the eigenvalues of M_g. A direction
-// that is undetermined without the cluster keeps the cluster's full leverage.
-Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) {
-  const Eigen::ArrayXd rest = 1.0 - leverage;
-  return (rest > kDetermined).select(rest, 1.0);
-}
+// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
+// that one cluster alone determines is counted as ten times what its score says, no more: with
+// second derivatives in H leverages may pass one.
+Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
 
 // J'J, most columns of which are zero where units have columns of their own.
 Eigen::MatrixXd Information(const Eigen::MatrixXd& jacobian) {

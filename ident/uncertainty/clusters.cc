@@ -43,6 +43,7 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
 Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
                        const JacobianBlocks& score) {
   Clustering rows;
+  rows.priors_scatter = true;
   rows.pooled_units =
       problem.map().num_deviations > 0 ? static_cast<int>(problem.NominalPoint().unit.size()) : 0;
   rows.first.count = clusters.count();

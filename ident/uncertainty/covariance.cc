@@ -91,6 +91,14 @@ void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Cova
   c->settling_gradient = Gradient(score, settling);
 }
 
+// What draws scatter, known with so many degrees of freedom.
+void AddScatter(const Eigen::MatrixXd& scatter, double freedom, Covariance* c) {
+  for (Eigen::Index i = 0; i < c->freedom.size(); ++i) {
+    c->freedom[i] = Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i), freedom);
+  }
+  c->clustered += scatter;
+}
+
 void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
                   const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian, Covariance* c) {
   const ClusterScores first = GatherScores(score, clustering.first, back);
@@ -107,15 +115,18 @@ void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
     inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
   }
   c->clustered = back * inner * back.transpose();
-  if (clustering.pooled_units < 2) return;
-  const Eigen::MatrixXd scatter =
-      c->inverse_hessian *
-      Information(score, RowsWhere(score, false, FitProblem::kPoolingCluster)) * c->inverse_hessian;
-  for (Eigen::Index i = 0; i < c->freedom.size(); ++i) {
-    c->freedom[i] =
-        Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i), clustering.pooled_units - 1.0);
+  constexpr double kCertain = std::numeric_limits<double>::infinity();
+  if (clustering.priors_scatter) {
+    AddScatter(c->inverse_hessian *
+                   Information(score, RowsWhere(score, false, FitProblem::kPriorCluster)) *
+                   c->inverse_hessian,
+               kCertain, c);
   }
-  c->clustered += scatter;
+  if (clustering.pooled_units < 2) return;
+  AddScatter(c->inverse_hessian *
+                 Information(score, RowsWhere(score, false, FitProblem::kPoolingCluster)) *
+                 c->inverse_hessian,
+             clustering.pooled_units - 1.0, c);
 }
 
 }  // namespace

@@ -77,7 +77,10 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point)
   const double one_each = static_cast<double>(counted) / frames;
   if (counted < 2) return one_each;
   const double lambda = CompositeInflation(problem, point);
-  return lambda > 0.0 ? now / frames / lambda : one_each;
+  if (!(lambda > 0.0)) return one_each;
+  // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
+  const bool own = problem.options().sigma_source == SigmaSource::kEstimate;
+  return own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
 }
 
 }  // namespace pushid

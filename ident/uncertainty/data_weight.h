@@ -17,9 +17,10 @@
 // with A_g s_g the leverage-adjusted scores of CR2 (clustered_covariance.h). Data rows are divided
 // by sqrt(lambda): then a frame counts as `weight` of an independent one. One factor for all leaves
 // an unpenalized optimum where it was, gives priors their true share, and lets exact data outweigh
-// any prior. It assumes that recordings err independently of each other; that people do not is what
-// the standard errors are clustered for. Compared to the integrated autocorrelation time of the
-// residuals, it also sees how residuals of one frame go together, and how the robust loss counts.
+// any prior. Where sigmas are estimated no frame counts as more than one. It assumes that
+// recordings err independently of each other; that people do not is what the standard errors are
+// clustered for. Compared to the integrated autocorrelation time of the residuals, it also sees how
+// residuals of one frame go together, and how the robust loss counts.
 #pragma once
 
 #include "ident/problem/fit_problem.h"

@@ -10,6 +10,7 @@
 namespace pushid {
 namespace {
 
+constexpr size_t kMostDirections = 3;  // to tell: those that the data know least
 constexpr double kHeldShare = 0.5;
 constexpr double kPartOf = 0.3;  // of the largest component: what counts as part of a direction
 
@@ -90,9 +91,10 @@ std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoin
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(root * data * root);
   for (Eigen::Index k = 0; k < shares.eigenvalues().size(); ++k) {
     const double share = std::max(0.0, shares.eigenvalues()[k]);
-    if (share >= kHeldShare) break;  // ascending
+    if (share >= kHeldShare || sentences.size() >= kMostDirections) break;  // ascending
     const Eigen::VectorXd direction = root * shares.eigenvectors().col(k);
-    sentences.push_back(Sentence(specs, slope.cwiseProduct(direction), share));
+    const std::string sentence = Sentence(specs, slope.cwiseProduct(direction), share);
+    if (sentences.empty() || sentences.back() != sentence) sentences.push_back(sentence);
   }
   return sentences;
 }

@@ -41,9 +41,9 @@ RefitRow FitFirst(const FitProblem& whole, int frames) {
     row.failure = "no start could be solved";
     return row;
   }
-  const FitPoint& point = solution.Best().to;
-  row.value = SharedValues(problem, point);
-  const Uncertainty uncertainty = ComputeUncertainty(problem, point);
+  Take(problem, solution.Best(), &row);
+  if (row.value.empty()) return row;
+  const Uncertainty uncertainty = ComputeUncertainty(problem, solution.Best().to);
   for (size_t i = 0; i < row.value.size(); ++i) {
     row.standard_error.push_back(uncertainty.estimates[i].standard_error);
   }

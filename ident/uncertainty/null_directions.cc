@@ -87,8 +87,10 @@ NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
   joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
   joint.sentence = JoinNames(joint.parameters) + " cannot be told apart";
   for (const Combination& c : joint.identified) {
+    const double half = 0.5 * (c.upper95 - c.lower95);
+    const bool known = half < 0.5 * std::abs(c.value) || c.lower95 > 0.0 || c.upper95 < 0.0;
     joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
-                      " " + c.unit + " is identified";
+                      " " + c.unit + (known ? " is identified" : " is all that could be told");
   }
   return joint;
 }

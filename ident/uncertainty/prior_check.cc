@@ -18,12 +18,7 @@ RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const st
     if (spec.prior) spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
   }
   const FitProblem other(problem.recordings(), options, problem.counts());
-  const SolveStart refit = Refit(other, estimate);
-  if (refit.failed.empty()) {
-    row.value = SharedValues(other, refit.to);
-  } else {
-    row.failure = "a rollout left the model's domain";
-  }
+  Take(other, Refit(other, estimate), &row);
   return row;
 }
 

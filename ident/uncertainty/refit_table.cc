@@ -2,6 +2,7 @@
 #include "ident/uncertainty/refit_table.h"
 
 #include "ident/problem/fit_problem.h"
+#include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -11,6 +12,16 @@ std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& poin
   std::vector<double> values;
   for (const FittedParameter& f : problem.map().fitted) values.push_back(parameters[f.parameter]);
   return values;
+}
+
+void Take(const FitProblem& problem, const SolveStart& refit, RefitRow* row) {
+  if (!refit.usable && refit.failed.empty()) {
+    row->failure = "the refit did not converge: " + refit.message;
+  } else if (!refit.failed.empty()) {
+    row->failure = "some rollouts leave the model's domain";
+  } else {
+    row->value = SharedValues(problem, refit.to);
+  }
 }
 
 RefitTable RefitTableOf(const FitProblem& problem, const FitPoint& estimate,

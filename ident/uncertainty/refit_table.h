@@ -11,6 +11,7 @@
 namespace pushid {
 
 class FitProblem;
+struct SolveStart;
 struct Uncertainty;
 
 struct RefitRow {
@@ -32,6 +33,9 @@ struct RefitTable {
 // The table without rows.
 RefitTable RefitTableOf(const FitProblem& problem, const FitPoint& estimate,
                         const Uncertainty& uncertainty);
+
+// What a refit found, or why it says nothing.
+void Take(const FitProblem& problem, const SolveStart& refit, RefitRow* row);
 
 // Shared parameters at a point, natural units.
 std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& point);

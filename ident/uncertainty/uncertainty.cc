@@ -192,11 +192,14 @@ std::vector<Shares> SharesOf(const Covariance& c, const Eigen::VectorXd& settlin
 }
 
 // What the demand to settle moved each column by, fitted scale.
-Eigen::VectorXd MovedBySettling(const Covariance& c, const FitPoint& point, const FitPoint* free) {
+Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit,
+                                const FitPoint& point, const FitPoint* free) {
   if (free == nullptr) {
     if (c.settling_gradient.isZero(0.0)) return c.settling_gradient;
-    const Eigen::MatrixXd without = c.by_data + c.by_prior + c.by_pooling;
-    return -without.completeOrthogonalDecomposition().solve(c.settling_gradient);
+    const Eigen::MatrixXd without =
+        unit.asDiagonal() * (c.by_data + c.by_prior + c.by_pooling) * unit.asDiagonal();
+    return -unit.cwiseProduct(
+        without.completeOrthogonalDecomposition().solve(unit.cwiseProduct(c.settling_gradient)));
   }
   const std::vector<double> to = point.Flat(), from = free->Flat();
   Eigen::VectorXd moved(static_cast<Eigen::Index>(to.size()));
@@ -273,36 +276,47 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   return v.covariance.trace() / (base.transpose() * data * base).trace();
 }
 
+namespace {
+
+Covariance CovarianceWithoutDemand(const FitProblem& problem, const FitPoint& free) {
+  FitOptions options = problem.options();
+  options.settling_weight = 0.0;
+  return CovarianceAt(FitProblem(problem.recordings(), options, problem.counts()), free);
+}
+
+}  // namespace
+
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free) {
   const Evaluated e = Evaluate(problem, point, true);
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
   const Covariance c = ComputeCovariance(score, unit, clustering);
+  const Covariance spread = free == nullptr ? c : CovarianceWithoutDemand(problem, *free);
 
   Uncertainty u;
   u.num_residuals = score.num_data_rows;
   u.num_clusters = clusters.count();
   u.clustered_by = clusters.by;
   u.two_way = clusters.two_way;
-  u.clustered = c.clustered.size() > 0;
+  u.clustered = spread.clustered.size() > 0;
   u.condition_number = c.directions.Condition();
   u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;
-  u.freedom = u.clustered ? u.num_clusters - 1 : c.naive_freedom;
-  u.covariance = u.clustered ? c.clustered : c.naive;
+  u.freedom = u.clustered ? u.num_clusters - 1 : spread.naive_freedom;
+  u.covariance = u.clustered ? spread.clustered : spread.naive;
   u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
-  u.correlation = Correlation(u.too_few_clusters ? c.naive : u.covariance);
+  u.correlation = Correlation(u.too_few_clusters ? spread.naive : u.covariance);
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
-  const std::vector<Shares> shares = SharesOf(c, MovedBySettling(c, point, free));
+  const std::vector<Shares> shares = SharesOf(c, MovedBySettling(c, unit, point, free));
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
-    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), c.naive(i, i),
-                                       u.clustered ? c.freedom[i] : c.naive_freedom, shares[i],
-                                       touched && !columns[i].at_bound));
+    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), spread.naive(i, i),
+                                       u.clustered ? spread.freedom[i] : spread.naive_freedom,
+                                       shares[i], touched && !columns[i].at_bound));
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
   std::vector<bool> at_bound;

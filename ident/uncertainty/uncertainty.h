@@ -10,7 +10,9 @@
 // into what each of the three says: a parameter's shares are the three parts of its diagonal entry.
 // What the priors pull a parameter by is -H^-1 g of their gradient g, to first order. A demand that
 // binds holds a fit on its edge, where its gradient says little: what it moved is the difference to
-// the optimum without it. All assume that the data weigh as much as they know (data_weight.h).
+// the optimum without it, and its information grows with its weight and says nothing of errors:
+// standard errors are those of the optimum without it. All assume that the data weigh as much as
+// they know (data_weight.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -31,8 +33,7 @@ class FitProblem;
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a
   // standard error, and the interval's half-width is below half the value (where the parameter may
-  // take
-  // either sign: or the sign is certain).
+  // take either sign: or the sign is certain).
   kIdentified,
   kWeak,            // neither this nor anything below
   kPriorHeld,       // the data's share is below 50 %
@@ -87,8 +88,12 @@ struct NullDirection {
 struct SettlingDemand {
   bool binds = false;         // the fit without it does not settle in time
   bool contradicted = false;  // by the data: dropped
+  bool unmet = false;         // no fit that meets it was found: dropped
   double rise = 0.0;          // of twice the negative log likelihood, by it
   double free_seconds = 0.0;  // in which people settle without it; infinite: they do not
+
+  bool holds() const { return binds && !contradicted && !unmet; }
+  bool dropped() const { return contradicted || unmet; }
 };
 
 struct Uncertainty {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "ident/parameters/parameter_table.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -25,8 +26,8 @@ std::vector<int> PeopleOf(const std::vector<PendulumRecording>& recordings) {
   std::map<std::string, int> known;
   std::vector<int> people;
   for (const PendulumRecording& r : recordings) {
-    people.push_back(known.emplace(r.subject_ids[r.pushed_person], static_cast<int>(known.size()))
-                         .first->second);
+    people.push_back(
+        known.emplace(PersonKey(r, r.pushed_person), static_cast<int>(known.size())).first->second);
   }
   return people;
 }
@@ -182,7 +183,9 @@ std::string WhyNoSizes(const FitProblem& problem, const ErrorParts& parts) {
                   [](const PendulumRecording& r) { return r.num_people() > 1; })) {
     return "several people share a recording";
   }
-  if (problem.map().num_deviations > 0) return "parameters that differ by unit hold the spread";
+  if (problem.map().num_deviations > 0 && !HoldsForRecording(problem.map().pool_by)) {
+    return "parameters are pooled by person, whose deviations hold how people differ";
+  }
   const int people = 1 + *std::max_element(parts.person.begin(), parts.person.end());
   if (people < 2) return "how people differ needs two of them, by subject_id";
   if (people == parts.num_recordings()) {
@@ -193,7 +196,7 @@ std::string WhyNoSizes(const FitProblem& problem, const ErrorParts& parts) {
 
 // By the clusters that the rows name.
 Covariance ByClusters(const JacobianBlocks& score, const Eigen::VectorXd& unit) {
-  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0});
+  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false});
 }
 
 }  // namespace
@@ -221,7 +224,11 @@ ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate) {
 }
 
 StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const ErrorParts& parts,
-                      const std::vector<int>& known) {
+                      std::vector<int> known) {
+  // What settings or conditions differ by no further person and no sensor makes smaller.
+  known.erase(std::remove_if(known.begin(), known.end(),
+                             [&problem](int i) { return problem.map().fitted[i].deviation >= 0; }),
+              known.end());
   StudyPlan plan;
   std::vector<double> slope;
   for (int i : known) {

@@ -81,7 +81,7 @@ struct StudyPlan {
 
 // The errors of the shared parameters `known` (indices), in natural units.
 StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const ErrorParts& parts,
-                      const std::vector<int>& known);
+                      std::vector<int> known);
 
 // The standard error that `people` with `pushes` each would leave of a plan's parameter.
 double ExpectedError(const StudyPlan& plan, size_t parameter, double people, double pushes);

@@ -80,7 +80,7 @@ def intervals():
         rows.append([f"`{name}`", p["unit"], with_error(p["value"], p["standard_error"]),
                      number(p["standard_error_naive"], 2), interval(p["interval_95"]),
                      interval(profiles[name]["interval_95"]), interval(resampled[name]["interval_95"]),
-                     profiles[name]["class_by_data_alone"].replace("_", " ")])
+                     (profiles[name]["class_by_data_alone"] or "-").replace("_", " ")])
     return studies.table(["parameter", "unit", "estimate, clustered error", "naive error", "clustered 95 %",
                           "profile 95 %", "bootstrap 95 %, 199 replicas", "by the data alone"], rows)
 

@@ -2,6 +2,7 @@
 #include "ident/report/page/build_report.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "ident/parameters/option_names.h"
 #include "ident/problem/fit_problem.h"
@@ -26,7 +27,9 @@ ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingVi
     recordings.push_back(view.run.recording);
   }
   const FitProblem problem(recordings, result.options);
-  const FitPoint& estimate = result.starts[result.best_start].to;
+  const std::optional<FitPoint> point = problem.PointAt(result.starts[result.best_start].to.Flat());
+  if (!point) return none;
+  const FitPoint& estimate = *point;
   return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
                            DefaultCandidates(recordings));
 }
@@ -40,8 +43,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
                  model.provenance.setting + "), preset " + result.options.preset;
   report.subtitle =
-      "identified friction, gains and push tails, how sure they are, and what they "
-      "predict; pushid " +
+      "friction, gains and push tails, how sure they are, and what they predict; pushid " +
       model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);

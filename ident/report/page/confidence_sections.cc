@@ -110,7 +110,10 @@ ReportSection IdentifiabilitySection(const FittedModel& model) {
     section.paragraphs.push_back("Unidentifiable: " + n.sentence);
   }
   if (result.uncertainty.null_directions.empty()) {
-    section.paragraphs.push_back("No direction in the space of parameters is left undetermined.");
+    section.paragraphs.push_back("Data, priors and demands together leave no direction open.");
+  }
+  for (const std::string& held : result.uncertainty.held_directions) {
+    section.paragraphs.push_back("Put in: " + held);
   }
   for (const std::string& note : d.start.notes) section.paragraphs.push_back("Start: " + note);
   const std::string correlations = CorrelationText(result);

@@ -200,6 +200,7 @@ std::string MedianText(const std::vector<RecordingView>& views) {
   double sum = 0.0, most = 0.0;
   int count = 0;
   for (const RecordingView& view : views) {
+    if (!view.run.prediction.status.ok) continue;
     const auto median = MedianHip(view.bands);
     for (size_t n = 0; n < median.size(); ++n) {
       for (size_t t = 1; t < median[n].size(); ++t, ++count) {
@@ -268,9 +269,16 @@ void AddPushes(const ExperimentDesign& design, ReportSection* section) {
 
 // What a force sensor and more people would tell.
 void AddStudies(const StudyPlan& plan, ReportSection* section) {
-  section->tables.push_back(
-      {"a force sensor: the same study with the whole push known", SensorTable(plan, "all")});
-  if (plan.sizes.empty()) return;
+  if (plan.no_sensor.empty()) {
+    section->tables.push_back(
+        {"a force sensor: the same study with the whole push known", SensorTable(plan, "all")});
+  } else {
+    section->paragraphs.push_back("No force sensor is proposed: " + plan.no_sensor + ".");
+  }
+  if (plan.sizes.empty()) {
+    section->paragraphs.push_back("More people, more pushes: " + plan.no_sizes + ".");
+    return;
+  }
   section->paragraphs.push_back(StudySizesNote(plan));
   section->tables.push_back(
       {"standard errors that more people and more pushes of each would leave (the first row: as "

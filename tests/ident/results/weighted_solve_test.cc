@@ -67,8 +67,43 @@ TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
   study.joint_noise_m = 0.03;
   const FitResult result = FitOf(study);
   ASSERT_TRUE(result.ok());
-  EXPECT_FALSE(result.uncertainty.settling.contradicted);
+  EXPECT_TRUE(result.uncertainty.settling.holds());
+  EXPECT_GE(result.uncertainty.settling.rise, 0.0);
   EXPECT_TRUE(result.behaviour.settles);
+  const Estimate* mu = FindEstimate(result.uncertainty.estimates, "mu");
+  ASSERT_NE(mu, nullptr);
+  EXPECT_GT(std::abs(mu->shares.settling_pull), 0.0);
+  // How hard the demand is pressed is no knowledge of mu.
+  FitOptions pressed = MakePreset("tail").value();
+  pressed.settling_weight = 90.0;
+  const auto recordings = MakePendulums(study);
+  ASSERT_FALSE(PrepareFit(recordings, &pressed));
+  const FitResult harder = Fit(recordings, pressed);
+  ASSERT_TRUE(harder.uncertainty.settling.holds());
+  const double error = FindEstimate(harder.uncertainty.estimates, "mu")->standard_error;
+  EXPECT_NEAR(error / mu->standard_error, 1.0, 0.05);
+}
+
+// Feet that drive the person: whoever is fitted to them falls. The demand is met, or it is dropped
+// and the result says so; and nobody knows mu to a hundredth.
+TEST(WeightedSolve, ADemandThatCannotBeMetIsNotCalledHeld) {
+  for (double mu : {-100.0, -50.0}) {
+    SyntheticOptions study = Truth(mu, 800.0, -2.0);
+    study.subjects = 3;
+    study.recordings_per_subject = 2;
+    study.frames = 25;
+    study.joint_noise_m = 0.02;
+    const FitResult result = FitOf(study);
+    ASSERT_TRUE(result.ok());
+    const SettlingDemand& settling = result.uncertainty.settling;
+    EXPECT_TRUE(settling.binds) << mu;
+    if (settling.holds()) {
+      EXPECT_TRUE(result.behaviour.settles) << mu;
+    } else {
+      EXPECT_EQ(result.options.settling_weight, 0.0) << mu;
+    }
+    EXPECT_GT(FindEstimate(result.uncertainty.estimates, "mu")->standard_error, 1.0) << mu;
+  }
 }
 
 // Weights change what a cost counts: starts compare by those of the best alone.

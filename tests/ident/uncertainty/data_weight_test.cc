@@ -115,6 +115,9 @@ TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
   ASSERT_NE(stiffness, nullptr);
   EXPECT_LT(stiffness->shares.data, 0.5);
   EXPECT_EQ(stiffness->status, EstimateStatus::kPriorHeld);
+  // What its prior holds is no better known than the prior says.
+  const Prior& prior = *options.table[kKpTheta].prior;
+  EXPECT_GT(stiffness->standard_error / stiffness->value, 0.3 * prior.sigma / prior.mean);
   EXPECT_FALSE(u.held_directions.empty());
   for (const Estimate& e : u.estimates) {
     EXPECT_GE(e.shares.data, -1e-9) << e.name;
