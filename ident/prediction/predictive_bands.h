@@ -69,11 +69,12 @@ PredictiveBands ComputeBands(const FitResult& result,
                              const std::vector<ErrorPath>& errors,
                              const PendulumRecording& recording, uint64_t seed);
 
-// Share of frames and people whose measured hip lies within a band, by axis x and y; means over
-// recordings with standard errors over them.
+// Share of frames whose measured hip lies within a band, of the pushed person, by axis x and y;
+// means over recordings with standard errors over their clusters (score_clusters.h).
 struct BandCoverage {
   bool model_error = false;
   int recordings = 0;
+  std::string clusters;  // "4 people"
   double inside50[2] = {0.0, 0.0}, inside50_error[2] = {0.0, 0.0};
   double inside90[2] = {0.0, 0.0}, inside90_error[2] = {0.0, 0.0};
   double width90[2] = {0.0, 0.0};  // mean, m

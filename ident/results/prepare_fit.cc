@@ -65,7 +65,10 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
   if (units.size() > 1) return;
   for (ParameterSpec& spec : options->table.specs) spec.pooled = false;
   const Result<FitOptions> preset = StartPreset(options->preset);
-  if (!preset.ok() || preset.value().pool == options->pool) return;
+  if (!preset.ok()) return;
+  const bool asked =
+      preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
+  if (!asked) return;
   warnings->push_back("--pool=" + options->pool + " does nothing: all recordings share one " +
                       NameOf(options->pool_by) + ", '" + *units.begin() + "'");
 }

@@ -83,9 +83,10 @@ std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoin
   }
   std::vector<std::string> sentences;
   if (kept.empty()) return sentences;
-  const Eigen::MatrixXd data = Marginal(covariance.by_data + covariance.by_pooling, kept, rest);
-  const Eigen::MatrixXd put_in = (covariance.by_prior + covariance.by_settling)(kept, kept);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(data + put_in);
+  const Eigen::MatrixXd by_data = covariance.by_data + covariance.by_pooling;
+  const Eigen::MatrixXd data = Marginal(by_data, kept, rest);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
+      Marginal(by_data + covariance.by_prior + covariance.by_settling, kept, rest));
   if (!(all.eigenvalues().minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere
   const Eigen::MatrixXd root = all.operatorInverseSqrt();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(root * data * root);

@@ -6,8 +6,10 @@
 #include "ident/figures/text_table.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
 #include "ident/results/fit.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 namespace {
@@ -44,12 +46,16 @@ Held CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
   return held;
 }
 
-BandCoverage MeanCoverage(const std::vector<std::vector<Held>>& by_recording, bool model_error) {
+BandCoverage MeanCoverage(const std::vector<PendulumRecording>& recordings,
+                          const std::vector<std::vector<Held>>& by_recording, bool model_error) {
   BandCoverage coverage;
   coverage.model_error = model_error;
   std::vector<double> inside50[2], inside90[2], width[2], median, rollout;
-  for (const std::vector<Held>& repeats : by_recording) {
+  std::vector<std::string> pushed;
+  for (size_t i = 0; i < by_recording.size(); ++i) {
+    const std::vector<Held>& repeats = by_recording[i];
     if (repeats.empty()) continue;
+    pushed.push_back(PersonKey(recordings[i], recordings[i].pushed_person));
     ++coverage.recordings;
     const double share = 1.0 / static_cast<double>(repeats.size());
     median.push_back(0.0);
@@ -70,15 +76,26 @@ BandCoverage MeanCoverage(const std::vector<std::vector<Held>>& by_recording, bo
       width[axis].push_back(c);
     }
   }
+  const ScoreClusters clusters = ClustersOf(pushed);
+  coverage.clusters = ClustersText(clusters.by, clusters.count);
+  const auto mean_of = [&clusters](const std::vector<double>& values) {
+    MeanAndError m = MeanOf(values);
+    std::vector<double> deviations;
+    for (double value : values) {
+      deviations.push_back((value - m.mean) / static_cast<double>(values.size()));
+    }
+    m.error = clusters.ErrorOfMean(deviations);
+    return m;
+  };
   for (int axis : {0, 1}) {
-    const MeanAndError a = MeanOf(inside50[axis]), b = MeanOf(inside90[axis]);
+    const MeanAndError a = mean_of(inside50[axis]), b = mean_of(inside90[axis]);
     coverage.inside50[axis] = a.mean;
     coverage.inside50_error[axis] = a.error;
     coverage.inside90[axis] = b.mean;
     coverage.inside90_error[axis] = b.error;
     coverage.width90[axis] = MeanOf(width[axis]).mean;
   }
-  const MeanAndError of_median = MeanOf(median), of_rollout = MeanOf(rollout);
+  const MeanAndError of_median = mean_of(median), of_rollout = mean_of(rollout);
   coverage.median_ade = of_median.mean;
   coverage.median_ade_error = of_median.error;
   coverage.rollout_ade = of_rollout.mean;
@@ -130,7 +147,7 @@ std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording
         if ((*held)[f][k].ok) by_recording[folds[f].held_out[k]].push_back((*held)[f][k]);
       }
     }
-    coverage.push_back(MeanCoverage(by_recording, held == &with));
+    coverage.push_back(MeanCoverage(recordings, by_recording, held == &with));
   }
   return coverage;
 }
@@ -148,9 +165,11 @@ std::string BandCoverageText(const std::vector<BandCoverage>& coverage) {
                  percent(c.inside90[axis], c.inside90_error[axis]), Rounded(c.width90[axis], 3)});
     }
   }
-  std::string text = table.ToString() + "share of held-out frames of " +
-                     std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
-                     " recordings whose measured hip lies in the predictive bands\n";
+  std::string text =
+      table.ToString() + "share of held-out frames of " +
+      std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
+      " recordings whose measured hip lies in the predictive bands; standard errors over " +
+      (coverage.empty() ? "" : coverage[0].clusters) + "\n";
   for (const BandCoverage& c : coverage) {
     if (!c.model_error) continue;
     text += kHipMetrics[0].name + std::string(" of their median ") + Rounded(c.median_ade, 3) +

@@ -133,5 +133,52 @@ TEST(FrameResidual, WeightOfTheFrame) {
   }
 }
 
+// The corrected rows' J'J is the Hessian of the robust cost, where the residual itself is linear.
+TEST(RobustLoss, CorrectedRowsHaveItsHessian) {
+  constexpr double kRobust = 1.3, kWeight = 0.7;
+  using Jet = ceres::Jet<double, 2>;
+  Random random(5);
+  for (double size : {0.1, 1.0, 8.0}) {
+    SCOPED_TRACE(size);
+    FrameVector<double> offset;
+    Eigen::Matrix<double, kFrameResiduals, 2> slope;
+    for (int row = 0; row < kFrameResiduals; ++row) {
+      offset[row] = size * random.Uniform(-1.0, 1.0);
+      for (int k = 0; k < 2; ++k) slope(row, k) = random.Uniform(-1.0, 1.0);
+    }
+    const auto residual_at = [&](const Eigen::Vector2d& at) {
+      FrameVector<Jet> r;
+      for (int row = 0; row < kFrameResiduals; ++row) {
+        r[row] = Jet(offset[row]) + slope(row, 0) * Jet(at[0], 0) + slope(row, 1) * Jet(at[1], 1);
+      }
+      const FrameVector<Jet> weighted =
+          Jet(kWeight) * RobustWeight<Jet>(r.squaredNorm(), kRobust) * r;
+      return weighted;
+    };
+    const auto gradient_at = [&](const Eigen::Vector2d& at) {
+      Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
+      const FrameVector<Jet> r = residual_at(at);
+      for (int row = 0; row < kFrameResiduals; ++row) gradient += r[row].a * r[row].v;
+      return gradient;
+    };
+    Eigen::Matrix2d expected;
+    constexpr double kStep = 1e-5;
+    for (int k = 0; k < 2; ++k) {
+      const Eigen::Vector2d step = kStep * Eigen::Vector2d::Unit(k);
+      expected.col(k) = (gradient_at(step) - gradient_at(-step)) / (2.0 * kStep);
+    }
+    const FrameVector<Jet> here = residual_at(Eigen::Vector2d::Zero());
+    FrameVector<double> value;
+    Eigen::Matrix<double, kFrameResiduals, 2> jacobian;
+    for (int row = 0; row < kFrameResiduals; ++row) {
+      value[row] = here[row].a;
+      jacobian.row(row) = here[row].v.transpose();
+    }
+    CorrectForRobustLoss(value, kWeight, kRobust, jacobian);
+    const Eigen::Matrix2d found = jacobian.transpose() * jacobian;
+    EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm());
+  }
+}
+
 }  // namespace
 }  // namespace pushid

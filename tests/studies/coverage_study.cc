@@ -25,7 +25,6 @@ DEFINE_int32(refined, 200, "data sets, the first ones, with profile and bootstra
 DEFINE_int32(replicas, 199, "of the bootstrap");
 DEFINE_double(spread, 0.1, "of the gains between recordings, on a log scale");
 DEFINE_double(noise, 0.001, "of hip and ankles, m");
-DEFINE_bool(defaults, false, "with the preset's priors and settling, to see what bias they add");
 DEFINE_uint64(seed, 1, "of the first data set; the others follow");
 DEFINE_int32(num_threads, 2, "threads");
 
@@ -53,7 +52,7 @@ SyntheticOptions Study(int dataset) {
 void Judge(int dataset, std::mutex* mutex, std::vector<Tally>* tallies) {
   const SyntheticOptions study = Study(dataset);
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  FitOptions options = FLAGS_defaults ? DefaultFit(study) : UnbiasedFit(study);
+  FitOptions options = UnbiasedFit(study);
   options.sigmas = ResidualSigmas();  // the robust loss as a user has it
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);

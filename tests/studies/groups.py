@@ -19,9 +19,9 @@ CANDIDATES = [
     ("the interaction of LDP, fitted", "--interaction=ldp --pool=none"),
     ("contact alone", "--self_force=none --pool=none"),
     ("nothing pooled", "--pool=none"),
-    ("nothing pooled, settling weight 30", "--pool=none --settling_weight=30"),
     ("nothing pooled, free to move on", "--pool=none --settling_weight=0 --mode_weight=0"),
     ("distance and stiffness pooled", "--pool=contact_distance,contact_stiffness"),
+    ("mu by setting as well", "--pool=all"),
     ("with drive", "--interaction=contact,drive"),
 ]
 PRESET = "--preset=group"

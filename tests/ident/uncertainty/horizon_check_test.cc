@@ -9,6 +9,7 @@
 #include "ident/report/refits_text.h"
 #include "ident/results/confidence.h"
 #include "ident/results/fit.h"
+#include "ident/uncertainty/prior_check.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -41,6 +42,30 @@ TEST(Drifts, AreJudgedByTheLargerError) {
   EXPECT_TRUE(Contains(DriftText(table), "mu drifts: 16 +- 2 in the first 8 frames, 10 +- 1"));
   EXPECT_FALSE(Contains(DriftText(table), "a_x"));
   EXPECT_TRUE(Contains(HorizonTable(table).ToString(), "-"));
+}
+
+// An interval that other priors leave is not the data's.
+TEST(PriorCheck, SaysWhoseIntervalOtherPriorsLeave) {
+  Uncertainty uncertainty;
+  uncertainty.estimates.resize(2);
+  uncertainty.estimates[0].lower95 = 8.0;
+  uncertainty.estimates[0].upper95 = 12.0;
+  uncertainty.estimates[1].lower95 = -11.0;
+  uncertainty.estimates[1].upper95 = -7.0;
+  RefitTable table;
+  table.parameters = {"mu", "a_x"};
+  table.units = {"N s/m", "m/s^2/rad"};
+  table.value = {10.0, -9.0};
+  table.standard_error = {1.0, 1.0};
+  table.rows = {{"priors", "halved", {9.5, -8.0}, {}, "", 0},
+                {"priors", "doubled", {13.0, -9.5}, {}, "", 0}};
+  EXPECT_FALSE(PriorsLeaveInside(table, 0, uncertainty));
+  EXPECT_TRUE(PriorsLeaveInside(table, 1, uncertainty));
+  EXPECT_TRUE(Contains(PriorCheckText(table), "more than twice its error moves mu: priors decide"));
+  table.rows[1].value.clear();
+  table.rows[1].failure = "did not converge";
+  EXPECT_FALSE(PriorsLeaveInside(table, 1, uncertainty)) << "a refit that failed says nothing";
+  EXPECT_TRUE(Contains(PriorCheckText(table), "priors doubled: did not converge"));
 }
 
 // The model that made the motion: horizons beyond the push find the same parameters.
