@@ -88,8 +88,11 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   start.kind = "warm";
   start.from = start.to = from;
   FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
-  const SolveStage stage =
-      SolveBuilt(&built, SolverOptions(problem.options(), *built.problem), 0, &start.message);
+  ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
+  if (!from.weights.empty() && !hold_network) {
+    solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
+  }
+  const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message);
   start.failed = std::move(built.shortened);
   start.stages.push_back(stage);
   start.iterations = stage.iterations;
