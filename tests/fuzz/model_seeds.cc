@@ -3,6 +3,7 @@
 #include "tests/fuzz/model_seeds.h"
 
 #include <limits>
+#include <optional>
 
 #include "datasets/files/json_file.h"
 #include "ident/parameters/network_json.h"
@@ -56,6 +57,7 @@ void AddConfidence(FittedModel* model) {
                       "N s/m",
                       20.0,
                       ProfileClass::kPracticallyNot,
+                      std::nullopt,
                       -kInfinity,
                       30.0,
                       1.0,
