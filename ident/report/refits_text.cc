@@ -44,6 +44,45 @@ TextTable SideBySide(const RefitTable& check, const std::string& refits, const s
   return table;
 }
 
+std::string FailuresText(const RefitTable& check) {
+  std::string text;
+  for (const RefitRow& row : check.rows) {
+    if (!row.failure.empty()) text += row.source + " " + row.name + ": " + row.failure + "\n";
+  }
+  return text;
+}
+
+// Pushes made anew with the fit's own window should leave it where it is.
+std::string SameWindowText(const RefitTable& check) {
+  for (const RefitRow& row : check.rows) {
+    if (row.name != kSameWindow || row.value.empty()) continue;
+    for (size_t i = 0; i < check.parameters.size(); ++i) {
+      const double errors = std::abs(row.value[i] - check.value[i]) / check.standard_error[i];
+      if (!(errors > kFarMove)) continue;
+      return "even the same window moves " + check.parameters[i] + " by " + Rounded(errors, 2) +
+             " of its errors: inverse dynamics cannot make these pushes again, so the total errors "
+             "do not hold for them\n";
+    }
+  }
+  return "";
+}
+
+// Which parameters other priors move by more than twice their error.
+std::string PriorVerdict(const RefitTable& check) {
+  std::string moved;
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    double most = 0.0;
+    for (const RefitRow& row : check.rows) {
+      if (!row.value.empty()) most = std::max(most, std::abs(row.value[i] - check.value[i]));
+    }
+    if (!(most > kFarMove * check.standard_error[i])) continue;
+    moved += (moved.empty() ? "" : ", ") + check.parameters[i];
+  }
+  return moved.empty()
+             ? "no parameter moves by more than twice its error\n"
+             : "priors decide on what moves by more than twice its error: " + moved + "\n";
+}
+
 }  // namespace
 
 TextTable PushErrorTable(const RefitTable& check) {
@@ -100,48 +139,10 @@ std::string DriftText(const RefitTable& check) {
   return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
 }
 
-std::string FailuresText(const RefitTable& check) {
-  std::string text;
-  for (const RefitRow& row : check.rows) {
-    if (!row.failure.empty()) text += row.source + " " + row.name + ": " + row.failure + "\n";
-  }
-  return text;
-}
-
-// Pushes made anew with the fit's own window should leave it where it is.
-std::string SameWindowText(const RefitTable& check) {
-  for (const RefitRow& row : check.rows) {
-    if (row.name != kSameWindow || row.value.empty()) continue;
-    for (size_t i = 0; i < check.parameters.size(); ++i) {
-      const double errors = std::abs(row.value[i] - check.value[i]) / check.standard_error[i];
-      if (!(errors > kFarMove)) continue;
-      return "even the same window moves " + check.parameters[i] + " by " + Rounded(errors, 2) +
-             " of its errors: inverse dynamics cannot make these pushes again, and the total "
-             "errors say what they would be, had it made them\n";
-    }
-  }
-  return "";
-}
-
 std::string PushCheckText(const RefitTable& check) {
   return PushErrorTable(check).ToString() +
          "total error: the pushes are not known exactly either; each refit moves\n" +
          MovesTable(check).ToString() + SameWindowText(check) + FailuresText(check);
-}
-
-// Which parameters other priors move by more than twice their error.
-std::string PriorVerdict(const RefitTable& check) {
-  std::string moved;
-  for (size_t i = 0; i < check.parameters.size(); ++i) {
-    double most = 0.0;
-    for (const RefitRow& row : check.rows) {
-      if (!row.value.empty()) most = std::max(most, std::abs(row.value[i] - check.value[i]));
-    }
-    if (!(most > kFarMove * check.standard_error[i])) continue;
-    moved += (moved.empty() ? "" : ", ") + check.parameters[i];
-  }
-  return moved.empty() ? "no parameter moves by more than twice its error\n"
-                       : "more than twice its error moves " + moved + ": priors decide\n";
 }
 
 std::string PriorCheckText(const RefitTable& check) {

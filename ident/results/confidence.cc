@@ -7,7 +7,6 @@
 #include "ident/uncertainty/prior_check.h"
 
 namespace pushid {
-
 namespace {
 
 // The fit without what was put in beside its recordings, by the same weights.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
@@ -77,8 +78,7 @@ std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitPro
       const double error = std::sqrt(std::max(0.0, variance));
       Estimate e;
       e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
-      e.standard_error_naive =
-          std::hypot(u.estimates[i].standard_error_naive, u.estimates[b].standard_error_naive);
+      e.standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
       // No better known than the shared value and its own deviation.
       const Estimate& worse =
           u.estimates[i].shares.data < u.estimates[b].shares.data ? u.estimates[i] : u.estimates[b];

@@ -182,6 +182,8 @@ WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
     Demand(recordings, weight, options, &solved);
     again = SolveOthers(recordings, *options, &solution);
   }
+  if (again) solved.free.reset();  // that of another start
+  if (solution.best < 0) options->settling_weight = weight;
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solved;

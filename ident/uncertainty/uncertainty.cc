@@ -229,6 +229,12 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   return e;
 }
 
+Covariance CovarianceWithoutDemand(const FitProblem& problem, const FitPoint& free) {
+  FitOptions options = problem.options();
+  options.settling_weight = 0.0;
+  return CovarianceAt(FitProblem(problem.recordings(), options, problem.counts()), free);
+}
+
 }  // namespace
 
 ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point) {
@@ -275,16 +281,6 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
       Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
   return v.covariance.trace() / (base.transpose() * data * base).trace();
 }
-
-namespace {
-
-Covariance CovarianceWithoutDemand(const FitProblem& problem, const FitPoint& free) {
-  FitOptions options = problem.options();
-  options.settling_weight = 0.0;
-  return CovarianceAt(FitProblem(problem.recordings(), options, problem.counts()), free);
-}
-
-}  // namespace
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free) {

@@ -17,6 +17,15 @@ SyntheticOptions Truth(double mu, double stiffness, double a_x) {
   return study;
 }
 
+// So few and noisy frames that they contradict little.
+SyntheticOptions Scarce(SyntheticOptions study, int pushes, int frames, double noise) {
+  study.subjects = 3;
+  study.recordings_per_subject = pushes;
+  study.frames = frames;
+  study.joint_noise_m = noise;
+  return study;
+}
+
 FitResult FitOf(const SyntheticOptions& study) {
   const auto recordings = MakePendulums(study);
   FitOptions options = MakePreset("tail").value();
@@ -60,11 +69,7 @@ TEST(WeightedSolve, WhoSettlesIsNotMoved) {
 
 // Of three recordings, noisy and short, nothing contradicts the demand: it holds.
 TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
-  SyntheticOptions study = Truth(25.0, 1800.0, -9.0);
-  study.subjects = 3;
-  study.recordings_per_subject = 1;
-  study.frames = 20;
-  study.joint_noise_m = 0.03;
+  const SyntheticOptions study = Scarce(Truth(25.0, 1800.0, -9.0), 1, 20, 0.03);
   const FitResult result = FitOf(study);
   ASSERT_TRUE(result.ok());
   EXPECT_TRUE(result.uncertainty.settling.holds());
@@ -88,11 +93,7 @@ TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
 // and the result says so; and nobody knows mu to a hundredth.
 TEST(WeightedSolve, ADemandThatCannotBeMetIsNotCalledHeld) {
   for (double mu : {-100.0, -50.0}) {
-    SyntheticOptions study = Truth(mu, 800.0, -2.0);
-    study.subjects = 3;
-    study.recordings_per_subject = 2;
-    study.frames = 25;
-    study.joint_noise_m = 0.02;
+    const SyntheticOptions study = Scarce(Truth(mu, 800.0, -2.0), 2, 25, 0.02);
     const FitResult result = FitOf(study);
     ASSERT_TRUE(result.ok());
     const SettlingDemand& settling = result.uncertainty.settling;

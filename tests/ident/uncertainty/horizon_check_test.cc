@@ -61,7 +61,8 @@ TEST(PriorCheck, SaysWhoseIntervalOtherPriorsLeave) {
                 {"priors", "doubled", {13.0, -9.5}, {}, "", 0}};
   EXPECT_FALSE(PriorsLeaveInside(table, 0, uncertainty));
   EXPECT_TRUE(PriorsLeaveInside(table, 1, uncertainty));
-  EXPECT_TRUE(Contains(PriorCheckText(table), "more than twice its error moves mu: priors decide"));
+  EXPECT_TRUE(Contains(PriorCheckText(table),
+                       "priors decide on what moves by more than twice its error: mu\n"));
   table.rows[1].value.clear();
   table.rows[1].failure = "did not converge";
   EXPECT_FALSE(PriorsLeaveInside(table, 1, uncertainty)) << "a refit that failed says nothing";
