@@ -27,8 +27,8 @@ void Crowd::AdvanceSome(int first, int last) {
   std::vector<int> scratch;
   for (int n = first; n < last; ++n) {
     forces_.Prepare(n, &scratch);
-    const Vector4<double> force = forces_.On(n, frame_, before_[n].qd).Total();
-    next_[n] = forces_.Next(n, forces_.AccelerationOf(n, force), before_[n].qd);
+    const NetForce<double> force = forces_.On(n, frame_, before_[n].qd);
+    next_[n] = forces_.Next(n, forces_.AccelerationOf(n, force), force, before_[n].qd);
   }
 }
 

@@ -44,7 +44,8 @@ template <typename T>
 struct PendulumState {
   Vector4<T> q = Vector4<T>::Zero();
   Vector4<T> qd = Vector4<T>::Zero();
-  T rod = T(0.0);  // l - l_0, m: how far a rod that moves has moved
+  T rod = T(0.0);   // l - l_0, m: how far a rod that moves has moved
+  T step = T(0.0);  // 0: stands, 1: steps; where feet hold and step (stance.h)
 };
 
 // The body once its rod has moved. The cart rises as the rod shortens, h = h_0 + k (l_0 - l) with
@@ -89,10 +90,12 @@ Vector4<T> Gravity(const BodyOf<L>& body, const Vector4<T>& q) {
 }
 
 // Inverse of the mass matrix by its Schur complement: the cart block is diagonal, so 2 x 2 remains.
-template <typename T, typename L>
-Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
+// cart: what stands on that diagonal, kg: the body's mass, and more where the ground holds the
+// feet.
+template <typename T, typename L, typename Cart>
+Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q, const Cart& cart) {
   const Matrix4<T> mass = MassMatrix(body, q);
-  const double w = 1.0 / body.mass;
+  const Cart w = 1.0 / cart;
   const T b02 = mass(0, 2), b12 = mass(1, 2), b13 = mass(1, 3);
   const T s22 = mass(2, 2) - w * (b02 * b02 + b12 * b12);
   const T s23 = -w * b12 * b13;
@@ -109,6 +112,11 @@ Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
   return inverse;
 }
 
+template <typename T, typename L>
+Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
+  return InverseMassMatrix(body, q, body.mass);
+}
+
 // qdd for a generalized force [N, N, N m, N m].
 template <typename T, typename L>
 Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
@@ -117,12 +125,23 @@ Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
   return InverseMassMatrix(body, state.q) * right;
 }
 
+// The same on ground that resists the cart's velocity after the step, qd + dt qdd, by `ground`
+// (N s/m): implicit, so that any resistance is stable.
+template <typename T, typename L>
+Vector4<T> AccelerationOnGround(const BodyOf<L>& body, const PendulumState<T>& state,
+                                const Vector4<T>& force, const T& ground, double dt) {
+  Vector4<T> right = force - Coriolis(body, state.q, state.qd) - Gravity(body, state.q);
+  for (int i = 0; i < 2; ++i) right[i] -= ground * state.qd[i];
+  return InverseMassMatrix(body, state.q, T(body.mass + dt * ground)) * right;
+}
+
 template <typename T>
 PendulumState<T> Step(const PendulumState<T>& state, const Vector4<T>& qdd, double dt) {
   PendulumState<T> next;
   next.qd = state.qd + dt * qdd;
   next.q = state.q + dt * next.qd;
   next.rod = state.rod;
+  next.step = state.step;
   return next;
 }
 

@@ -10,14 +10,15 @@
 // limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
 // rate zero and left out, and so are learned terms: of a rod that moves (rod_law.h) the length
 // alone has no part in the first order, upright. A user's own law (force_law.h) that couples the
-// planes does so in behaviour.h, not here.
+// planes does so in behaviour.h, not here. Where feet stand (stance.h) rest is standing: the ankles
+// balance, and the ground resists the cart.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 
 #include "models/dual.h"
-#include "models/self_force.h"
+#include "models/stance.h"
 
 namespace pushid {
 
@@ -26,10 +27,22 @@ template <typename T>
 struct RestJacobian {
   Eigen::Matrix<T, 4, 6> by_state;     // over [theta, phi, qd]
   Eigen::Matrix<T, 2, 1> by_previous;  // diagonal: cart rows by the cart's velocity a step before
+  T ground = T(0.0);  // N s/m, on the cart's velocity after a step, where feet stand
 };
 
+// The self force near rest: that of sliding feet, or of feet that stand.
 template <typename T>
-RestJacobian<T> LinearizeAtRest(const SelfForce& self, const ParameterSet<T>& p) {
+Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p,
+                         const PendulumState<T>& state, const Vector4<T>& previous) {
+  if (stance == Stance::kSlide) return self.Total(p, state, previous);
+  Vector4<T> force = self.Own(p, state);
+  force.template tail<2>() +=
+      AnkleTorque(self, StanceParameters<T>([&p](Parameter id) { return p[id]; }), state);
+  return force;
+}
+
+template <typename T>
+RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p) {
   using RestDual = Dual<T, 8>;
   ParameterSet<RestDual> parameters;
   for (int i = 0; i < kNumParameters; ++i) parameters[i] = RestDual::Constant(p[i]);
@@ -40,13 +53,17 @@ RestJacobian<T> LinearizeAtRest(const SelfForce& self, const ParameterSet<T>& p)
     state.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
     previous[i] = RestDual::Input(T(0.0), 6 + i);
   }
-  const Vector4<RestDual> force =
-      self.Total(parameters, state, previous) - Gravity<RestDual>(self.body, state.q);
+  const Vector4<RestDual> force = ForceNearRest(stance, self, parameters, state, previous) -
+                                  Gravity<RestDual>(self.body, state.q);
   RestJacobian<T> jacobian;
   for (int row = 0; row < 4; ++row) {
     jacobian.by_state.row(row) = force[row].v.template head<6>().transpose();
   }
   for (int i = 0; i < 2; ++i) jacobian.by_previous[i] = force[i].v[6 + i];
+  if (stance == Stance::kThreshold) {
+    const StanceParameters<T> stands([&p](Parameter id) { return p[id]; });
+    jacobian.ground = GroundResistance(stands, self.body.mass, PendulumState<T>());
+  }
   return jacobian;
 }
 
@@ -76,13 +93,13 @@ ModePolynomial<T> FreeModes(const ModelOptions& options, const Body& body, const
   // derivatives, is nothing to rely on.
   ParameterSet<T> linear = p;
   linear[kCq] = linear[kDq] = T(0.0);
-  const RestJacobian<T> rest = LinearizeAtRest(self, linear);
+  const RestJacobian<T> rest = LinearizeAtRest(options.stance, self, linear);
   const Matrix4<double> mass = MassMatrix<double>(body, upright);
   const int cart = plane, angle = 2 + plane;                   // rows
   const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns
   const T k = kStep * rest.by_previous[plane];
   const T f_e = rest.by_state(cart, at_e), f_w = rest.by_state(cart, at_w);
-  const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane];
+  const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane] - rest.ground;
   const T t_e = rest.by_state(angle, at_e), t_v = rest.by_state(angle, at_v);
   const T t_w = rest.by_state(angle, at_w);
   const double m_xe = mass(cart, angle), m_ee = mass(angle, angle);

@@ -50,6 +50,16 @@ constexpr EnumNames<PushTail, 2> Names(PushTail) {
   return {{{"none", PushTail::kNone}, {"exponential", PushTail::kExponential}}};
 }
 
+// What the feet do.
+enum class Stance {
+  kSlide,     // the cart is free from the first newton on
+  kThreshold  // the feet hold until the capture point leaves their support; then they step
+              // (stance.h)
+};
+constexpr EnumNames<Stance, 2> Names(Stance) {
+  return {{{"slide", Stance::kSlide}, {"threshold", Stance::kThreshold}}};
+}
+
 // Kd_x and Kd_y multiply the cart's acceleration: an algebraic loop, hence off by default.
 enum class CartDerivative {
   kNone,
@@ -69,6 +79,7 @@ struct ModelOptions {
   FrictionKind friction = FrictionKind::kIsotropic;
   PushUse push = PushUse::kAdded;
   PushTail push_tail = PushTail::kExponential;
+  Stance stance = Stance::kSlide;
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
   std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term

@@ -80,11 +80,11 @@
     "cart force from the lean's rate, y", \
     "with many pushes to the side") \
   X(kTx, "t_x", "t_x", "m/s", 0, -50, 50, 2, kIdentity, \
-    true, false, \
+    m.stance == Stance::kSlide, false, \
     "torque from the cart's velocity, x", \
     "where the lean goes on while the cart runs") \
   X(kTy, "t_y", "t_y", "m/s", 0, -50, 50, 2, kIdentity, \
-    true, false, \
+    m.stance == Stance::kSlide, false, \
     "torque from the cart's velocity, y", \
     "with many pushes to the side") \
   X(kCq, "c_q", "c_q", "1/m", 0, -20, 20, 0.5, kIdentity, \
@@ -92,7 +92,7 @@
     "quadratic damping of the cart", \
     "with pushes of very different strength") \
   X(kDq, "d_q", "d_q", "1/rad", 0, -50, 50, 1, kIdentity, \
-    true, false, \
+    m.stance == Stance::kSlide, false, \
     "quadratic damping of the angles", \
     "with pushes of very different strength") \
   /* the push tail */ \
@@ -101,7 +101,7 @@
     "tail force over the push's mean force", \
     "where the pushes cover only their first part") \
   X(kTailTorque, "tail_torque", "r", "1", 0.3, -50, 50, 0.3, kIdentity, \
-    m.push_tail == PushTail::kExponential, false, \
+    m.push_tail == PushTail::kExponential && m.stance == Stance::kSlide, false, \
     "tail torque over the push's mean torque", \
     "where the pushes cover only their first part") \
   X(kTailTime, "tail_time", "t", "s", 0.2, 0.005, 5, 0.2, kLog, \
@@ -169,5 +169,34 @@
   X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
     RodMoves(m), RodMoves(m), \
     "rise of the cart over the rod's shortening", \
-    "with a learned rod, always")
+    "with a learned rod, always") \
+  /* feet that stand and step (stance.h) */ \
+  X(kSupportFront, "support_front", "b", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "how far in front of the ankles feet support", \
+    "with pushes forwards, some of which make people step and some not") \
+  X(kSupportBack, "support_back", "b_back", "m", 0.06, 0.01, 0.5, 0.06, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "how far behind the ankles feet support", \
+    "with pushes backwards, some of which make people step and some not") \
+  X(kSupportSide, "support_side", "b_side", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "how far to the side of the ankles' middle feet support", \
+    "with pushes to the side, some of which make people step and some not") \
+  X(kStepGain, "step_gain", "kappa", "1", 1, 0.05, 5, 1, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "speed of stepping feet over that of the capture point", \
+    "with recordings long enough to show where the feet end") \
+  X(kStepOnset, "step_onset", "t_on", "s", 0.13, 0.005, 2, 0.13, kLog, \
+    m.stance == Stance::kThreshold, m.stance == Stance::kThreshold, \
+    "how long feet take to let go", \
+    "where feet hold and step") \
+  X(kStepRelease, "step_release", "t_off", "s", 0.4, 0.01, 5, 0.4, kLog, \
+    m.stance == Stance::kThreshold, m.stance == Stance::kThreshold, \
+    "how long feet take to hold again", \
+    "where feet hold and step") \
+  X(kStaticFriction, "static_friction", "mu_s", "1", 1, 0.05, 10, 1, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "largest force of standing feet over the weight", \
+    "never without slippery ground")
 // clang-format on

@@ -20,7 +20,7 @@ double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double
 
 void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
                      Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
-  if (push.kind == PushKind::kExternal || push.force.empty() || frame < push.EndFrame()) return;
+  if (!TailActs(push, frame)) return;
   const double duration = static_cast<double>(push.force.size()) * dt;
   const double tau = TailDecayTime(p, duration);
   const double elapsed = (frame - push.EndFrame()) * dt;

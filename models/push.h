@@ -5,7 +5,8 @@
 // with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
 // t = tail_time, e = tail_exponent, d = n dt, at most 0.4 s: the published pushes are no longer,
 // and a tail that kept growing would send people away who are pushed weakly for long. An external
-// push has no tail.
+// push has no tail. Where feet stand (stance.h) the tail goes on as what it is, a horizontal force
+// [g Fx, g Fy] exp(-k dt / tau) at the hip: r is what sliding feet make of it.
 #pragma once
 
 #include <cmath>
@@ -56,15 +57,24 @@ T TailDecayTime(const ParameterSet<T>& p, double push_duration) {
   return p[kTailTime] * exp(p[kTailExponent] * LogTailDuration(push_duration));
 }
 
-// The tail's force at `frame`; zero before the push ends and for an external push.
+// Whether a push has a tail at `frame`: not before it ends, and not an external one.
+inline bool TailActs(const ScenePush& push, int frame) {
+  return push.kind != PushKind::kExternal && !push.force.empty() && frame >= push.EndFrame();
+}
+
+// What is left of a tail that acts.
+template <typename T>
+T TailDecay(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
+  using std::exp;
+  const T tau = TailDecayTime(p, static_cast<double>(push.force.size()) * dt);
+  return exp(-(frame - push.EndFrame()) * dt / tau);
+}
+
+// The tail's force at `frame`; zero where it does not act.
 template <typename T>
 Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
-  using std::exp;
-  if (push.kind == PushKind::kExternal || push.force.empty() || frame < push.EndFrame()) {
-    return Vector4<T>::Zero();
-  }
-  const T tau = TailDecayTime(p, static_cast<double>(push.force.size()) * dt);
-  const T decay = exp(-(frame - push.EndFrame()) * dt / tau);
+  if (!TailActs(push, frame)) return Vector4<T>::Zero();
+  const T decay = TailDecay(push, p, frame, dt);
   const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
   return {gain * push.mean[0], gain * push.mean[1], torque * push.mean[2], torque * push.mean[3]};
 }
@@ -86,6 +96,15 @@ Vector4<T> GeneralizedForce(const Body& body, const Vector4<T>& q, const Vector3
   const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
   return {f[0], f[1], al * (f[0] * c_th + f[1] * s_th * s_ph - f[2] * s_th * c_ph),
           al * (-f[1] * c_th * c_ph - f[2] * c_th * s_ph)};
+}
+
+// The tail's force where feet stand: at the hip.
+template <typename T>
+Vector4<T> TailForceAtHip(const ScenePush& push, const ParameterSet<T>& p, const Body& body,
+                          const Vector4<T>& q, int frame, double dt) {
+  if (!TailActs(push, frame)) return Vector4<T>::Zero();
+  const T gain = p[kTailGain] * TailDecay(push, p, frame, dt);
+  return GeneralizedForce<T>(body, q, {gain * push.mean[0], gain * push.mean[1], T(0.0)}, 1.0);
 }
 
 // A half-sine of `frames` rows along +x at the hip of an upright person, of the named impulse (N

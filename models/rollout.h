@@ -54,7 +54,7 @@ using ForceTrace = FrameTable<NetForce<double>>;
 template <typename T>
 std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) {
   const double rod = RealPart(state.rod), length = body.rod_length + rod;
-  double sum = rod;
+  double sum = rod + RealPart(state.step);
   for (int i = 0; i < 4; ++i) sum += RealPart(state.q[i]) + RealPart(state.qd[i]);
   if (!std::isfinite(sum)) return "state";
   if (std::abs(RealPart(state.q[2])) > kMaxAngle) return "theta";
@@ -89,10 +89,13 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
     for (int n = 0; n < people; ++n) {
       const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
       const NetForce<T> force = forces.On(n, t, qd_previous);
-      if (trace != nullptr) trace->At(t, n) = force;
+      const Vector4<T> qdd = forces.AccelerationOf(n, force);
+      if (trace != nullptr) {
+        trace->At(t, n) = force;
+        trace->At(t, n).AddGround(path->At(t, n).qd + scene.dt * qdd);
+      }
       if (last) continue;
-      const Vector4<T> qdd = forces.AccelerationOf(n, force.Total());
-      path->At(t + 1, n) = forces.Next(n, qdd, qd_previous);
+      path->At(t + 1, n) = forces.Next(n, qdd, force, qd_previous);
       const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
     }

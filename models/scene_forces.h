@@ -2,7 +2,8 @@
 //
 //   F_net = the sum of the parts of terms.h, where by push kind (push.h)
 //   and PushUse (options.h) a `net` push may replace all other forces, and a `net_without_friction`
-//   push all but the friction, while it lasts.
+//   push all but the friction, while it lasts. Where feet stand and step (stance.h), what a person
+//   does about being pushed depends on the step state as well.
 //
 // Templated, so that the same lines serve doubles and automatic differentiation.
 #pragma once
@@ -19,6 +20,7 @@
 #include "models/scene.h"
 #include "models/self_force.h"
 #include "models/self_network.h"
+#include "models/stance.h"
 
 namespace pushid {
 
@@ -34,6 +36,9 @@ Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
 template <typename T>
 struct NetForce {
   std::array<Vector4<T>, kNumForceParts> parts;
+  // Where feet stand and step: the ground's resistance (N s/m) to the cart's velocity after the
+  // step, a part of the friction once that is known (AddGround), and the next step state.
+  T ground = T(0.0), next_step = T(0.0);
 
   NetForce() { parts.fill(Vector4<T>::Zero()); }
   Vector4<T>& operator[](ForcePart part) { return parts[static_cast<int>(part)]; }
@@ -43,6 +48,10 @@ struct NetForce {
     Vector4<T> sum = parts[0];
     for (int i = 1; i < kNumForceParts; ++i) sum += parts[i];
     return sum;
+  }
+
+  void AddGround(const Vector4<T>& next_qd) {
+    for (int i = 0; i < 2; ++i) (*this)[ForcePart::kFriction][i] -= ground * next_qd[i];
   }
 };
 
@@ -63,6 +72,42 @@ struct Received {
   }
 };
 
+// What a person does about being pushed: friction, balance and the linear terms.
+template <typename T>
+void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
+                      const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                      NetForce<T>* force) {
+  if (active == ActiveForces::kPushOnly) return;
+  (*force)[ForcePart::kFriction] = self.Friction(p, state.qd);
+  if (active == ActiveForces::kPushAndFriction) return;
+  (*force)[ForcePart::kBalance] = self.Balance(p, state, qd_previous);
+  (*force)[ForcePart::kLinear] = self.Linear(p, state);
+}
+
+// The same of feet that stand and step.
+template <typename T>
+void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
+                     const PendulumState<T>& state, NetForce<T>* force) {
+  const Vector4<T> friction = self.Friction(p, state.qd),
+                   balance = self.Balance(p, state, state.qd), linear = self.Linear(p, state);
+  const Eigen::Matrix<T, 2, 1> cart_force = (friction + balance + linear).template head<2>();
+  const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
+  const StanceForces<T> of_stance = StanceAt(self, stance, state, cart_force);
+  force->next_step = of_stance.next_step;
+  if (active == ActiveForces::kPushOnly) return;
+  auto of_cart = [force](ForcePart part) { return (*force)[part].template head<2>(); };
+  if (active == ActiveForces::kPushAndFriction) {
+    for (int i = 0; i < 2; ++i)
+      (*force)[ForcePart::kFriction][i] = -kPublishedFriction * state.qd[i];
+    return;
+  }
+  force->ground = of_stance.ground;
+  of_cart(ForcePart::kFriction) = state.step * friction.template head<2>();
+  of_cart(ForcePart::kBalance) = state.step * balance.template head<2>();
+  of_cart(ForcePart::kLinear) = state.step * linear.template head<2>();
+  (*force)[ForcePart::kBalance].template tail<2>() = of_stance.torque;
+}
+
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
@@ -72,17 +117,22 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   NetForce<T> force;
   force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
-  if (active == ActiveForces::kPushOnly) return force;
-  force[ForcePart::kFriction] = self.Friction(p, state.qd);
-  if (active == ActiveForces::kPushAndFriction) return force;
+  const bool stands = options.stance == Stance::kThreshold;
+  if (stands) {
+    AddStanceForces(self, p, active, state, &force);
+  } else {
+    AddSlidingForces(self, p, active, state, qd_previous, &force);
+  }
+  if (active != ActiveForces::kAll) return force;
   // Only here: a push that is the whole force includes the tail of an earlier one.
   if (options.push_tail == PushTail::kExponential) {
     for (const ScenePush& push : scene.pushes) {
-      if (push.person == person) force[ForcePart::kTail] += TailForce(push, p, frame, scene.dt);
+      if (push.person != person) continue;
+      force[ForcePart::kTail] += stands
+                                     ? TailForceAtHip(push, p, self.body, state.q, frame, scene.dt)
+                                     : TailForce(push, p, frame, scene.dt);
     }
   }
-  force[ForcePart::kBalance] = self.Balance(p, state, qd_previous);
-  force[ForcePart::kLinear] = self.Linear(p, state);
   if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);
   for (int i = 0; i < kNumPairParts; ++i) {
     force.parts[static_cast<int>(kFirstPairPart) + i] = received.part[i];
@@ -163,15 +213,22 @@ class SceneForces {
                       networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force);
   }
 
-  Vector4<T> AccelerationOf(int person, const Vector4<T>& force) const {
+  Vector4<T> AccelerationOf(int person, const NetForce<T>& force) const {
     const Body& body = self_[person].body;
-    if (rods_.empty()) return Acceleration(body, states_[person], force);
-    return Acceleration(BodyNow(body, states_[person].rod, T(0.0)), states_[person], force);
+    const PendulumState<T>& state = states_[person];
+    if (options_->stance == Stance::kThreshold) {
+      return AccelerationOnGround(body, state, force.Total(), force.ground, scene_->dt);
+    }
+    if (rods_.empty()) return Acceleration(body, state, force.Total());
+    return Acceleration(BodyNow(body, state.rod, T(0.0)), state, force.Total());
   }
 
-  // One step on: the pendulum under qdd and, where the model has a law for it, the rod.
-  PendulumState<T> Next(int person, const Vector4<T>& qdd, const Vector4<T>& qd_previous) {
+  // One step on: the pendulum under qdd, the step state and, where the model has a law for it, the
+  // rod.
+  PendulumState<T> Next(int person, const Vector4<T>& qdd, const NetForce<T>& force,
+                        const Vector4<T>& qd_previous) {
     PendulumState<T> next = Step(states_[person], qdd, scene_->dt);
+    next.step = force.next_step;
     if (!rods_.empty()) next.rod += scene_->dt * RodVelocityOf(person, qd_previous);
     return next;
   }

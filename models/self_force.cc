@@ -104,11 +104,16 @@ void SelfForce::AddOwnJacobian(const ParameterSet<double>& p, const PendulumStat
   }
 }
 
-void SelfForce::TotalJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
-                              const Vector4<double>& qd_previous, Jacobian* jacobian) const {
+void SelfForce::MotionJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                               const Vector4<double>& qd_previous, Jacobian* jacobian) const {
   FrictionJacobian(p, state.qd, jacobian);
   AddBalanceJacobian(p, state, qd_previous, jacobian);
   AddLinearJacobian(p, state, jacobian);
+}
+
+void SelfForce::TotalJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                              const Vector4<double>& qd_previous, Jacobian* jacobian) const {
+  MotionJacobian(p, state, qd_previous, jacobian);
   AddOwnJacobian(p, state, jacobian);
 }
 

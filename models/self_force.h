@@ -141,14 +141,18 @@ struct SelfForce {
                         Jacobian* jacobian) const;
   void TotalJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
+  // Of friction, balance and the linear terms, without the laws that a user brings; and these,
+  // added.
+  void MotionJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
+  void AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                      Jacobian* jacobian) const;
 
  private:
   void AddBalanceJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                           const Vector4<double>& qd_previous, Jacobian* jacobian) const;
   void AddLinearJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                          Jacobian* jacobian) const;
-  void AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
-                      Jacobian* jacobian) const;
   double PointInertia() const { return body.point_mass() * body.rod_length * body.rod_length; }
   // |v| whose derivative exists at rest; 1e-3 (m/s or rad/s) is far below any motion that matters.
   static constexpr double kRestSpeedSquared = 1e-6;

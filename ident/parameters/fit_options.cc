@@ -3,6 +3,7 @@
 
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/self_network_io.h"
+#include "models/self_network.h"
 
 namespace pushid {
 namespace {
@@ -54,6 +55,18 @@ std::string NetworkViolation(const FitOptions& o) {
   return "";
 }
 
+// What feet that stand and step cannot do together with the rest; empty: nothing.
+std::string StanceViolation(const FitOptions& o) {
+  if (o.model.stance == Stance::kSlide) return "";
+  const char* sliding = RodMoves(o.model)          ? "--rod"
+                        : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
+                        : o.start != FitStart::kNominal ? "--start=equation_error"
+                        : o.model.cart_derivative != CartDerivative::kNone ? "--cart_derivative"
+                                                                           : nullptr;
+  if (sliding == nullptr) return "";
+  return std::string(sliding) + " is for feet that slide; leave it out, or --stance=threshold";
+}
+
 }  // namespace
 
 bool FitOptions::IsValid(std::string* error) const {
@@ -65,6 +78,7 @@ bool FitOptions::IsValid(std::string* error) const {
   }
   *error = MissingNetwork(*this);
   if (error->empty()) *error = NetworkViolation(*this);
+  if (error->empty()) *error = StanceViolation(*this);
   if (error->empty() && table.Free().empty()) {
     *error = "every parameter is fixed: nothing is left to fit";
   }

@@ -35,6 +35,20 @@ void SetLearned(const SelfNetwork& network, FitOptions* o) {
   o->model.self_network = any ? std::make_shared<const SelfNetwork>(network) : nullptr;
 }
 
+Row StanceRow() {
+  Row row = NameRow<Stance>(
+      "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
+      "what feet do: slide (the cart is free from the first newton on), or threshold (they hold "
+      "until the capture point leaves their support, then step)");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    Stance stance;
+    if (MaybeError error = ParseName("--stance", text, &stance)) return error;
+    SetStance(stance, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
 Row SelfForceRow() {
   Row row = Decided(WordsRow(
       "self_force", OptionStage::kModel,
@@ -118,6 +132,7 @@ std::vector<Row> ModelOptionRows() {
   using O = FitOptions;
   return {
       PresetRow(),
+      StanceRow(),
       SelfForceRow(),
       RodRow(),
       RodInputRow(),

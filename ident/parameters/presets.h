@@ -42,6 +42,11 @@ void FreeTerms(FitOptions* options);
 // people.
 MaybeError PoolParameters(FitOptions* options);
 
+// What the feet do, with what goes with it: where they hold and step, pushes act as their kind says
+// (a `net` push holds the feet's reaction), the balance gains are the ankles', and the fit starts
+// from the nominal values, for equation error knows no step state.
+void SetStance(Stance stance, FitOptions* options);
+
 // The self force together with the hinge on the free modes that goes with it: a linear self force
 // can feed a mode that the settling simulations do not excite.
 void SetSelfForce(SelfForceKind self_force, FitOptions* options);

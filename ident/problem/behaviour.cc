@@ -14,6 +14,8 @@
 namespace pushid {
 namespace {
 
+constexpr double kOnTheSpot = 0.01;  // m
+
 SettlingSimulation SimulateSettling(const ModelOptions& options,
                                     const ParameterSet<double>& parameters, double mass,
                                     double impulse, int people) {
@@ -117,8 +119,10 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Scene scene = SettlingScene(80.0, 0.0);
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
-  const RestJacobian<double> rest = LinearizeAtRest(self, parameters);
-  const Eigen::Matrix4d inverse = InverseMassMatrix<double>(body, Vector4<double>::Zero());
+  RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters);
+  const Eigen::Matrix4d inverse =
+      InverseMassMatrix<double>(body, Vector4<double>::Zero(), body.mass + scene.dt * rest.ground);
+  for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
   if (options.self_network != nullptr) {
     learned = LearnedStep(*options.self_network, self, parameters);
@@ -193,8 +197,10 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
       all.push_back(SimulateSettling(options, parameters, kSettlingMass, impulse, kLinePeople));
     }
     for (size_t i = first + 1; i < all.size(); ++i) {
+      // Of people who stay where they are, none moves farther.
+      const double least = options.stance == Stance::kThreshold ? -kOnTheSpot : 0.0;
       behaviour.harder_moves_farther =
-          behaviour.harder_moves_farther && all[i - 1].advance < all[i].advance;
+          behaviour.harder_moves_farther && all[i].advance - all[i - 1].advance > least;
     }
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);

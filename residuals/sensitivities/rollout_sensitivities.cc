@@ -8,6 +8,7 @@
 #include "residuals/kernels/narrow_product.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 #include "residuals/sensitivities/rod_sensitivities.h"
+#include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
 
@@ -185,6 +186,18 @@ std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelO
   return networks;
 }
 
+// d (step state) / d columns, one step on; by_state: d [q, qd] / d columns.
+template <typename Rows>
+void AdvanceStepState(const StanceJacobian& stance, const std::vector<ColumnEntry>& entries,
+                      const Rows& by_state, Eigen::Ref<const Eigen::RowVectorXd> now,
+                      Eigen::Ref<Eigen::RowVectorXd> next) {
+  next.noalias() = stance.next_by_state * by_state;
+  next += stance.next_by_step * now;
+  for (const ColumnEntry& entry : entries) {
+    next[entry.column] += entry.derivative * stance.next_by_parameter[entry.parameter];
+  }
+}
+
 }  // namespace
 
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
@@ -202,12 +215,14 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   }
   ReceivedSensitivities received(scene, options, inputs);
   *path = RolloutPath<double>(num_frames, people);
-  sensitivities->Resize(num_frames, people, inputs.num_columns, rod_moves);
+  const bool stands = options.stance == Stance::kThreshold;
+  sensitivities->Resize(num_frames, people, inputs.num_columns, rod_moves, stands);
   for (int n = 0; n < people; ++n) {
     path->At(0, n) = {scene.people[n].start.q, inputs.initial_velocity[n]};
     auto start = sensitivities->At(0, n);
     start.setZero();
     sensitivities->Rod(0, n).setZero();
+    sensitivities->StepState(0, n).setZero();
     if (inputs.velocity_column >= 0) {
       start.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
     }
@@ -215,6 +230,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
 
   Columns by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
+  StanceJacobian stance;
   std::vector<int> scratch;
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
@@ -227,12 +243,17 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       const ParameterSet<double>& p = inputs.parameters[n];
       const PendulumState<double>& state = path->At(t, n);
       const Vector4<double>& previous = path->At(before, n).qd;
-      const Vector4<double> a = forces.AccelerationOf(n, forces.On(n, t, previous).Total());
-      path->At(t + 1, n) = forces.Next(n, a, previous);
+      const NetForce<double> force = forces.On(n, t, previous);
+      const Vector4<double> a = forces.AccelerationOf(n, force);
+      path->At(t + 1, n) = forces.Next(n, a, force, previous);
       const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
 
-      NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
+      if (stands) {
+        NetForceJacobianOfStance(scene, options, self, p, n, t, state, a, &jacobian, &stance);
+      } else {
+        NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
+      }
       const Body now_body = BodyNow(body, state.rod, 0.0);
       const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, state, a);
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
@@ -247,6 +268,11 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         by_column.col(entry.column) +=
             entry.derivative * jacobian.by_parameter.col(entry.parameter);
       }
+      if (stands) {
+        AdvanceStepState(stance, inputs.entries[n], now, sensitivities->StepState(t, n),
+                         sensitivities->StepState(t + 1, n));
+        by_column.noalias() += stance.by_step * sensitivities->StepState(t, n);
+      }
       const auto rod_now = sensitivities->Rod(t, n);
       if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, a) * rod_now;
       if (!networks.empty()) networks[n].Advance(forces.network(n), now, rod_now);
@@ -256,7 +282,8 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       }
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>() = now.bottomRows<4>();
-      const Matrix4<double> inverse = scene.dt * InverseMassMatrix(now_body, state.q);
+      const Matrix4<double> inverse =
+          scene.dt * InverseMassMatrix(now_body, state.q, body.mass + scene.dt * force.ground);
       AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
       if (!rod_moves) continue;

@@ -7,7 +7,8 @@
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
 // columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too
 // (so is a network's memory: network_sensitivities.h, and a rod that moves: rod_sensitivities.h):
-//   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da.
+//   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da,
+// and the step state of feet that stand and step (stance_sensitivities.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -30,16 +31,21 @@ struct SensitivityInputs {
   int weight_column = -1;                   // of the first of them; negative when not fitted
 };
 
-// d [q, qd] / d columns at every frame and person; of the rod beside it, where it moves.
+// d [q, qd] / d columns at every frame and person; beside it of the rod, where it moves, and of the
+// step state, where feet stand and step.
 class RolloutSensitivities {
  public:
   using Block = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
-  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false) {
+  using Row = Eigen::Map<Eigen::RowVectorXd>;
+  using ConstRow = Eigen::Map<const Eigen::RowVectorXd>;
+  void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false,
+              bool feet_step = false) {
     num_people_ = num_people;
     num_columns_ = num_columns;
     const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
     storage_.resize(8 * all);
     rod_.resize(rod_moves ? all : 0);
+    step_.resize(feet_step ? all : 0);
   }
   Eigen::Map<Block> At(int frame, int person) {
     return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
@@ -48,23 +54,28 @@ class RolloutSensitivities {
     return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
   }
   // d l / d columns; empty where the rod is constant.
-  auto Rod(int frame, int person) {
-    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  Row Rod(int frame, int person) {
+    return {rod_.data() + RowOffset(rod_, frame, person), RowSize(rod_)};
   }
-  auto Rod(int frame, int person) const {
-    return rod_.segment(RodOffset(frame, person), rod_.size() > 0 ? num_columns_ : 0);
+  ConstRow Rod(int frame, int person) const {
+    return {rod_.data() + RowOffset(rod_, frame, person), RowSize(rod_)};
+  }
+  // d (step state) / d columns; empty where feet slide.
+  Row StepState(int frame, int person) {
+    return {step_.data() + RowOffset(step_, frame, person), RowSize(step_)};
   }
 
  private:
-  Eigen::Index RodOffset(int frame, int person) const {
-    return rod_.size() > 0 ? Offset(frame, person) : 0;
+  Eigen::Index RowOffset(const Eigen::RowVectorXd& rows, int frame, int person) const {
+    return rows.size() > 0 ? Offset(frame, person) : 0;
   }
+  int RowSize(const Eigen::RowVectorXd& rows) const { return rows.size() > 0 ? num_columns_ : 0; }
   Eigen::Index Offset(int frame, int person) const {
     return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
   }
   int num_people_ = 0, num_columns_ = 0;
   Eigen::VectorXd storage_;  // the blocks, one after the other
-  Eigen::RowVectorXd rod_;
+  Eigen::RowVectorXd rod_, step_;
 };
 
 // d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.

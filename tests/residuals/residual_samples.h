@@ -31,6 +31,8 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
   p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.25;
   p[kRodLift] = 0.8;
+  p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09;
+  p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
   return p;
 }
 
@@ -193,10 +195,13 @@ inline std::vector<ModelOptions> EveryModelOptions() {
       for (FrictionKind friction : {FrictionKind::kIsotropic, FrictionKind::kAnisotropic})
         for (PushUse use : {PushUse::kAsRecorded, PushUse::kAdded})
           for (PushTail tail : {PushTail::kNone, PushTail::kExponential})
-            for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward})
+            for (const auto& [stance, derivative] :
+                 {std::pair(Stance::kSlide, CartDerivative::kNone),
+                  std::pair(Stance::kSlide, CartDerivative::kBackward),
+                  std::pair(Stance::kThreshold, CartDerivative::kNone)})
               for (const InteractionTerms& interaction : SomeInteractions())
-                all.push_back({posture, scaling, friction, use, tail, derivative, interaction,
-                               nullptr, nullptr});
+                all.push_back({posture, scaling, friction, use, tail, stance, derivative,
+                               interaction, nullptr, nullptr});
   return all;
 }
 
@@ -213,7 +218,7 @@ inline std::string Describe(const ModelOptions& options) {
   return "posture " + number(options.posture) + ", scaling " + number(options.gain_scaling) +
          ", friction " + number(options.friction) + ", push use " + number(options.push) +
          ", tail " + number(options.push_tail) + ", cart derivative " +
-         number(options.cart_derivative) + ", interaction " + DescribeTerms(options.interaction);
+         number(options.cart_derivative) + ", stance " + number(options.stance) + ", interaction " + DescribeTerms(options.interaction);
 }
 
 }  // namespace pushid

@@ -199,8 +199,9 @@ double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double
   std::vector<int> scratch;
   forces.Update(&state);
   forces.Prepare(0, &scratch);
-  const Vector4<Jet> force = forces.On(0, kAfterThePush, previous).Total();
-  const PendulumState<Jet> next = forces.Next(0, forces.AccelerationOf(0, force), previous);
+  const NetForce<Jet> force = forces.On(0, kAfterThePush, previous);
+  const PendulumState<Jet> next =
+      forces.Next(0, forces.AccelerationOf(0, force), force, previous);
   Eigen::Matrix<double, 8, 8> step = Eigen::Matrix<double, 8, 8>::Zero();
   for (int i = 0; i < 2; ++i) step.row(i) = next.q[2 + i].v.transpose();
   for (int i = 0; i < 4; ++i) step.row(2 + i) = next.qd[i].v.transpose();

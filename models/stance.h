@@ -1,0 +1,173 @@
+// models: feet that stand, and feet that step.
+//
+// Capture point, seen from where it rests over the ankles (m):
+//   xi = (hip - cart) - (hip - cart in the rest posture) + hip velocity / omega,  omega = sqrt(g /
+//   l) rho^2 = (xi_x / b)^2 + (xi_y / b_side)^2        b_back instead of b where xi_x < 0
+// The step state s of a person, 0 standing, 1 stepping, follows whether rho is beyond 1:
+//   s' = beyond (1 - s) / t_on - (1 - beyond) s / t_off,   beyond = 1 / (1 + exp((1 - rho) / 0.05))
+// implicit in s, so that it stays between 0 and 1. With the cart's own forces F_c of self_force.h
+// (friction, Kp_x, Kp_y, the linear terms' cart rows), what acts is
+//   ground  -D v,  D = (1 - s)^2 M / 5.6 ms, at most mu_s M g, on the cart's velocity v after the
+//   step ankles  (1 - s) (hold - lim(Kp e + Kd e'))      balance about the ankles, each axis; lim
+//   limits
+//           the torque smoothly to m g times the support: no pressure beyond the feet
+//   feet    s F_c, and s times the torque between legs and trunk that takes the cart's velocity to
+//           kappa omega xi within 10 ms: the feet go where the person would come to rest
+// A torque inside the body moves the feet and leaves the momentum; F_c is what the ground does to
+// people who step. The latch makes a step last: a weak push lets go for a moment only.
+// While a `net` push lasts none of it acts, because its rows hold the feet's reaction; a
+// `net_without_friction` push had LDP's friction of 100 N s/m taken out, and gets it back.
+// Sources: capture point, Hof 2008 and Pratt et al. 2006; the rest was chosen by cross-validation
+// (tests/studies/stance.py). Rejected: feet that slide again when let go, under the forces of
+// sliding feet: those who step stop too early; the support as the distance to a fixed place of the
+// feet: no second step.
+#pragma once
+
+#include <cmath>
+
+#include "models/self_force.h"
+
+namespace pushid {
+
+inline constexpr double kSupportEdge = 0.05;         // of rho: where feet begin to let go
+inline constexpr double kGroundTime = 1.0 / 180.0;   // s, in which standing feet stop
+inline constexpr double kFootTime = 0.01;            // s, in which stepping feet get their speed
+inline constexpr double kPublishedFriction = 100.0;  // N s/m, taken out of net_without_friction
+
+// The parameters of stance, which derivatives are taken by.
+template <typename T>
+struct StanceParameters {
+  static constexpr Parameter kIds[] = {kKpTheta,      kKpPhi,       kKdTheta,       kKdPhi,
+                                       kSupportFront, kSupportBack, kSupportSide,   kStepGain,
+                                       kStepOnset,    kStepRelease, kStaticFriction};
+  static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
+  T Kp[2], Kd[2], front, back, side, gain, onset, release, static_friction;
+
+  // value(id): of a parameter.
+  template <typename Value>
+  explicit StanceParameters(const Value& value)
+      : Kp{value(kKpTheta), value(kKpPhi)},
+        Kd{value(kKdTheta), value(kKdPhi)},
+        front(value(kSupportFront)),
+        back(value(kSupportBack)),
+        side(value(kSupportSide)),
+        gain(value(kStepGain)),
+        onset(value(kStepOnset)),
+        release(value(kStepRelease)),
+        static_friction(value(kStaticFriction)) {}
+};
+
+// What standing and stepping do to a person in one step.
+template <typename T>
+struct StanceForces {
+  Eigen::Matrix<T, 2, 1> torque;  // N m, of ankles and legs
+  T ground;                       // N s/m, of the ground on the cart's velocity after the step
+  T next_step;                    // the step state after the step
+};
+
+inline double CaptureRate(const Body& body) { return std::sqrt(kGravity / body.rod_length); }
+
+// xi above; of the rod of frame 0.
+template <typename T>
+Eigen::Matrix<T, 2, 1> CaptureOffset(const Body& body, const Eigen::Vector2d& posture,
+                                     const PendulumState<T>& state) {
+  using std::cos, std::sin;
+  const double l = body.rod_length, inverse = 1.0 / CaptureRate(body);
+  const T s_th = sin(state.q[2]), c_th = cos(state.q[2]);
+  const T s_ph = sin(state.q[3]), c_ph = cos(state.q[3]);
+  const T vx = state.qd[0] + l * c_th * state.qd[2];
+  const T vy = state.qd[1] + l * (s_th * s_ph * state.qd[2] - c_th * c_ph * state.qd[3]);
+  return {l * (s_th - std::sin(posture[0])) + inverse * vx,
+          l * (std::cos(posture[0]) * std::sin(posture[1]) - c_th * s_ph) + inverse * vy};
+}
+
+// rho above: how far the capture point has left the support; 1 at its edge.
+template <typename T>
+T SupportRatio(const StanceParameters<T>& p, const Eigen::Matrix<T, 2, 1>& capture) {
+  using std::sqrt;
+  constexpr double kTiny = 1e-12;  // a derivative also at rest
+  const T x = capture[0] / (RealPart(capture[0]) < 0.0 ? p.back : p.front);
+  const T y = capture[1] / p.side;
+  return sqrt(x * x + y * y + kTiny);
+}
+
+// u limited to -1 .. 1: smooth, and within 8 % of u up to 0.8.
+template <typename T>
+T SmoothLimit(const T& u) {
+  using std::sqrt;
+  const T square = u * u;
+  return u / sqrt(sqrt(1.0 + square * square));
+}
+
+template <typename T>
+T NextStepState(const StanceParameters<T>& p, const T& rho, const T& step, double dt) {
+  using std::exp;
+  const T beyond = 1.0 / (1.0 + exp((1.0 - rho) / kSupportEdge));
+  const T on = dt * beyond / p.onset, off = dt * (1.0 - beyond) / p.release;
+  return (step + on) / (1.0 + on + off);
+}
+
+template <typename T>
+T GroundResistance(const StanceParameters<T>& p, double mass, const PendulumState<T>& state) {
+  using std::sqrt;
+  const T stands = 1.0 - state.step;
+  const T firm = stands * stands * (mass / kGroundTime);
+  const T over = firm / (p.static_friction * (mass * kGravity));
+  const T speed2 = state.qd[0] * state.qd[0] + state.qd[1] * state.qd[1];
+  return firm / sqrt(1.0 + over * over * speed2);
+}
+
+// The torques about the ankles that hold the posture.
+template <typename T>
+Eigen::Matrix<T, 2, 1> AnkleTorque(const SelfForce& self, const StanceParameters<T>& p,
+                                   const PendulumState<T>& state) {
+  const double weight = self.body.point_mass() * kGravity;
+  Eigen::Matrix<T, 2, 1> torque;
+  for (int i = 0; i < 2; ++i) {
+    const T wanted = self.scale.stiffness * p.Kp[i] * (state.q[2 + i] - self.posture[i]) +
+                     self.scale.damping * p.Kd[i] * state.qd[2 + i];
+    const T& reach = i == 1 ? p.side : RealPart(wanted) < 0.0 ? p.back : p.front;
+    const T most = weight * reach;
+    torque[i] = self.hold[i] - most * SmoothLimit<T>(wanted / most);
+  }
+  return torque;
+}
+
+// The torques between legs and trunk under which, with the cart's own forces, the cart's velocity
+// goes to kappa omega xi.
+template <typename T>
+Eigen::Matrix<T, 2, 1> FootTorque(const Body& body, const StanceParameters<T>& p,
+                                  const PendulumState<T>& state,
+                                  const Eigen::Matrix<T, 2, 1>& capture,
+                                  const Eigen::Matrix<T, 2, 1>& cart_force, double dt) {
+  const double rate = -std::expm1(-dt / kFootTime) / dt, omega = CaptureRate(body);
+  const Matrix4<T> mass = MassMatrix<T>(body, state.q);
+  const Vector4<T> coriolis = Coriolis<T>(body, state.q, state.qd);
+  const Vector4<T> gravity = Gravity<T>(body, state.q);
+  Vector4<T> qdd;
+  for (int i = 0; i < 2; ++i) qdd[i] = rate * (omega * p.gain * capture[i] - state.qd[i]);
+  // The cart's rows of M qdd + C = F, solved for the angles.
+  const T x = cart_force[0] - coriolis[0] - body.mass * qdd[0];
+  const T y = cart_force[1] - coriolis[1] - body.mass * qdd[1];
+  qdd[2] = x / mass(0, 2);
+  qdd[3] = (y - mass(1, 2) * qdd[2]) / mass(1, 3);
+  const T theta = mass(2, 0) * qdd[0] + mass(2, 1) * qdd[1] + mass(2, 2) * qdd[2];
+  const T phi = mass(3, 1) * qdd[1] + mass(3, 3) * qdd[3];
+  return {theta + coriolis[2] + gravity[2], phi + coriolis[3] + gravity[3]};
+}
+
+// cart_force: F_c above, not yet times s.
+template <typename T>
+StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
+                         const PendulumState<T>& state, const Eigen::Matrix<T, 2, 1>& cart_force) {
+  const Eigen::Matrix<T, 2, 1> capture = CaptureOffset(self.body, self.posture, state);
+  const T& s = state.step;
+  StanceForces<T> forces;
+  forces.torque = (1.0 - s) * AnkleTorque(self, p, state) +
+                  s * FootTorque(self.body, p, state, capture, cart_force, self.dt);
+  forces.ground = GroundResistance(p, self.body.mass, state);
+  forces.next_step = NextStepState<T>(p, SupportRatio(p, capture), s, self.dt);
+  return forces;
+}
+
+}  // namespace pushid
