@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "datasets/files/number_text.h"
 
 namespace pushid {
 namespace {
@@ -155,6 +158,31 @@ class StepFinder {
 };
 
 }  // namespace
+
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+std::string StepText(const FootStep& step, double fps) {
+  const char* const ways[] = {"forwards", "to the left", "backwards", "to the right"};
+  const int quarter = static_cast<int>(std::lround(step.Direction() / (0.5 * kPi)));
+  const std::string from = Rounded(step.lift_off / fps, 3);
+  return std::string(Name(step.foot)) +
+         (step.finished ? " " + from + "-" + Rounded(step.landing / fps, 3) : " from " + from) +
+         " s " + Rounded(step.Length(), 2) + " m " + ways[(quarter + 4) % 4] +
+         (step.finished ? "" : ", cut off");
+}
+
+}  // namespace
+
+std::string StepsText(const PersonSteps& steps, double fps) {
+  if (!steps.Stepped()) return "none";
+  std::string text;
+  for (const FootStep& step : steps.steps) {
+    text += (text.empty() ? "" : "; ") + StepText(step, fps);
+  }
+  return text;
+}
 
 const char* Name(Foot foot) { return foot == Foot::kLeft ? "left" : "right"; }
 

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "datasets/manifest/recording.h"
@@ -31,7 +32,7 @@ struct FootStep {
   int landing = 0;       // the first frame on it again; the recording's end if not finished
   bool finished = true;  // false: still off the ground in the last frame
   // From the ankle's place in the stance before to that after it (an unfinished step: to the last
-  // frame), m forward and to the left.
+  // frame), m forward and to the left. Of one foot: what gait analysis calls a stride of who walks.
   Eigen::Vector2d travel = Eigen::Vector2d::Zero();
 
   double Length() const { return travel.norm(); }
@@ -68,5 +69,8 @@ std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps,
                                 const StepThresholds& thresholds = {});
 PersonSteps FindSteps(const RecordedPerson& person, double fps,
                       const StepThresholds& thresholds = {});
+
+// "left 0.42-0.78 s 0.31 m forwards; right from 0.95 s 0.12 m to the left, cut off"; "none".
+std::string StepsText(const PersonSteps& steps, double fps);
 
 }  // namespace pushid

@@ -207,8 +207,21 @@ TEST(FootSteps, BothFeetOfAPerson) {
   EXPECT_FALSE(steps.Stands(Foot::kRight, 36));
   EXPECT_TRUE(steps.Stands(Foot::kLeft, 36));
   EXPECT_TRUE(steps.Stands(Foot::kRight, steps.First()->landing));
+  EXPECT_EQ(StepsText(steps, 60.0).find("right 0.4"), 0u) << StepsText(steps, 60.0);
   EXPECT_EQ(PersonSteps().First(), nullptr);
   EXPECT_FALSE(PersonSteps().Stepped());
+}
+
+TEST(FootSteps, InWords) {
+  PersonSteps steps;
+  EXPECT_EQ(StepsText(steps, 50.0), "none");
+  steps.steps = {{Foot::kRight, 20, 40, true, {-0.3, 0.1}},
+                 {Foot::kLeft, 45, 60, false, {0.05, 0.12}},
+                 {Foot::kRight, 50, 60, false, {0.05, -0.12}},
+                 {Foot::kLeft, 50, 60, true, {0.3, -0.29}}};
+  EXPECT_EQ(StepsText(steps, 50.0),
+            "right 0.4-0.8 s 0.32 m backwards; left from 0.9 s 0.13 m to the left, cut off; "
+            "right from 1 s 0.13 m to the right, cut off; left 1-1.2 s 0.42 m forwards");
 }
 
 }  // namespace
