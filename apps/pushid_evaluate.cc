@@ -11,6 +11,7 @@
 #include "ident/bodies/simlpe_files.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
+#include "ident/validation/steps_report.h"
 #include "models/self_network.h"
 
 namespace {
@@ -56,7 +57,9 @@ int Run() {
   for (const std::string& warning : ExtrapolationWarnings(model.value(), pendulums)) Warn(warning);
   const Evaluation evaluation = Evaluate(model.value(), pendulums);
   std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
+  std::printf("\n%s", StepsReport(pendulums, flags.per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
+  AddStepsJson(pendulums, &json);
   if (bodies.value()) {
     std::printf("\n%s", BodyText(*bodies.value()).c_str());
     AddBodyJson(*bodies.value(), &json);

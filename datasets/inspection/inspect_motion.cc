@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/axes.h"
 #include "datasets/formats/frame_rate.h"
+#include "datasets/loading/motion_preparation.h"
 
 namespace pushid {
 namespace {
@@ -123,6 +125,46 @@ class MotionInspector {
     }
     Onset(first, rod);
     Start(first);
+    Steps(joints, left[first] - right[first], rod);
+  }
+
+  // In the person's own axes, forward where they face.
+  void Steps(const PendulumJoints& joints, const Eigen::Vector3d& to_the_left,
+             const Eigen::Vector3d& rod) {
+    const Result<Eigen::Matrix3d> turn = AxesRotation(up_, AxisName(to_the_left.cross(rod)));
+    if (!(motion_.rate_hz > 0.0) || !turn.ok()) return;
+    const auto track = [&](const std::vector<int>& chosen) {
+      if (chosen.empty()) return Track();
+      Track mean = MeanOf(motion_, chosen, metres_);
+      for (Eigen::Vector3d& p : mean) p = turn.value() * p;
+      return mean;
+    };
+    // As loading does: a toe or heel that is lost for long is not used.
+    const auto if_seen = [&](const std::vector<int>& chosen) {
+      const int longest = LongestHidden(chosen);
+      return longest > PreparationOptions{}.max_gap_s * motion_.rate_hz ? Track() : track(chosen);
+    };
+    RecordedPerson person;
+    person.left_ankle = track(joints.left_ankle);
+    person.right_ankle = track(joints.right_ankle);
+    person.left_toe = if_seen(joints.left_toe);
+    person.right_toe = if_seen(joints.right_toe);
+    person.left_heel = if_seen(joints.left_heel);
+    person.right_heel = if_seen(joints.right_heel);
+    found_.steps = FindSteps(person, motion_.rate_hz);
+    found_.Fact("steps", StepsText(*found_.steps, motion_.rate_hz));
+  }
+
+  int LongestHidden(const std::vector<int>& chosen) const {
+    int longest = 0;
+    for (int index : chosen) {
+      int run = 0;
+      for (const Eigen::Vector3d& position : motion_.positions[index]) {
+        run = position.allFinite() ? 0 : run + 1;
+        longest = std::max(longest, run);
+      }
+    }
+    return longest;
   }
 
   void Places(const PendulumJoints& joints) {
@@ -134,14 +176,13 @@ class MotionInspector {
     found_.Fact("hip", names(joints.hip));
     found_.Fact("ankles",
                 names(joints.left_ankle) + " (left), " + names(joints.right_ankle) + " (right)");
+    if (!joints.left_toe.empty() && !joints.right_toe.empty()) {
+      found_.Fact("toes",
+                  names(joints.left_toe) + " (left), " + names(joints.right_toe) + " (right)");
+    }
     for (const std::vector<int>* place : {&joints.hip, &joints.left_ankle, &joints.right_ankle}) {
       for (int index : *place) {
-        int longest = 0, run = 0;
-        for (const Eigen::Vector3d& position : motion_.positions[index]) {
-          run = position.allFinite() ? 0 : run + 1;
-          longest = std::max(longest, run);
-        }
-        if (longest > 0) {
+        if (const int longest = LongestHidden({index}); longest > 0) {
           found_.Warn(
               motion_.names[index] + " is hidden for up to " + std::to_string(longest) + " frames" +
               (motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "") +

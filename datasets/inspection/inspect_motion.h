@@ -1,5 +1,5 @@
 // datasets: what can be seen of a motion before anything is fitted: unit, axes, rate, gaps, jumps,
-// standing height, a static start, the onset of the push.
+// standing height, a static start, the onset of the push, steps.
 #pragma once
 
 #include <optional>

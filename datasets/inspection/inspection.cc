@@ -53,7 +53,7 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
 
-// A joint of a BVH file is never hidden, so that only hip and ankles are kept: files of a gigabyte
+// A joint of a BVH file is never hidden, so that only hip and feet are kept: files of a gigabyte
 // fit.
 MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
@@ -68,9 +68,16 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
-    places = PendulumJoints{{0}, {1}, {2}};
-    return std::vector<int>{joints.value().hip[0], joints.value().left_ankle[0],
-                            joints.value().right_ankle[0]};
+    std::vector<int> kept;
+    places = joints.value();
+    for (std::vector<int>* place :
+         {&places->hip, &places->left_ankle, &places->right_ankle, &places->left_toe,
+          &places->right_toe, &places->left_heel, &places->right_heel}) {
+      if (place->empty()) continue;
+      kept.push_back((*place)[0]);
+      *place = {static_cast<int>(kept.size()) - 1};
+    }
+    return kept;
   };
   Result<BvhPositions> bvh = ReadBvhPositions(found->path, options);
   if (!bvh.ok()) return bvh.error();

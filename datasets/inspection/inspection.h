@@ -5,11 +5,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/loading/foot_steps.h"
 #include "datasets/manifest/column_mapping.h"
 
 namespace pushid {
@@ -34,6 +36,7 @@ struct Inspection {
   std::vector<std::vector<bool>> seen;   // [point][frame]
   std::vector<InspectedSignal> forces;   // N
   int onset_frame = -1;                  // the hip's first 2 cm
+  std::optional<PersonSteps> steps;      // forward is where the person faces
 
   void Fact(const std::string& what, const std::string& text) { facts.emplace_back(what, text); }
   void Warn(const std::string& text) { warnings.push_back(text); }

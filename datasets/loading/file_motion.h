@@ -22,7 +22,7 @@ struct FileMotionRequest {
   std::optional<LengthUnit> unit;  // whatever the file says; unset: the file's own, else mm
   const JointMapping& joints;
   const ColumnMapping& mapping;
-  bool keep_all_joints;  // otherwise hip and ankles alone
+  bool keep_all_joints;  // otherwise hip and feet alone
   std::function<void(const std::string& warning)> warn;
 };
 

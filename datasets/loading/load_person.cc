@@ -144,6 +144,7 @@ class PersonLoader {
         return Error{motion->names[i] + " is never seen; choose another by \"joints\"", path_};
       }
       if (counts) gaps += count.gaps;
+      if (!counts && count.excluded_frames > 0) Forget(static_cast<int>(i), &motion->places);
     }
     if (gaps == 0) return std::nullopt;
     if (weight[0] == 0.0) {
@@ -164,6 +165,14 @@ class PersonLoader {
          " frames are left out");
     if (excluded > 0) person->weight = std::move(weight);
     return std::nullopt;
+  }
+
+  // A toe or heel that is lost for long says nothing of where the foot stands.
+  static void Forget(int track, PendulumJoints* places) {
+    for (std::vector<int>* place :
+         {&places->left_toe, &places->right_toe, &places->left_heel, &places->right_heel}) {
+      if (std::find(place->begin(), place->end(), track) != place->end()) place->clear();
+    }
   }
 
   static bool IsPlace(const PendulumJoints& places, int track) {
@@ -187,6 +196,7 @@ class PersonLoader {
   }
 
   static Track Mean(const std::vector<Track>& tracks, const std::vector<int>& chosen) {
+    if (chosen.empty()) return {};
     Track mean = tracks[chosen[0]];
     for (std::size_t frame = 0; frame < mean.size(); ++frame) {
       for (std::size_t i = 1; i < chosen.size(); ++i) mean[frame] += tracks[chosen[i]][frame];
@@ -199,6 +209,10 @@ class PersonLoader {
     person->hip = Mean(motion.tracks, motion.places.hip);
     person->left_ankle = Mean(motion.tracks, motion.places.left_ankle);
     person->right_ankle = Mean(motion.tracks, motion.places.right_ankle);
+    person->left_toe = Mean(motion.tracks, motion.places.left_toe);
+    person->right_toe = Mean(motion.tracks, motion.places.right_toe);
+    person->left_heel = Mean(motion.tracks, motion.places.left_heel);
+    person->right_heel = Mean(motion.tracks, motion.places.right_heel);
     if (!options_.keep_all_joints) return;
     person->joint_names = motion.names;
     person->joint_parents = motion.parents;

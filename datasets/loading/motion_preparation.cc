@@ -15,10 +15,13 @@ using Track = std::vector<Eigen::Vector3d>;
 
 constexpr double kSlowestCutoff = 0.5;  // Hz
 
-// change(track) for hip, ankles and, where they were kept, every joint.
+// change(track) for hip, feet and, where they were kept, every joint.
 template <typename Change>
 void ForEachTrack(RecordedPerson* person, const Change& change) {
-  for (Track* track : {&person->hip, &person->left_ankle, &person->right_ankle}) change(track);
+  for (Track* track : {&person->hip, &person->left_ankle, &person->right_ankle, &person->left_toe,
+                       &person->right_toe, &person->left_heel, &person->right_heel}) {
+    if (!track->empty()) change(track);
+  }
   if (person->joints.empty()) return;
   std::vector<Track> tracks(person->joints[0].size());
   for (std::size_t joint = 0; joint < tracks.size(); ++joint) {

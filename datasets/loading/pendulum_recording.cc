@@ -67,6 +67,8 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.states.push_back(std::move(states));
     result.rod_length.push_back(std::move(lengths));
     result.hip.push_back(person.hip);
+    result.steps.push_back(FindSteps(person, recording.fps));
+    result.foot_support.push_back(SupportOf(person));
     std::vector<double> weight = person.weight;
     for (size_t t = 1; t < weight.size(); ++t) {
       weight[t] = std::min(person.weight[t - 1], person.weight[t]);

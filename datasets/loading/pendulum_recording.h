@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/loading/foot_steps.h"
+#include "datasets/loading/foot_support.h"
 #include "datasets/manifest/recording.h"
 #include "models/scene.h"
 #include "models/skeleton_mapping.h"
@@ -27,6 +29,9 @@ struct PendulumRecording {
   // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
   // a frame is the least of its own and the one before, which its velocity leans on.
   std::vector<std::vector<double>> weight;
+  // One per person, from the feet; empty where a recording was not made from one.
+  std::vector<PersonSteps> steps;
+  std::vector<FootSupport> foot_support;
   std::string content_hash;  // of the files and of what the manifest makes of them
 
   int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }

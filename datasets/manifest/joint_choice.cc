@@ -110,14 +110,18 @@ Result<std::vector<int>> DefaultHip(const Source& source) {
   return hip;
 }
 
+// "leftankle", "lankle", "ankleleft", "anklel".
+std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
+  const std::string letter = side.substr(0, 1);
+  return {side + part, letter + part, part + side, part + letter};
+}
+
 Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
                                       const std::string& side) {
   const std::string letter = side.substr(0, 1);
   std::vector<std::vector<std::string>> candidates;
-  for (const std::string& name :
-       {side + "ankle", letter + "ankle", "ankle" + side, "ankle" + letter, side + "foot",
-        letter + "foot", "foot" + side, "foot" + letter}) {
-    candidates.push_back({name});
+  for (const char* part : {"ankle", "foot"}) {
+    for (const std::string& name : NamesOnSide(side, part)) candidates.push_back({name});
   }
   if (!source.is_bvh()) {
     for (const std::string& name : {letter + "ank", letter + "anklelat", letter + "mal",
@@ -130,6 +134,42 @@ Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
     return std::vector<int>{side == "left" ? kFzjLeftAnkle : kFzjRightAnkle};
   }
   return ankle;
+}
+
+std::string PrefixOf(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string::npos ? "" : name.substr(0, colon);
+}
+
+// Another point of the foot that `ankle` belongs to; empty where there is none that is clear.
+std::vector<int> OfFoot(const Source& source, const std::string& side, const PendulumJoints& joints,
+                        const std::vector<int>& ankle, const std::vector<const char*>& parts) {
+  for (const char* part : parts) {
+    for (const std::string& name : NamesOnSide(side, part)) {
+      std::vector<int> found;
+      for (int i : AllCalled(source, name)) {
+        const bool own = PrefixOf(source.names[i]) == PrefixOf(source.names[ankle[0]]);
+        if (own && i != joints.left_ankle[0] && i != joints.right_ankle[0]) found.push_back(i);
+      }
+      if (found.size() == 1) return found;
+    }
+  }
+  return {};
+}
+
+std::vector<int> ToeOf(const Source& source, const std::string& side, const PendulumJoints& joints,
+                       const std::vector<int>& ankle) {
+  if (source.is_bvh() && IsFzjSkeleton(*source.skeleton) &&
+      (ankle[0] == kFzjLeftAnkle || ankle[0] == kFzjRightAnkle)) {
+    return {ankle[0] + 1};
+  }
+  return OfFoot(source, side, joints, ankle,
+                {"toebase", "toe", "toes", "bigtoe", "toetip", "mt2", "mt1", "mt5", "foot"});
+}
+
+std::vector<int> HeelOf(const Source& source, const std::string& side, const PendulumJoints& joints,
+                        const std::vector<int>& ankle) {
+  return OfFoot(source, side, joints, ankle, {"heel", "hee", "cal", "calc"});
 }
 
 Error InJoints(const char* key, Error error) {
@@ -204,7 +244,7 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
       Choose(source, "right_ankle", mapping.right_ankle,
              mapping.right_ankle ? unneeded : DefaultAnkle(source, "right_ankle", "right"));
   if (!right.ok()) return right.error();
-  const PendulumJoints joints{hip.value(), left.value(), right.value()};
+  PendulumJoints joints{hip.value(), left.value(), right.value()};
   if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
       joints.left_ankle == joints.right_ankle) {
     return Error{std::string("hip, left_ankle and right_ankle must be three different ") +
@@ -214,6 +254,10 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
                      "; name them by \"joints\" in the manifest",
                  source.path, 0};
   }
+  joints.left_toe = ToeOf(source, "left", joints, joints.left_ankle);
+  joints.right_toe = ToeOf(source, "right", joints, joints.right_ankle);
+  joints.left_heel = HeelOf(source, "left", joints, joints.left_ankle);
+  joints.right_heel = HeelOf(source, "right", joints, joints.right_ankle);
   return joints;
 }
 

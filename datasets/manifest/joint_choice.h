@@ -13,13 +13,19 @@ namespace pushid {
 // Indices into the file's joints or points; each place is the mean of its list.
 struct PendulumJoints {
   std::vector<int> hip, left_ankle, right_ankle;
+  // Of the feet, where the file has them; empty otherwise.
+  std::vector<int> left_toe{}, right_toe{}, left_heel{}, right_heel{};
 };
 
 // What `mapping` names, and for the rest the defaults:
 //   hip     a joint called Hips, Hip or Pelvis, otherwise the first root;
 //   ankles  joints called LeftAnkle, LeftFoot, L_Ankle, foot.l, mixamorig:LeftFoot, ... (case and
 //           punctuation do not matter); otherwise, in a skeleton with the 22 joints and the parents
-//           of the FZJ push recordings, right 16 and left 20.
+//           of the FZJ push recordings, right 16 and left 20;
+//   toes    joints called LeftToeBase, LeftToe, L_Toe, ..., or LeftFoot beside a LeftAnkle; in an
+//           FZJ skeleton right 17 and left 21;
+//   heels   joints called LeftHeel, ...
+// Toes and heels are never required: what is not found stays empty.
 // Errors: a joint that does not exist (a few that do are listed), no ankles found, one joint twice.
 // `path` is the BVH file, for messages.
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
@@ -30,6 +36,8 @@ Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSk
 //   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
 //           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
 //   ankles  the names above, LANK, L.Ankle.Lat, LMAL, ...
+//   toes, heels  the names above, LTOE, L.Toe.Tip, LMT2, LHEE, LCAL, ...: with the ankle's prefix
+//           ("Anna:") where several people have them
 // Errors besides the above: a default or a short name that several people's points answer to.
 Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,

@@ -37,6 +37,8 @@ struct RecordedPerson {
   std::string file_up = "z", file_forward = "x";
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
+  // Empty where the file has none, or loses them for longer than a gap that is filled.
+  std::vector<Eigen::Vector3d> left_toe, right_toe, left_heel, right_heel;
   // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles
   // were not seen: the positions there mean nothing.
   std::vector<double> weight;

@@ -9,6 +9,7 @@ namespace pushid {
 namespace {
 
 constexpr double kAbove = 22, kBelow = 36, kBefore = 52, kAfter = 12;
+constexpr double kLane = 9;  // height
 
 struct Range {
   double from = INFINITY, to = -INFINITY;
@@ -45,7 +46,8 @@ class Panel {
         left_(box.x + kBefore),
         right_(box.x + box.width - kAfter),
         top_(box.y + kAbove),
-        bottom_(box.y + box.height - kBelow),
+        floor_(box.y + box.height - kBelow),
+        bottom_(floor_ - kLane * static_cast<double>(chart.lanes.size())),
         x_(XScale()),
         y_(YScale()),
         svg_(*svg) {}
@@ -62,6 +64,7 @@ class Panel {
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
     for (const ChartLine& line : chart_.lines) Line(line);
+    Lanes();
   }
 
  private:
@@ -100,13 +103,26 @@ class Panel {
     }
   }
 
-  void Axes() {
-    svg_.Line(left_, bottom_, right_, bottom_, "axis");
-    for (double tick : x_.Ticks(5)) {
-      svg_.Line(x_(tick), bottom_, x_(tick), bottom_ + 4, "axis");
-      svg_.Text(x_(tick), bottom_ + 15, TickText(tick), "ink small middle");
+  // Between the plot and its axis.
+  void Lanes() {
+    double y = bottom_ + 2;
+    for (const ChartLane& lane : chart_.lanes) {
+      svg_.Line(left_, y + kLane - 3, right_, y + kLane - 3, "grid");
+      for (const auto& [from, to] : lane.bars) {
+        svg_.Rect({x_(from), y, x_(to) - x_(from), kLane - 3}, lane.look, lane.name);
+      }
+      svg_.Text(left_ - 5, y + kLane - 2.5, lane.name, "faint small end");
+      y += kLane;
     }
-    svg_.Text(0.5 * (left_ + right_), bottom_ + 29, chart_.x_label, "faint small middle");
+  }
+
+  void Axes() {
+    svg_.Line(left_, floor_, right_, floor_, "axis");
+    for (double tick : x_.Ticks(5)) {
+      svg_.Line(x_(tick), floor_, x_(tick), floor_ + 4, "axis");
+      svg_.Text(x_(tick), floor_ + 15, TickText(tick), "ink small middle");
+    }
+    svg_.Text(0.5 * (left_ + right_), floor_ + 29, chart_.x_label, "faint small middle");
     if (!chart_.y_categories.empty()) {
       for (size_t i = 0; i < chart_.y_categories.size(); ++i) {
         const double y = y_(static_cast<double>(i));
@@ -134,7 +150,7 @@ class Panel {
   }
 
   const Chart& chart_;
-  double left_, right_, top_, bottom_;
+  double left_, right_, top_, floor_, bottom_;  // lanes lie between bottom_ and floor_
   SvgScale x_, y_;
   SvgPicture& svg_;
 };

@@ -31,10 +31,18 @@ struct ChartBand {
   std::string look;
 };
 
+// A strip under the plot with bars along x: when something is so.
+struct ChartLane {
+  std::string name;
+  std::vector<std::pair<double, double>> bars;
+  std::string look;
+};
+
 struct Chart {
   std::string title, x_label, y_label;
   std::vector<ChartBand> bands;
   std::vector<ChartLine> lines;
+  std::vector<ChartLane> lanes;
   std::vector<double> levels;             // dashed, across
   std::vector<double> marks;              // upright
   std::optional<double> y_from, y_to;     // instead of the data's own range

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kWidth = 760, kLeft = 70, kRight = 140, kTop = 44;
 constexpr double kPanel = 170, kGap = 58;
-constexpr double kBar = 12;  // height of a point's bar
+constexpr double kBar = 12;                   // height of a point's bar
+constexpr double kFeetPanel = 2 * kBar + 40;  // with the gap below
 constexpr std::size_t kMostBars = 60;
 constexpr std::size_t kMostPoints = 1500;  // of a line: more than there are pixels
 
@@ -40,6 +41,7 @@ class Picture {
         lines.push_back({std::string(1, "xyz"[axis]), found_.rate_hz, values});
       }
       Panel("the hip, m from its first place", lines, found_.onset_frame / found_.rate_hz);
+      if (found_.steps) Feet();
     }
     if (!found_.seen.empty()) Bars();
     if (!found_.forces.empty()) {
@@ -58,6 +60,7 @@ class Picture {
   static double Height(const Inspection& found) {
     const double bars = static_cast<double>(std::min(kMostBars, found.seen.size()));
     return kTop + (HasHip(found) ? kPanel + kGap : 0.0) +
+           (HasHip(found) && found.steps ? kFeetPanel : 0.0) +
            (found.seen.empty() ? 0.0 : bars * kBar + kGap) +
            (found.forces.empty() ? 0.0 : kPanel + kGap);
   }
@@ -107,6 +110,26 @@ class Picture {
     svg_.Polyline(points, "stroke-width:1.5;stroke:" + colour);
     svg_.Text(kWidth - kRight + 10, top_ + 24 + 15 * static_cast<double>(index), line.name,
               "font-size:10px;fill:" + colour);
+  }
+
+  // On the hip's axis of time.
+  void Feet() {
+    const double frames = static_cast<double>(found_.hip.size());
+    const SvgScale across(0.0, frames, kLeft, kWidth - kRight);
+    svg_.Text(kLeft, top_, "feet off the ground", "ink");
+    double y = top_ + 10;
+    for (Foot foot : kFeet) {
+      svg_.Line(kLeft, y + kBar - 2, kWidth - kRight, y + kBar - 2, "grid");
+      for (const FootStep& step : found_.steps->steps) {
+        if (step.foot != foot) continue;
+        const double from = across(step.lift_off), to = across(step.landing);
+        svg_.Rect({from, y, to - from, kBar - 2}, std::string("fill:") + kColours[0],
+                  StepsText({{step}}, found_.rate_hz));
+      }
+      svg_.Text(kWidth - kRight + 6, y + kBar - 2, Name(foot), "faint small");
+      y += kBar;
+    }
+    top_ += kFeetPanel;
   }
 
   void Bars() {

@@ -69,7 +69,10 @@ TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
   }
   EXPECT_LT(json["mean"]["hipADE_m"], json["baselines"]["static"]["mean"]["hipADE_m"]);
   EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), 0.05) << "the model made these recordings";
-  for (const char* part : {"mean over recordings", "frame-weighted", "constant velocity"}) {
+  EXPECT_EQ(json["recordings"][0]["steps"].size(), 1u) << "a list for each person";
+  EXPECT_EQ(json["steps"]["people"], 12);
+  for (const char* part :
+       {"mean over recordings", "frame-weighted", "constant velocity", "\nsteps: "}) {
     EXPECT_TRUE(Contains(run.out, part));
   }
 }

@@ -19,12 +19,29 @@ constexpr int kBestPushes = 8;
 
 std::vector<bool> Words(size_t columns) { return std::vector<bool>(columns, true); }
 
+constexpr char kOffGroundLook[] = "stroke:none;fill:#8a8f98";
+
+// Bars where a foot is off the ground.
+std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
+  std::vector<ChartLane> lanes;
+  for (Foot foot : kFeet) {
+    ChartLane lane{Name(foot), {}, kOffGroundLook};
+    for (const FootStep& step : run.recording.steps[person].steps) {
+      const int end = std::min(step.landing, run.recording.num_frames() - 1);
+      if (step.foot == foot) lane.bars.emplace_back(run.Seconds(step.lift_off), run.Seconds(end));
+    }
+    lanes.push_back(lane);
+  }
+  return lanes;
+}
+
 // One axis of one person's hip, with its bands where there are some.
 Chart HipChart(const RecordingView& view, int person, int axis, const std::string& title) {
   const FormationRun& run = view.run;
   Chart chart;
   chart.title = title;
   chart.x_label = "s";
+  chart.lanes = FeetLanes(run, person);
   const auto line = [&](const std::vector<Vector3<double>>& hip) {
     ChartPoints points;
     for (size_t t = 0; t < hip.size(); ++t) {
@@ -109,8 +126,10 @@ TextTable PathNumbers(const RecordingView& view) {
                    "median_x_m",
                    "median_y_m",
                    "median_theta_rad",
-                   "median_phi_rad"},
-                  Words(23));
+                   "median_phi_rad",
+                   "left_foot_stands",
+                   "right_foot_stands"},
+                  Words(25));
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -136,6 +155,7 @@ TextTable PathNumbers(const RecordingView& view) {
       }
       for (int entry : {0, 1, 3, 4})
         add(bands, bands ? view.bands.people[n].median[t][entry] : 0.0);
+      for (Foot foot : kFeet) add(true, run.recording.steps[n].Stands(foot, t) ? 1.0 : 0.0);
       table.Add(cells);
     }
   }
@@ -166,7 +186,8 @@ std::string PathPicture(const RecordingView& view) {
   DrawLegend({{"measured", kMeasuredLook},
               {view.bands.people.empty() ? "predicted" : "predicted (median)", kPredictedLook},
               {"50 %", kNarrowBandLook},
-              {"90 %", kWideBandLook}},
+              {"90 %", kWideBandLook},
+              {"foot off the ground", kOffGroundLook}},
              52, 16, &svg);
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
@@ -227,7 +248,9 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
   section.paragraphs = {
       "Predicted from the first frame and the push alone. The bands hold what the parameters leave "
       "open and, for the person who is pushed, how far people with the same parameters differ; for "
-      "others they show the parameters alone. The forces explain the motion: balance, friction, "
+      "others they show the parameters alone. Bars under the hip show when a foot was off the "
+      "ground. "
+      "The forces explain the motion: balance, friction, "
       "interaction, push and what else acts add up to the net force (thick)."};
   if (const std::string median = MedianText(views); !median.empty()) {
     section.paragraphs.push_back(median);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "datasets/formats/trc.h"
@@ -62,6 +63,20 @@ TEST_F(InspectionTest, Axes) {
   const std::string said = Said();
   EXPECT_TRUE(Contains(said, "y is up, the person faces z"));
   EXPECT_TRUE(Contains(said, "warning: y is up in the file: set \"up\" and \"forward\""));
+}
+
+// The left foot goes 0.3 m to the side that the person faces, whatever that axis is called.
+TEST_F(InspectionTest, Steps) {
+  EXPECT_TRUE(Contains(Said(), "steps           none"));
+  for (int t = 50; t < 100; ++t) {
+    const double way = std::min(1.0, (t - 50) / 30.0);
+    motion_.positions[1][t].x() = 300.0 * way;
+  }
+  EXPECT_TRUE(Contains(Said(), "steps           left 0.49-0.81 s 0.3 m forwards"));
+  for (auto& track : motion_.positions) {
+    for (Eigen::Vector3d& p : track) p = Eigen::Vector3d(p.y(), p.z(), p.x());
+  }
+  EXPECT_TRUE(Contains(Said(), "steps           left 0.49-0.81 s 0.3 m forwards"));
 }
 
 TEST_F(InspectionTest, Units) {

@@ -7,7 +7,9 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/trc.h"
+#include "datasets/loading/foot_support.h"
 #include "datasets/loading/load_recordings.h"
+#include "datasets/manifest/joint_choice.h"
 #include "tests/datasets/recording_folder.h"
 
 namespace pushid {
@@ -185,6 +187,65 @@ TEST_F(LoadPointsTest, SeveralPeopleInOneFile) {
   EXPECT_NEAR(loaded.value()[0].people[0].left_ankle[0].y(), 0.1, 1e-9);
 }
 
+TEST_F(LoadPointsTest, ToesAndHeelsWhereThereAreSome) {
+  EXPECT_TRUE(Load().value()[0].people[0].left_toe.empty());
+  const struct {
+    const char* name;
+    double x, y;
+  } markers[] = {{"S1:LTOE", 200, 110}, {"S1:R.Toe.Tip", 190, -110}, {"S1:LHEE", -60, 100}};
+  for (const auto& marker : markers) {
+    motion_.names.push_back(marker.name);
+    motion_.positions.emplace_back(20, Eigen::Vector3d(marker.x, marker.y, 20.0));
+  }
+  Use("a.trc", MotionFormat::kTrc);
+  const RecordedPerson person = Load().value()[0].people[0];
+  ASSERT_EQ(person.left_toe.size(), 20u);
+  ASSERT_EQ(person.right_toe.size(), 20u);
+  EXPECT_LT((person.left_toe[7] - Eigen::Vector3d(0.2, 0.11, 0.02)).norm(), 1e-5);
+  EXPECT_LT((person.right_toe[7] - Eigen::Vector3d(0.19, -0.11, 0.02)).norm(), 1e-5);
+  EXPECT_TRUE(person.right_heel.empty());
+  const FootSupport support = SupportOf(person);
+  EXPECT_NEAR(support.forward.value(), 0.195, 1e-5);
+  EXPECT_FALSE(support.back);  // of one heel nothing is known
+  EXPECT_NEAR(support.side, 0.1, 1e-5);
+
+  // Lost for two frames it is filled; lost for ten it is not used, and the frames count on.
+  for (int t = 5; t < 7; ++t) motion_.positions[6][t] = kHidden;
+  Use("a.trc", MotionFormat::kTrc);
+  EXPECT_NEAR(Load().value()[0].people[0].left_toe[6].x(), 0.2, 1e-5);
+  for (int t = 5; t < 15; ++t) motion_.positions[6][t] = kHidden;
+  Use("a.trc", MotionFormat::kTrc);
+  const RecordedPerson lost = Load().value()[0].people[0];
+  EXPECT_TRUE(lost.left_toe.empty());
+  EXPECT_EQ(lost.right_toe.size(), 20u);
+  EXPECT_TRUE(lost.weight.empty());
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+}
+
+// The toe of whose ankle it is; a foot beside an ankle is the toe of SMPL's skeletons.
+TEST_F(LoadPointsTest, ToesOfSeveralPeople) {
+  const std::vector<std::string> names = {"A:Hips", "A:L_Ankle", "A:R_Ankle", "A:L_Foot", "B:Hips",
+                                          "B:LANK", "B:RANK",    "B:LTOE",    "A:LTOE",   "B:RTOE"};
+  JointMapping of_b;
+  of_b.hip = JointReference{"B:Hips"};
+  of_b.left_ankle = JointReference{"B:LANK"};
+  of_b.right_ankle = JointReference{"B:RANK"};
+  const auto b = ChoosePendulumPoints("x", names, of_b);
+  ASSERT_TRUE(b.ok()) << b.error().ToString();
+  EXPECT_EQ(b.value().left_toe, std::vector<int>{7});
+  EXPECT_EQ(b.value().right_toe, std::vector<int>{9});
+  EXPECT_TRUE(b.value().left_heel.empty());
+  const auto smpl = ChoosePendulumPoints(
+      "x", {"Pelvis", "L_Ankle", "R_Ankle", "L_Foot", "R_Foot", "L_Heel", "R_Heel"}, {});
+  ASSERT_TRUE(smpl.ok()) << smpl.error().ToString();
+  EXPECT_EQ(smpl.value().left_toe, std::vector<int>{3});
+  EXPECT_EQ(smpl.value().right_heel, std::vector<int>{6});
+  const auto foot = ChoosePendulumPoints("x", {"Hips", "LeftFoot", "RightFoot", "LeftToeBase"}, {});
+  EXPECT_EQ(foot.value().left_ankle, std::vector<int>{1});
+  EXPECT_EQ(foot.value().left_toe, std::vector<int>{3});
+  EXPECT_TRUE(foot.value().right_toe.empty());
+}
+
 TEST_F(LoadPointsTest, UnitsOfTheFile) {
   motion_.unit = LengthUnit::kMetre;
   for (auto& track : motion_.positions) {
@@ -272,7 +333,6 @@ TEST_F(LoadPointsTest, MappingFileForTables) {
   Use("motion.csv", MotionFormat::kCsv);
   entry().mapping = "map.json";
   ExpectTheWalker();
-  const std::string hash = Load().value()[0].content_hash;
   std::string map = ReadText(Path("map.json"));
   WriteText("map.json", map + " ");
   EXPECT_NE(Load().value()[0].content_hash, hash) << "the mapping is part of the data";

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/formats/bvh.h"
+#include "datasets/loading/foot_support.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/test_support.h"
 
@@ -23,6 +24,11 @@ TEST(RealRecordings, AllOfThemLoad) {
       // People stand on the ground and face x, the left foot to the left.
       EXPECT_NEAR(person.hip[0].z(), 1.0, 0.25) << person.file;
       EXPECT_GT(person.left_ankle[0].y(), person.right_ankle[0].y()) << person.file;
+      // Their toes are recorded, and no heels.
+      const FootSupport support = SupportOf(person);
+      ASSERT_TRUE(support.forward) << person.file;
+      EXPECT_NEAR(*support.forward, 0.175, 0.05) << person.file;
+      EXPECT_FALSE(support.back) << person.file;
     }
   }
   EXPECT_EQ(people, 255);

@@ -63,6 +63,29 @@ TEST_F(ReportNumbers, StayInTheirFolderAndQuote) {
   EXPECT_TRUE(Contains(error->ToString(), "cannot make the folder"));
 }
 
+// A lane takes its height from the plot: the axis stays, the line moves up.
+TEST(Chart, LanesLieBetweenPlotAndAxis) {
+  Chart chart;
+  chart.lines = {{{{0, 0}, {4, 1}}, "ink", false}};
+  const std::string plain = DrawCharts({chart}, "", 1, 200, 100);
+  chart.lanes = {{"left", {{1, 2}, {3, 4}}, "fill:#123456"}, {"right", {}, "fill:#123456"}};
+  const std::string lanes = DrawCharts({chart}, "", 1, 200, 100);
+  size_t bars = 0;
+  for (size_t at = lanes.find("#123456"); at != std::string::npos;
+       at = lanes.find("#123456", at + 1)) {
+    ++bars;
+  }
+  EXPECT_EQ(bars, 2u);
+  // x runs over 136 pixels from 52 on; the bars over a quarter of them each.
+  EXPECT_TRUE(Contains(lanes, "<rect x=\"86\""));
+  EXPECT_TRUE(Contains(lanes, "<rect x=\"154\""));
+  EXPECT_TRUE(Contains(lanes, "width=\"34\""));
+  for (const char* part : {">left<", ">right<"}) {
+    EXPECT_TRUE(Contains(lanes, part));
+    EXPECT_FALSE(Contains(plain, part));
+  }
+}
+
 TEST(Chart, DrawsWhatItIsGiven) {
   Chart chart;
   chart.title = "x & y";
