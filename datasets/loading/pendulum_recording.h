@@ -40,6 +40,8 @@ struct PendulumRecording {
     return given ? weight[person][frame] : 1.0;
   }
   int num_people() const { return static_cast<int>(hip.size()); }
+  bool StepsKnown() const { return !steps.empty(); }
+  bool Stepped(int person) const { return StepsKnown() && steps[person].Stepped(); }
 };
 
 // Rod length and cart height are those of frame 0; the start velocity is zero or estimated, as the

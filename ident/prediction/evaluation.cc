@@ -100,6 +100,18 @@ bool AnybodyFalls(const Prediction& prediction) {
 
 }  // namespace
 
+std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
+                                            const Prediction& prediction) {
+  std::vector<StepPrediction> steps;
+  if (!recording.StepsKnown()) return steps;
+  for (size_t n = 0; n < prediction.steps.size(); ++n) {
+    const int person = static_cast<int>(n);
+    steps.push_back({prediction.steps[n].margin, prediction.steps[n].probability,
+                     recording.Stepped(person), PersonKey(recording, person)});
+  }
+  return steps;
+}
+
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording) {
   const Prediction prediction = Predict(model, recording);
   if (!prediction.status.ok) {
@@ -116,6 +128,7 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
   RecordingScore score = ScoreHip(recording, prediction.hip);
   AddContactFigures(model, recording, prediction, &score.propagation);
   score.fell = AnybodyFalls(prediction);
+  score.steps = StepPredictions(recording, prediction);
   return score;
 }
 
@@ -149,6 +162,11 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
     return SummarizePropagation(of_group);
   };
   summary.propagation = propagation(all);
+  std::vector<StepPrediction> steps;
+  for (const RecordingScore* score : all) {
+    steps.insert(steps.end(), score->steps.begin(), score->steps.end());
+  }
+  summary.steps = ScoreSteps(steps);
   for (const auto& [key, group] : setting) {
     const PropagationSummary of_setting = propagation(group);
     if (of_setting.recordings > 0) summary.propagation_by_setting[key] = of_setting;

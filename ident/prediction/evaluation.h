@@ -14,6 +14,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
 #include "ident/prediction/score_clusters.h"
+#include "ident/prediction/step_score.h"
 
 namespace pushid {
 
@@ -44,6 +45,8 @@ struct RecordingScore : HipMetrics {
   bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
   std::string pushed = {};            // who was (PersonKey); Summarize fills it in
+  // One per person; empty where the model says nothing of steps, and after a failure.
+  std::vector<StepPrediction> steps = {};
 };
 
 struct MeanScore : HipMetrics {
@@ -59,6 +62,7 @@ struct ScoreSummary {
   std::map<std::string, MeanScore> by_magnitude, by_subject, by_setting;
   PropagationSummary propagation;  // over recordings of more than one person
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
+  StepScore steps;  // unknown where the model says nothing of them
 };
 
 // Hip positions over time: [person][frame].
@@ -67,6 +71,10 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
 
 HipPaths StaticBaseline(const PendulumRecording& recording);
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording);
+
+// Who was predicted to step, and who did; empty where either is not known.
+std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
+                                            const Prediction& prediction);
 
 // Scores in the order of recordings; a failed rollout is a named failure.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording);

@@ -50,6 +50,7 @@ Prediction MedianPrediction(const PendulumRecording& recording,
       state.qd = MedianVector<Vector4<double>>(
           predictions, [&](const Prediction& p) { return p.path.At(t, n).qd; });
       state.rod = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).rod; });
+      state.step = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).step; });
       median.hip[n][t] = HipPosition(median.BodyAt(recording.scene, t, n), state.q);
       median.forces.At(t, n) = MedianForce(predictions, t, n);
     }

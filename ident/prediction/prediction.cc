@@ -26,6 +26,7 @@ Prediction PredictOne(const ModelOptions& options,
   Prediction prediction;
   prediction.parts = ReportedParts(options);
   prediction.rod_moves = RodMoves(options);
+  prediction.feet_step = options.stance == Stance::kThreshold;
   for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
   prediction.status =
       Rollout(recording.scene, options, parameters, InitialVelocities(recording.scene), frames,
@@ -40,6 +41,18 @@ Prediction PredictOne(const ModelOptions& options,
     prediction.hip.push_back(std::move(hip));
   }
   return prediction;
+}
+
+void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
+              Prediction* prediction) {
+  if (!model.step_probability) return;
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const double margin =
+        StepMargin(model.options, parameters[n], recording.scene.people[n], prediction->path, n);
+    prediction->steps.push_back(
+        {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
+  }
 }
 
 }  // namespace
@@ -58,7 +71,9 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
     add(PredictOne(options, {member.parameters}, recording, frames));
   }
   if (left.size() >= stayed.size()) return left.front();
-  return stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
+  Prediction prediction = stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
+  AddSteps(model, recording, &prediction);
+  return prediction;
 }
 
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
@@ -72,6 +87,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
     }
   }
   if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
+  if (prediction.feet_step) text += ",step_state";
+  if (!prediction.steps.empty()) text += ",step_probability";
   text += "\n";
   char number[32];
   auto add = [&text, &number](double value) {
@@ -95,6 +112,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
         for (int i = 0; i < 4; ++i) add(force[part][i]);
       }
       if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
+      if (prediction.feet_step) add(state.step);
+      if (!prediction.steps.empty()) add(prediction.steps[n].probability);
       text += "\n";
     }
   }

@@ -11,6 +11,12 @@
 
 namespace pushid {
 
+// What is predicted of one person's steps (results/step_probability.h).
+struct PredictedStep {
+  double margin = 0.0;  // m
+  double probability = 0.0, error = 0.0;
+};
+
 struct Prediction {
   RolloutStatus status;
   RolloutPath<double> path;                       // frames before a failure are valid
@@ -19,6 +25,9 @@ struct Prediction {
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
   std::vector<double> rod_lift;  // of each person, or one for everybody
+  bool feet_step = false;        // the path has step states
+  // One per person; empty after a failure and where the model says nothing of steps.
+  std::vector<PredictedStep> steps;
 
   double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
   // A person with the rod and the cart's height of one frame.

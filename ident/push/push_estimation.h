@@ -21,9 +21,6 @@
 
 namespace pushid {
 
-// What the published group recordings have taken out, N s/m.
-inline constexpr double kPublishedFriction = 100.0;
-
 // Rows of the push drive the steps start -> start + 1, ..., end - 1 -> end.
 struct PushWindow {
   int start = 0;
@@ -39,7 +36,7 @@ struct PushEstimationOptions {
   // difference, for a person who already moves. At frame 0 the recording's own start velocity.
   bool at_rest_at_start = true;
   // N s/m. Not zero: friction of this size is taken out of the force, which then is a push of kind
-  // net_without_friction (kPublishedFriction).
+  // net_without_friction (kPublishedFriction of models/stance.h).
   double friction_taken_out = 0.0;
   // Detection: the hip's speed that counts as moving, and its acceleration, as a fraction of the
   // peak, below which the push is over.

@@ -6,6 +6,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/push/push_estimation.h"
+#include "models/stance.h"
 
 namespace pushid {
 namespace {

@@ -14,6 +14,7 @@
 #include "ident/report/report_tables.h"
 #include "ident/report/starts_text.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/validation/step_score_report.h"
 
 namespace pushid {
 namespace {
@@ -80,8 +81,9 @@ std::string ReportText(const FittedModel& model) {
       Count(static_cast<int>(result.recordings.size()), "recording") +
       (from.setting.empty() ? "" : " (" + from.setting + ")") + ", posture " +
       NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
-      NameOf(o.model.push_tail) + ", self force " +
-      SelfForceText(o.self_force, o.model.self_network.get()) +
+      NameOf(o.model.push_tail) +
+      (o.model.stance == Stance::kSlide ? "" : ", stance " + NameOf(o.model.stance)) +
+      ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
       (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") + ", interaction " +
       NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(model.provenance) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
@@ -107,6 +109,7 @@ std::string ReportText(const FittedModel& model) {
   text += BehaviourText(result);
   const TextTable lines = LinesTable(result);
   if (lines.rows().size() > 1) text += lines.ToString();
+  if (result.step_probability) text += StepProbabilityText(*result.step_probability) + "\n";
   text += "\n";
   text += "cost " + Rounded(result.cost, 6) + " after " +
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +

@@ -275,6 +275,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.derived = Derived(problem, best.to, result.uncertainty);
   AddUnits(problem, best.to, &result);
   result.push_range = FittedPushRange(ModelOf(result), recordings);
+  result.step_probability = FitStepProbability(ModelOf(result), recordings);
   result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);

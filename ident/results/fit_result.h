@@ -12,6 +12,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/results/ensemble.h"
 #include "ident/results/push_range.h"
+#include "ident/results/step_probability.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/network_takeover.h"
@@ -45,6 +46,8 @@ struct FitResult {
   // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
   std::optional<PushRange> push_range;  // none in files that are older than it
+  // None where nobody stepped or everybody did, and in older files.
+  std::optional<StepProbability> step_probability;
   Uncertainty uncertainty;
   Diagnostics diagnostics;
   Behaviour behaviour;

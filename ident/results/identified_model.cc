@@ -12,6 +12,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.others = result.others;
   model.pool_by = result.options.pool_by;
   model.push_range = result.push_range;
+  model.step_probability = result.step_probability;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
     ParameterSet<double>& own = model.by_unit[unit] = result.parameters;

@@ -9,6 +9,7 @@
 #include "ident/results/json_pieces.h"
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
+#include "ident/results/step_probability_json.h"
 
 namespace pushid {
 namespace {
@@ -182,6 +183,7 @@ class ModelReader {
     ReadLearned();
     ReadEstimates();
     ReadPooled();
+    ReadStepProbability();
     ReadPushRange();
     ReadValues();
     ReadJudgement();
@@ -258,6 +260,11 @@ class ModelReader {
         result_.subjects[id].pooled[name] = EstimateFrom(estimate);
       }
     }
+  }
+
+  void ReadStepProbability() {
+    if (!json_.contains("step_probability")) return;
+    result_.step_probability = StepProbabilityFromJson(At("step_probability"));
   }
 
   void ReadPushRange() {

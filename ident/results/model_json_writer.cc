@@ -7,6 +7,7 @@
 #include "ident/results/json_pieces.h"
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
+#include "ident/results/step_probability_json.h"
 
 namespace pushid {
 namespace {
@@ -248,6 +249,9 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                  {"total_seconds", run.total_seconds},
                  {"num_threads", run.num_threads}}}};
   if (result.push_range) json["push_range"] = PushRangeJson(*result.push_range);
+  if (result.step_probability) {
+    json["step_probability"] = ToJson(*result.step_probability);
+  }
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);

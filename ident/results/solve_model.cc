@@ -30,6 +30,7 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
     model.by_unit[unit] = problem.Parameters(best, unit);
   }
   if (options.ensemble > 1) model.others = FitOtherSeeds(recordings, prepared);
+  model.step_probability = FitStepProbability(model, recordings);
   solved.behaviour = problem.BehaviourAt(best);
   return solved;
 }

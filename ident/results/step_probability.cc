@@ -79,6 +79,7 @@ double StepMargin(const ModelOptions& options, const ParameterSet<double>& param
 
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
                                       const PendulumRecording& recording) {
+  if (!recording.StepsKnown()) return {};
   std::vector<ParameterSet<double>> parameters;
   for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
     parameters.push_back(model.For(unit));
@@ -92,7 +93,7 @@ std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
   for (int n = 0; n < recording.num_people(); ++n) {
     outcomes.push_back(
         {StepMargin(model.options, parameters[n], recording.scene.people[n], path, n),
-         recording.steps[n].Stepped(), PersonKey(recording, n)});
+         recording.Stepped(n), PersonKey(recording, n)});
   }
   return outcomes;
 }

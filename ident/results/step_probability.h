@@ -4,8 +4,8 @@
 // beyond the edge of the feet's support, along its own direction, at most:
 //   margin = max over frames of |xi| (1 - 1 / rho)      m; negative while it stays inside
 //   P(step) = 1 / (1 + exp(-(a + margin / w)))
-// a, w by maximum likelihood over everybody in the fitted recordings, after the trajectories, with a
-// weak prior that holds them finite where a margin tells all who step from all who do not. Errors
+// a, w by maximum likelihood over everybody in the fitted recordings, after the trajectories, with
+// a weak prior that holds them finite where a margin tells all who step from all who do not. Errors
 // are clustered by person (CR1), and those of a probability are by the delta method. What is known
 // of a person is what was recorded: who would step after the recording's end counts as standing.
 #pragma once
@@ -49,7 +49,7 @@ std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
 // Nothing where nobody stepped, or everybody.
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes);
 // After the trajectories of a model.
-std::optional<StepProbability> FitStepProbability(
-    const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings);
+std::optional<StepProbability> FitStepProbability(const IdentifiedModel& model,
+                                                  const std::vector<PendulumRecording>& recordings);
 
 }  // namespace pushid

@@ -15,6 +15,17 @@ struct Sums {
   explicit Sums(size_t recordings) : scores(recordings), counts(recordings, 0) {}
 };
 
+void AddSteps(const std::vector<StepPrediction>& steps, std::vector<StepPrediction>* sum) {
+  if (sum->empty()) {
+    *sum = steps;
+    return;
+  }
+  for (size_t n = 0; n < std::min(steps.size(), sum->size()); ++n) {
+    (*sum)[n].margin += steps[n].margin;
+    (*sum)[n].probability += steps[n].probability;
+  }
+}
+
 // One fold's scores, added to the sums too.
 FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums) {
   FoldScore result;
@@ -43,6 +54,7 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
       result.*metric.value += score.*metric.value;
     }
     sum.propagation.Add(score.propagation);
+    AddSteps(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
   }
   for (const HipMetric& metric : kHipMetrics) result.*metric.value /= std::max(1, scored);
@@ -75,6 +87,10 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, Sums su
     if (sums.counts[i] > 0) {
       for (const HipMetric& metric : kHipMetrics) mean.*metric.value /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
+      for (StepPrediction& step : mean.steps) {
+        step.margin /= sums.counts[i];
+        step.probability /= sums.counts[i];
+      }
     }
     held.push_back(recordings[i]);
     means.push_back(mean);

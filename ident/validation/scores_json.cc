@@ -3,6 +3,7 @@
 
 #include "ident/parameters/option_names.h"
 #include "ident/results/result_json.h"
+#include "ident/validation/step_score_report.h"
 
 namespace pushid {
 namespace {
@@ -29,6 +30,15 @@ Json GroupsJson(const std::map<std::string, MeanScore>& groups) {
   return json;
 }
 
+Json StepsJson(const std::vector<StepPrediction>& steps) {
+  Json people = Json::array();
+  for (const StepPrediction& step : steps) {
+    people.push_back(
+        {{"margin_m", step.margin}, {"probability", step.probability}, {"stepped", step.stepped}});
+  }
+  return people;
+}
+
 }  // namespace
 
 Json ToJson(const ScoreSummary& summary, bool with_recordings) {
@@ -44,6 +54,7 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
       }
       row["fell"] = r.fell;
       if (!r.propagation.people.empty()) row["people"] = PeopleJson(r.propagation);
+      if (!r.steps.empty()) row["predicted_steps"] = StepsJson(r.steps);
       json["recordings"].push_back(row);
     }
   }
@@ -58,6 +69,7 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
       json["propagation"]["by_setting"][name] = ToJson(setting);
     }
   }
+  if (summary.steps.known()) json["who_steps"] = ToJson(summary.steps);
   return json;
 }
 

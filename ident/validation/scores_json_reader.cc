@@ -2,6 +2,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/parameters/fit_options_json.h"
 #include "ident/validation/scores_json.h"
+#include "ident/validation/step_score_report.h"
 
 namespace pushid {
 namespace {
@@ -72,6 +73,7 @@ Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
     summary.by_magnitude = GroupsFrom(json.at("by_magnitude"));
     summary.by_subject = GroupsFrom(json.at("by_subject"));
     summary.by_setting = GroupsFrom(json.at("by_setting"));
+    if (json.contains("who_steps")) summary.steps = StepScoreFromJson(json.at("who_steps"));
     if (!json.contains("propagation")) return summary;
     const Json& propagation = json.at("propagation");
     summary.propagation = PropagationFrom(propagation);

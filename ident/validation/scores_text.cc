@@ -6,6 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "ident/validation/step_score_report.h"
 
 namespace pushid {
 namespace {
@@ -124,6 +125,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   if (m.by_subject.size() > 1) groups(subject, &ScoreSummary::by_subject);
   if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
   text += table.ToString() + ErrorsText(m);
+  if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
   if (m.propagation_by_setting.size() > 1) {
@@ -208,6 +210,12 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (size_t i = 1; i < candidates.size(); ++i) {
     text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
+  std::vector<std::pair<std::string, const StepScore*>> steps;
+  for (const CrossValidation& candidate : candidates) {
+    steps.emplace_back(candidate.predictor, &candidate.summary.steps);
+  }
+  const std::string who_steps = StepScoresText(steps);
+  if (!who_steps.empty()) text += "\n" + who_steps;
   if (!groups) return text;
   std::vector<PropagationColumn> columns;
   for (const CrossValidation& candidate : candidates) {

@@ -57,6 +57,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
                      PushCheckSection(model),
                      HorizonCheckSection(model),
                      BehaviourSection(model),
+                     StepSection(model, views),
                      FigureSection(views),
                      MotionSection(views),
                      RecordingSection(model),

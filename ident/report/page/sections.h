@@ -26,6 +26,7 @@ ReportSection LeverageSection(const FittedModel& model);
 ReportSection ResidualSection(const FittedModel& model);
 ReportSection SolveSection(const FittedModel& model);
 ReportSection MotionSection(const std::vector<RecordingView>& views);
+ReportSection StepSection(const FittedModel& model, const std::vector<RecordingView>& views);
 ReportSection FigureSection(const std::vector<RecordingView>& views);
 ReportSection DesignSection(const ExperimentDesign& design);
 ReportSection ProvenanceSection(const FittedModel& model);

@@ -40,6 +40,7 @@ ReportSection SummarySection(const FittedModel& model) {
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
+  facts.Add({"feet", NameOf(o.model.stance)});
   facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.self_network->rod)});
   facts.Add({"interaction", NameOf(o.model.interaction)});

@@ -10,6 +10,7 @@
 #include "ident/push/push_errors.h"
 #include "ident/push/push_estimation.h"
 #include "ident/results/fit.h"
+#include "models/stance.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -1,0 +1,119 @@
+// ident: Brier score, AUC and calibration for readers.
+#include "ident/validation/step_score_report.h"
+
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/text_table.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string WithError(double value, double error) {
+  return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
+}
+
+std::string FifthText(const StepFifth& fifth) {
+  return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);
+}
+
+}  // namespace
+
+std::string StepProbabilityText(const StepProbability& p) {
+  const double a = p.coefficients[0], b = p.coefficients[1];
+  std::string text = "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
+                     " margin))), margin in m: how far the capture point gets beyond the feet's "
+                     "support (negative: stays within); errors +- " +
+                     Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
+                     Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " +
+                     std::to_string(p.clusters) + " people, of " + std::to_string(p.tracks) +
+                     " tracks with " + std::to_string(p.stepped) + " who step";
+  if (b > 0.0) text += "; half of all people step at a margin of " + Rounded(-a / b, 2) + " m";
+  return text + ".";
+}
+
+TextTable StepScoresTable(const NamedStepScores& scores) {
+  std::vector<std::string> header = {"who steps"};
+  std::vector<bool> left = {true};
+  NamedStepScores known;
+  size_t fifths = 0;
+  for (const auto& [name, score] : scores) {
+    if (!score->known()) continue;
+    known.emplace_back(name, score);
+    header.push_back(name);
+    left.push_back(true);
+    fifths = std::max(fifths, score->fifths.size());
+  }
+  TextTable table(header, left);
+  if (known.empty()) return table;
+  const auto add = [&](const std::string& title, const auto& cell) {
+    std::vector<std::string> row = {title};
+    for (const auto& [name, score] : known) row.push_back(cell(*score));
+    table.Add(row);
+  };
+  add("people who step / people", [](const StepScore& s) {
+    return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
+  });
+  add("AUC", [](const StepScore& s) { return WithError(s.auc, s.auc_error); });
+  add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
+  for (size_t i = 0; i < fifths; ++i) {
+    add(i == 0 ? "least probable fifth: P(step) -> share" : "next", [i](const StepScore& s) {
+      return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
+    });
+  }
+  return table;
+}
+
+std::string StepScoresText(const NamedStepScores& scores) {
+  const TextTable table = StepScoresTable(scores);
+  if (table.rows().size() < 2) return "";
+  int people = 0;
+  for (const auto& [name, score] : scores) people = std::max(people, score->people);
+  return table.ToString() + "+-: standard errors by leaving out each of " +
+         std::to_string(people) + " people\n";
+}
+
+Json ToJson(const StepScore& score) {
+  Json json = {{"tracks", score.tracks},           {"stepped", score.stepped},
+               {"people", score.people},           {"brier", score.brier},
+               {"brier_error", score.brier_error}, {"auc", score.auc},
+               {"auc_error", score.auc_error},     {"fifths", Json::array()}};
+  for (const StepFifth& fifth : score.fifths) {
+    json["fifths"].push_back(
+        {{"tracks", fifth.tracks}, {"predicted", fifth.predicted}, {"observed", fifth.observed}});
+  }
+  return json;
+}
+
+StepScore StepScoreFromJson(const Json& json) {
+  StepScore score;
+  score.tracks = json.at("tracks");
+  score.stepped = json.at("stepped");
+  score.people = json.at("people");
+  score.brier = json.at("brier");
+  score.brier_error = json.at("brier_error");
+  score.auc = json.at("auc");
+  score.auc_error = json.at("auc_error");
+  for (const Json& fifth : json.at("fifths")) {
+    score.fifths.push_back({fifth.at("tracks"), fifth.at("predicted"), fifth.at("observed")});
+  }
+  return score;
+}
+
+Chart ReliabilityChart(const StepScore& score) {
+  Chart chart;
+  chart.title = "who steps: share over probability";
+  chart.x_label = "predicted probability of a step";
+  chart.y_from = 0.0;
+  chart.y_to = 1.0;
+  ChartPoints shares;
+  for (const StepFifth& fifth : score.fifths) shares.emplace_back(fifth.predicted, fifth.observed);
+  chart.lines.push_back({{{0.0, 0.0}, {1.0, 1.0}}, kLimitLook, false});
+  chart.lines.push_back({shares, kPredictedLook, false});
+  chart.lines.push_back({shares, kPredictedLook, true});
+  return chart;
+}
+
+}  // namespace pushid
