@@ -58,13 +58,13 @@ double SpeedAt(const Track& track, int frame, double fps) {
 
 class StepFinder {
  public:
-  StepFinder(const FootTracks& tracks, double fps, const StepThresholds& thresholds)
-      : fps_(fps), thresholds_(thresholds) {
+  StepFinder(const FootTracks& tracks, double fps) : fps_(fps) {
     for (const Track* track : {&tracks.ankle, &tracks.toe, &tracks.heel}) {
       if (track->empty()) continue;
       Track whole = WithoutGaps(*track, tracks.weight);
       if (!whole.empty()) points_.push_back(std::move(whole));
     }
+    thresholds_ = points_.size() > 1 ? kToeOrHeelToo : kAnkleAlone;
     frames_ = points_.empty() ? 0 : static_cast<int>(points_[0].size());
   }
 
@@ -152,7 +152,7 @@ class StepFinder {
   }
 
   const double fps_;
-  const StepThresholds thresholds_;
+  StepThresholds thresholds_ = kAnkleAlone;
   std::vector<Track> points_;  // the ankle first
   int frames_ = 0;
 };
@@ -194,19 +194,18 @@ bool PersonSteps::Stands(Foot foot, int frame) const {
   });
 }
 
-std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps,
-                                const StepThresholds& thresholds) {
-  return StepFinder(tracks, fps, thresholds).Find(foot);
+std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps) {
+  return StepFinder(tracks, fps).Find(foot);
 }
 
-PersonSteps FindSteps(const RecordedPerson& person, double fps, const StepThresholds& thresholds) {
+PersonSteps FindSteps(const RecordedPerson& person, double fps) {
   PersonSteps found;
   for (Foot foot : kFeet) {
     const bool left = foot == Foot::kLeft;
     const FootTracks tracks{left ? person.left_ankle : person.right_ankle,
                             left ? person.left_toe : person.right_toe,
                             left ? person.left_heel : person.right_heel, person.weight};
-    const std::vector<FootStep> steps = FindSteps(foot, tracks, fps, thresholds);
+    const std::vector<FootStep> steps = FindSteps(foot, tracks, fps);
     found.steps.insert(found.steps.end(), steps.begin(), steps.end());
   }
   std::stable_sort(found.steps.begin(), found.steps.end(),

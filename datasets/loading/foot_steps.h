@@ -40,18 +40,21 @@ struct FootStep {
 };
 
 struct StepThresholds {
-  double moving = 0.15;      // m/s: slower than this is standing
-  double stepping = 0.3;     // m/s that a step reaches
+  double moving;             // m/s: slower than this is standing
+  double stepping;           // m/s that a step reaches
   double distance = 0.05;    // m that every point of the foot goes
   double duration_s = 0.08;  // the shortest step
   double pause_s = 0.05;     // shorter rests do not part two steps
 };
+inline constexpr StepThresholds kToeOrHeelToo{0.15, 0.3};
+// An ankle alone swings over a toe that rests: what it does below these speeds is a heel lift.
+inline constexpr StepThresholds kAnkleAlone{0.5, 0.7};
 
 // One foot's points, one position per frame, m; toe and heel may be empty.
 struct FootTracks {
   std::vector<Eigen::Vector3d> ankle, toe, heel;
   // Empty: every frame was seen. Frames with weight 0 were not, nor were positions that are not
-  // finite; a straight line stands in, so that a foot found elsewhere after a gap has stepped in
+  // finite; a straight line stands in: a foot that is elsewhere after a short gap has stepped in
   // it.
   std::vector<double> weight;
 };
@@ -65,10 +68,8 @@ struct PersonSteps {
   bool Stands(Foot foot, int frame) const;
 };
 
-std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps,
-                                const StepThresholds& thresholds = {});
-PersonSteps FindSteps(const RecordedPerson& person, double fps,
-                      const StepThresholds& thresholds = {});
+std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps);
+PersonSteps FindSteps(const RecordedPerson& person, double fps);
 
 // "left 0.42-0.78 s 0.31 m forwards; right from 0.95 s 0.12 m to the left, cut off"; "none".
 std::string StepsText(const PersonSteps& steps, double fps);

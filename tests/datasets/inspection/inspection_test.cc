@@ -72,11 +72,11 @@ TEST_F(InspectionTest, Steps) {
     const double way = std::min(1.0, (t - 50) / 30.0);
     motion_.positions[1][t].x() = 300.0 * way;
   }
-  EXPECT_TRUE(Contains(Said(), "steps           left 0.49-0.81 s 0.3 m forwards"));
+  EXPECT_TRUE(Contains(Said(), "steps           left 0.51-0.8 s 0.3 m forwards"));
   for (auto& track : motion_.positions) {
     for (Eigen::Vector3d& p : track) p = Eigen::Vector3d(p.y(), p.z(), p.x());
   }
-  EXPECT_TRUE(Contains(Said(), "steps           left 0.49-0.81 s 0.3 m forwards"));
+  EXPECT_TRUE(Contains(Said(), "steps           left 0.51-0.8 s 0.3 m forwards"));
 }
 
 TEST_F(InspectionTest, Units) {

@@ -333,6 +333,7 @@ TEST_F(LoadPointsTest, MappingFileForTables) {
   Use("motion.csv", MotionFormat::kCsv);
   entry().mapping = "map.json";
   ExpectTheWalker();
+  const std::string hash = Load().value()[0].content_hash;
   std::string map = ReadText(Path("map.json"));
   WriteText("map.json", map + " ");
   EXPECT_NE(Load().value()[0].content_hash, hash) << "the mapping is part of the data";
