@@ -183,6 +183,10 @@
     m.stance == Stance::kThreshold, false, \
     "how far to the side of the ankles' middle feet support", \
     "with pushes to the side, some of which make people step and some not") \
+  X(kAnkleReach, "ankle_reach", "r_a", "1", 1.5, 0.2, 10, 1, kLog, \
+    m.stance == Stance::kThreshold, false, \
+    "largest ankle torque over the weight times the support", \
+    "never: few of those recorded stand to the limit; 1 is a foot as long as the support") \
   X(kStepGain, "step_gain", "kappa", "1", 1, 0.05, 5, 1, kLog, \
     m.stance == Stance::kThreshold, false, \
     "speed of stepping feet over that of the capture point", \

@@ -1,26 +1,31 @@
 // models: feet that stand, and feet that step.
 //
-// Capture point, seen from where it rests over the ankles (m):
-//   xi = (hip - cart) - (hip - cart in the rest posture) + hip velocity / omega,  omega = sqrt(g /
-//   l) rho^2 = (xi_x / b)^2 + (xi_y / b_side)^2        b_back instead of b where xi_x < 0
+// Capture point, seen from where it rests over the ankles (m), with omega = sqrt(g / l):
+//   xi = (hip - cart) - (hip - cart in the rest posture) + hip velocity / omega
+//   rho^2 = (xi_x / b)^2 + (xi_y / b_side)^2,   b_back instead of b where xi_x < 0
+//
 // The step state s of a person, 0 standing, 1 stepping, follows whether rho is beyond 1:
 //   s' = beyond (1 - s) / t_on - (1 - beyond) s / t_off,   beyond = 1 / (1 + exp((1 - rho) / 0.05))
-// implicit in s, so that it stays between 0 and 1. With the cart's own forces F_c of self_force.h
-// (friction, Kp_x, Kp_y, the linear terms' cart rows), what acts is
-//   ground  -D v,  D = (1 - s)^2 M / 5.6 ms, at most mu_s M g, on the cart's velocity v after the
-//   step ankles  (1 - s) (hold - lim(Kp e + Kd e'))      balance about the ankles, each axis; lim
-//   limits
-//           the torque smoothly to m g times the support: no pressure beyond the feet
+// implicit in s, so that it stays between 0 and 1. It is a latch: a step lasts t_off longer than
+// what caused it, and a push that is over before t_on hardly lets go.
+//
+// With the cart's own forces F_c of self_force.h (friction, Kp_x, Kp_y, cart rows of the linear
+// terms) these act:
+//   ground  -D v on the cart's velocity v after the step, D = (1 - s)^2 M / 5.6 ms; at most mu_s M
+//   g ankles  (1 - s) (hold - lim(Kp e + Kd e')) about each axis; lim keeps the torque, smoothly,
+//   to
+//           r_a m g times the support: the ground presses no farther out than the toes
 //   feet    s F_c, and s times the torque between legs and trunk that takes the cart's velocity to
 //           kappa omega xi within 10 ms: the feet go where the person would come to rest
-// A torque inside the body moves the feet and leaves the momentum; F_c is what the ground does to
-// people who step. The latch makes a step last: a weak push lets go for a moment only.
-// While a `net` push lasts none of it acts, because its rows hold the feet's reaction; a
-// `net_without_friction` push had LDP's friction of 100 N s/m taken out, and gets it back.
+// A torque inside the body moves the feet and leaves the momentum to F_c, to pushes and to gravity.
+//
+// While a `net` push lasts none of it acts: its rows hold the feet's reaction. From a
+// `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
+//
 // Sources: capture point, Hof 2008 and Pratt et al. 2006; the rest was chosen by cross-validation
-// (tests/studies/stance.py). Rejected: feet that slide again when let go, under the forces of
-// sliding feet: those who step stop too early; the support as the distance to a fixed place of the
-// feet: no second step.
+// (tests/studies/stance.py). Rejected: feet that are let go to slide under the forces of sliding
+// feet (those who step stop too early); feet drawn to a target that was fixed when the step began
+// (it fits worse, and nothing follows it when the first step was too short).
 #pragma once
 
 #include <cmath>
@@ -37,11 +42,11 @@ inline constexpr double kPublishedFriction = 100.0;  // N s/m, taken out of net_
 // The parameters of stance, which derivatives are taken by.
 template <typename T>
 struct StanceParameters {
-  static constexpr Parameter kIds[] = {kKpTheta,      kKpPhi,       kKdTheta,       kKdPhi,
-                                       kSupportFront, kSupportBack, kSupportSide,   kStepGain,
-                                       kStepOnset,    kStepRelease, kStaticFriction};
+  static constexpr Parameter kIds[] = {kKpTheta,      kKpPhi,       kKdTheta,     kKdPhi,
+                                       kSupportFront, kSupportBack, kSupportSide, kAnkleReach,
+                                       kStepGain,     kStepOnset,   kStepRelease, kStaticFriction};
   static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
-  T Kp[2], Kd[2], front, back, side, gain, onset, release, static_friction;
+  T Kp[2], Kd[2], front, back, side, ankle_reach, gain, onset, release, static_friction;
 
   // value(id): of a parameter.
   template <typename Value>
@@ -51,6 +56,7 @@ struct StanceParameters {
         front(value(kSupportFront)),
         back(value(kSupportBack)),
         side(value(kSupportSide)),
+        ankle_reach(value(kAnkleReach)),
         gain(value(kStepGain)),
         onset(value(kStepOnset)),
         release(value(kStepRelease)),
@@ -127,7 +133,7 @@ Eigen::Matrix<T, 2, 1> AnkleTorque(const SelfForce& self, const StanceParameters
     const T wanted = self.scale.stiffness * p.Kp[i] * (state.q[2 + i] - self.posture[i]) +
                      self.scale.damping * p.Kd[i] * state.qd[2 + i];
     const T& reach = i == 1 ? p.side : RealPart(wanted) < 0.0 ? p.back : p.front;
-    const T most = weight * reach;
+    const T most = weight * p.ankle_reach * reach;
     torque[i] = self.hold[i] - most * SmoothLimit<T>(wanted / most);
   }
   return torque;

@@ -121,11 +121,12 @@ void SetStance(Stance stance, FitOptions* options) {
   ParameterTable& table = options->table;
   options->model.push = PushUse::kAsRecorded;
   options->start = FitStart::kNominal;
-  SetSelfForce(SelfForceKind::kNone, options);
-  // Ankles that bring the capture point back: 1.4 m g l of stiffness, and as much damping as keeps
+  // Who stands gives way about the ankles, not at them: people push at the hip, or above.
+  table[kContactHeight].nominal = 0.95;
+  // Ankles that bring the capture point back: 1.6 m g l of stiffness, and as much damping as keeps
   // the way back from swinging. Few of those who were recorded stand: the data say little of them.
-  for (Parameter id : {kKpTheta, kKpPhi}) table[id].nominal = 1000;
-  for (Parameter id : {kKdTheta, kKdPhi}) table[id].nominal = 320;
+  for (Parameter id : {kKpTheta, kKpPhi}) table[id].nominal = 1150;
+  for (Parameter id : {kKdTheta, kKdPhi}) table[id].nominal = 330;
   table[kKpTheta].free = false;
   for (const Start& start : {Start{kMu, 80, 80}, Start{kAx, 15, 10}, Start{kTailGain, 2, 2},
                              Start{kSupportFront, 0.1, 0.03}}) {

@@ -19,9 +19,9 @@ ModelOptions Threshold() {
 ParameterSet<double> StandingParameters() {
   ParameterSet<double> p{};
   p[kMu] = p[kMuY] = 80.0, p[kAx] = 15.0, p[kAy] = 15.0;
-  p[kKpTheta] = p[kKpPhi] = 1000.0, p[kKdTheta] = p[kKdPhi] = 320.0;
+  p[kKpTheta] = p[kKpPhi] = 1150.0, p[kKdTheta] = p[kKdPhi] = 330.0;
   p[kTailGain] = 2.0, p[kTailTime] = 0.2;
-  p[kSupportFront] = 0.1, p[kSupportBack] = 0.06, p[kSupportSide] = 0.1;
+  p[kSupportFront] = 0.1, p[kSupportBack] = 0.06, p[kSupportSide] = 0.1, p[kAnkleReach] = 1.5;
   p[kStepGain] = 1.0, p[kStepOnset] = 0.13, p[kStepRelease] = 0.4, p[kStaticFriction] = 1.0;
   return p;
 }
@@ -86,7 +86,7 @@ TEST(Stance, FeetHoldWhileTheCapturePointIsOverThem) {
   ForceTrace trace;
   const Scene scene = PushedFor(10.0);
   const RolloutPath<double> path = PathOf(scene, StandingParameters(), 2.0, &trace);
-  const double most = 0.9 * 80.0 * kGravity * 0.1;
+  const double most = 0.9 * 80.0 * kGravity * 0.1 * 1.5;
   for (int t = 0; t < path.num_frames(); ++t) {
     EXPECT_LT(std::abs(path.At(t, 0).q[0]), 0.003) << t;
     EXPECT_LT(path.At(t, 0).step, 1e-3);

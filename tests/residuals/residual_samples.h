@@ -31,7 +31,7 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
   p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.25;
   p[kRodLift] = 0.8;
-  p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09;
+  p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09, p[kAnkleReach] = 1.3;
   p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
   return p;
 }
