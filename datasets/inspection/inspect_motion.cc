@@ -8,7 +8,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
 #include "datasets/formats/frame_rate.h"
-#include "datasets/loading/motion_preparation.h"
+#include "datasets/inspection/inspect_steps.h"
 
 namespace pushid {
 namespace {
@@ -30,16 +30,6 @@ std::string AxisName(const Eigen::Vector3d& direction) {
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
   return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
-}
-
-// Frames in which all of the chosen points were seen have their mean, others NaN.
-Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen, double metres) {
-  Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
-  for (int index : chosen) {
-    for (int t = 0; t < motion.num_frames(); ++t) mean[t] += motion.positions[index][t];
-  }
-  for (Eigen::Vector3d& position : mean) position *= metres / static_cast<double>(chosen.size());
-  return mean;
 }
 
 class MotionInspector {
@@ -102,9 +92,9 @@ class MotionInspector {
   }
 
   void Body(const PendulumJoints& joints) {
-    const Track hip = MeanOf(motion_, joints.hip, 1.0);
-    const Track left = MeanOf(motion_, joints.left_ankle, 1.0);
-    const Track right = MeanOf(motion_, joints.right_ankle, 1.0);
+    const Track hip = MeanOf(motion_, joints.hip);
+    const Track left = MeanOf(motion_, joints.left_ankle);
+    const Track right = MeanOf(motion_, joints.right_ankle);
     int first = 0;
     const int frames = motion_.num_frames();
     while (first < frames && !(hip[first] + left[first] + right[first]).allFinite()) ++first;
@@ -133,38 +123,8 @@ class MotionInspector {
              const Eigen::Vector3d& rod) {
     const Result<Eigen::Matrix3d> turn = AxesRotation(up_, AxisName(to_the_left.cross(rod)));
     if (!(motion_.rate_hz > 0.0) || !turn.ok()) return;
-    const auto track = [&](const std::vector<int>& chosen) {
-      if (chosen.empty()) return Track();
-      Track mean = MeanOf(motion_, chosen, metres_);
-      for (Eigen::Vector3d& p : mean) p = turn.value() * p;
-      return mean;
-    };
-    // As loading does: a toe or heel that is lost for long is not used.
-    const auto if_seen = [&](const std::vector<int>& chosen) {
-      const int longest = LongestHidden(chosen);
-      return longest > PreparationOptions{}.max_gap_s * motion_.rate_hz ? Track() : track(chosen);
-    };
-    RecordedPerson person;
-    person.left_ankle = track(joints.left_ankle);
-    person.right_ankle = track(joints.right_ankle);
-    person.left_toe = if_seen(joints.left_toe);
-    person.right_toe = if_seen(joints.right_toe);
-    person.left_heel = if_seen(joints.left_heel);
-    person.right_heel = if_seen(joints.right_heel);
-    found_.steps = FindSteps(person, motion_.rate_hz);
+    found_.steps = StepsOf(motion_, joints, metres_ * turn.value());
     found_.Fact("steps", StepsText(*found_.steps, motion_.rate_hz));
-  }
-
-  int LongestHidden(const std::vector<int>& chosen) const {
-    int longest = 0;
-    for (int index : chosen) {
-      int run = 0;
-      for (const Eigen::Vector3d& position : motion_.positions[index]) {
-        run = position.allFinite() ? 0 : run + 1;
-        longest = std::max(longest, run);
-      }
-    }
-    return longest;
   }
 
   void Places(const PendulumJoints& joints) {
@@ -182,7 +142,7 @@ class MotionInspector {
     }
     for (const std::vector<int>* place : {&joints.hip, &joints.left_ankle, &joints.right_ankle}) {
       for (int index : *place) {
-        if (const int longest = LongestHidden({index}); longest > 0) {
+        if (const int longest = LongestHidden(motion_, {index}); longest > 0) {
           found_.Warn(
               motion_.names[index] + " is hidden for up to " + std::to_string(longest) + " frames" +
               (motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "") +
