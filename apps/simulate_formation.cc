@@ -44,15 +44,25 @@ std::string Fixed(double value, int decimals) {
 }
 
 void PrintPeople(const FormationRun& run) {
-  TextTable table({"person", "x m", "y m", "onset s", "peak m/s", "displaced m", "outcome"},
-                  {false, false, false, false, false, false, true});
+  const bool steps = !run.prediction.steps.empty();
+  std::vector<std::string> header = {"person",   "x m",         "y m",    "onset s",
+                                     "peak m/s", "displaced m", "outcome"};
+  std::vector<bool> left = {false, false, false, false, false, false, true};
+  if (steps) header.push_back("P(step)"), left.push_back(false);
+  TextTable table(header, left);
   for (int n = 0; n < run.num_people(); ++n) {
     const PersonSummary& person = run.summaries[n];
     const Vector4<double>& q = run.recording.scene.people[n].start.q;
-    table.Add({std::to_string(n), Fixed(q[0], 2), Fixed(q[1], 2),
-               person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame), 2),
-               Fixed(person.peak_speed, 2), Fixed(person.displacement, 2),
-               std::string(Name(person.outcome))});
+    std::vector<std::string> row = {
+        std::to_string(n),
+        Fixed(q[0], 2),
+        Fixed(q[1], 2),
+        person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame), 2),
+        Fixed(person.peak_speed, 2),
+        Fixed(person.displacement, 2),
+        std::string(Name(person.outcome))};
+    if (steps) row.push_back(Fixed(run.prediction.steps[n].probability, 2));
+    table.Add(row);
   }
   std::printf("%s%s", table.ToString().c_str(), OutcomeLegend().c_str());
 }

@@ -55,12 +55,23 @@ BodyOf<T> BodyNow(const Body& body, const T& rod, const T& lift) {
   return {body.mass, body.rod_length + rod, body.cart_height - lift * rod};
 }
 
+// Sines and cosines of theta and phi: a step needs them several times, and they are half its cost.
+template <typename T>
+struct Angles {
+  T s_th = T(0.0), c_th = T(1.0), s_ph = T(0.0), c_ph = T(1.0);
+
+  Angles() = default;
+  explicit Angles(const Vector4<T>& q) {
+    using std::cos, std::sin;
+    s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  }
+};
+
 template <typename T, typename L>
-Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
-  using std::cos, std::sin;
+Matrix4<T> MassMatrix(const BodyOf<L>& body, const Angles<T>& angles) {
   const double m = body.point_mass();
   const L l = body.rod_length;
-  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T zero(0.0), total(body.mass);
   Matrix4<T> mass;
   mass << total, zero, m * l * c_th, zero,                     //
@@ -71,11 +82,15 @@ Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
 }
 
 template <typename T, typename L>
-Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>& qd) {
-  using std::cos, std::sin;
+Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
+  return MassMatrix(body, Angles<T>(q));
+}
+
+template <typename T, typename L>
+Vector4<T> Coriolis(const BodyOf<L>& body, const Angles<T>& angles, const Vector4<T>& qd) {
   const double m = body.point_mass();
   const L l = body.rod_length;
-  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T thd = qd[2], phd = qd[3];
   return {-m * l * s_th * thd * thd,
           m * l * (2.0 * s_th * c_ph * thd * phd + c_th * s_ph * (thd * thd + phd * phd)),
@@ -83,18 +98,27 @@ Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>
 }
 
 template <typename T, typename L>
-Vector4<T> Gravity(const BodyOf<L>& body, const Vector4<T>& q) {
-  using std::cos, std::sin;
+Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>& qd) {
+  return Coriolis(body, Angles<T>(q), qd);
+}
+
+template <typename T, typename L>
+Vector4<T> Gravity(const BodyOf<L>& body, const Angles<T>& angles) {
   const L mgl = body.point_mass() * kGravity * body.rod_length;
-  return {T(0.0), T(0.0), -mgl * sin(q[2]) * cos(q[3]), -mgl * cos(q[2]) * sin(q[3])};
+  return {T(0.0), T(0.0), -mgl * angles.s_th * angles.c_ph, -mgl * angles.c_th * angles.s_ph};
+}
+
+template <typename T, typename L>
+Vector4<T> Gravity(const BodyOf<L>& body, const Vector4<T>& q) {
+  return Gravity(body, Angles<T>(q));
 }
 
 // Inverse of the mass matrix by its Schur complement: the cart block is diagonal, so 2 x 2 remains.
 // cart: what stands on that diagonal, kg: the body's mass, and more where the ground holds the
 // feet.
 template <typename T, typename L, typename Cart>
-Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q, const Cart& cart) {
-  const Matrix4<T> mass = MassMatrix(body, q);
+Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Angles<T>& angles, const Cart& cart) {
+  const Matrix4<T> mass = MassMatrix(body, angles);
   const Cart w = 1.0 / cart;
   const T b02 = mass(0, 2), b12 = mass(1, 2), b13 = mass(1, 3);
   const T s22 = mass(2, 2) - w * (b02 * b02 + b12 * b12);
@@ -114,25 +138,32 @@ Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q, const C
 
 template <typename T, typename L>
 Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
-  return InverseMassMatrix(body, q, body.mass);
+  return InverseMassMatrix(body, Angles<T>(q), body.mass);
 }
 
 // qdd for a generalized force [N, N, N m, N m].
 template <typename T, typename L>
+Vector4<T> Acceleration(const BodyOf<L>& body, const Angles<T>& angles, const Vector4<T>& qd,
+                        const Vector4<T>& force) {
+  const Vector4<T> right = force - Coriolis(body, angles, qd) - Gravity(body, angles);
+  return InverseMassMatrix(body, angles, body.mass) * right;
+}
+
+template <typename T, typename L>
 Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
                         const Vector4<T>& force) {
-  const Vector4<T> right = force - Coriolis(body, state.q, state.qd) - Gravity(body, state.q);
-  return InverseMassMatrix(body, state.q) * right;
+  return Acceleration(body, Angles<T>(state.q), state.qd, force);
 }
 
 // The same on ground that resists the cart's velocity after the step, qd + dt qdd, by `ground`
 // (N s/m): implicit, so that any resistance is stable.
 template <typename T, typename L>
-Vector4<T> AccelerationOnGround(const BodyOf<L>& body, const PendulumState<T>& state,
-                                const Vector4<T>& force, const T& ground, double dt) {
-  Vector4<T> right = force - Coriolis(body, state.q, state.qd) - Gravity(body, state.q);
-  for (int i = 0; i < 2; ++i) right[i] -= ground * state.qd[i];
-  return InverseMassMatrix(body, state.q, T(body.mass + dt * ground)) * right;
+Vector4<T> AccelerationOnGround(const BodyOf<L>& body, const Angles<T>& angles,
+                                const Vector4<T>& qd, const Vector4<T>& force, const T& ground,
+                                double dt) {
+  Vector4<T> right = force - Coriolis(body, angles, qd) - Gravity(body, angles);
+  for (int i = 0; i < 2; ++i) right[i] -= ground * qd[i];
+  return InverseMassMatrix(body, angles, T(body.mass + dt * ground)) * right;
 }
 
 template <typename T>
@@ -157,8 +188,8 @@ Vector3<T> HipPosition(const BodyOf<L>& body, const Vector4<T>& q) {
 template <typename T, typename L>
 Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
                            const Vector4<T>& qdd) {
-  return MassMatrix(body, state.q) * qdd + Coriolis(body, state.q, state.qd) +
-         Gravity(body, state.q);
+  const Angles<T> angles(state.q);
+  return MassMatrix(body, angles) * qdd + Coriolis(body, angles, state.qd) + Gravity(body, angles);
 }
 
 }  // namespace pushid

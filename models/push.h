@@ -89,22 +89,27 @@ void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int f
 
 // A force f (N, world) at the fraction `height` of the rod, as a generalized force.
 template <typename T>
-Vector4<T> GeneralizedForce(const Body& body, const Vector4<T>& q, const Vector3<T>& f,
+Vector4<T> GeneralizedForce(const Body& body, const Angles<T>& angles, const Vector3<T>& f,
                             double height) {
-  using std::cos, std::sin;
   const double al = height * body.rod_length;
-  const T s_th = sin(q[2]), c_th = cos(q[2]), s_ph = sin(q[3]), c_ph = cos(q[3]);
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
   return {f[0], f[1], al * (f[0] * c_th + f[1] * s_th * s_ph - f[2] * s_th * c_ph),
           al * (-f[1] * c_th * c_ph - f[2] * c_th * s_ph)};
+}
+
+template <typename T>
+Vector4<T> GeneralizedForce(const Body& body, const Vector4<T>& q, const Vector3<T>& f,
+                            double height) {
+  return GeneralizedForce<T>(body, Angles<T>(q), f, height);
 }
 
 // The tail's force where feet stand: at the hip.
 template <typename T>
 Vector4<T> TailForceAtHip(const ScenePush& push, const ParameterSet<T>& p, const Body& body,
-                          const Vector4<T>& q, int frame, double dt) {
+                          const Angles<T>& angles, int frame, double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
   const T gain = p[kTailGain] * TailDecay(push, p, frame, dt);
-  return GeneralizedForce<T>(body, q, {gain * push.mean[0], gain * push.mean[1], T(0.0)}, 1.0);
+  return GeneralizedForce<T>(body, angles, {gain * push.mean[0], gain * push.mean[1], T(0.0)}, 1.0);
 }
 
 // A half-sine of `frames` rows along +x at the hip of an upright person, of the named impulse (N

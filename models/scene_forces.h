@@ -36,6 +36,7 @@ Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
 template <typename T>
 struct NetForce {
   std::array<Vector4<T>, kNumForceParts> parts;
+  Angles<T> angles;  // of the state at which it acts
   // Where feet stand and step: the ground's resistance (N s/m) to the cart's velocity after the
   // step, a part of the friction once that is known (AddGround), and the next step state.
   T ground = T(0.0), next_step = T(0.0);
@@ -92,7 +93,7 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
                    balance = self.Balance(p, state, state.qd), linear = self.Linear(p, state);
   const Eigen::Matrix<T, 2, 1> cart_force = (friction + balance + linear).template head<2>();
   const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
-  const StanceForces<T> of_stance = StanceAt(self, stance, state, cart_force);
+  const StanceForces<T> of_stance = StanceAt(self, stance, force->angles, state, cart_force);
   force->next_step = of_stance.next_step;
   if (active == ActiveForces::kPushOnly) return;
   auto of_cart = [force](ForcePart part) { return (*force)[part].template head<2>(); };
@@ -115,6 +116,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
                        const Received<T>& received = {},
                        const Vector4<T>& network = Vector4<T>::Zero()) {
   NetForce<T> force;
+  force.angles = Angles<T>(state.q);
   force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   const bool stands = options.stance == Stance::kThreshold;
@@ -128,9 +130,9 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   if (options.push_tail == PushTail::kExponential) {
     for (const ScenePush& push : scene.pushes) {
       if (push.person != person) continue;
-      force[ForcePart::kTail] += stands
-                                     ? TailForceAtHip(push, p, self.body, state.q, frame, scene.dt)
-                                     : TailForce(push, p, frame, scene.dt);
+      force[ForcePart::kTail] +=
+          stands ? TailForceAtHip(push, p, self.body, force.angles, frame, scene.dt)
+                 : TailForce(push, p, frame, scene.dt);
     }
   }
   if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);
@@ -217,10 +219,12 @@ class SceneForces {
     const Body& body = self_[person].body;
     const PendulumState<T>& state = states_[person];
     if (options_->stance == Stance::kThreshold) {
-      return AccelerationOnGround(body, state, force.Total(), force.ground, scene_->dt);
+      return AccelerationOnGround(body, force.angles, state.qd, force.Total(), force.ground,
+                                  scene_->dt);
     }
-    if (rods_.empty()) return Acceleration(body, state, force.Total());
-    return Acceleration(BodyNow(body, state.rod, T(0.0)), state, force.Total());
+    const Vector4<T> total = force.Total();
+    if (rods_.empty()) return Acceleration(body, force.angles, state.qd, total);
+    return Acceleration(BodyNow(body, state.rod, T(0.0)), force.angles, state.qd, total);
   }
 
   // One step on: the pendulum under qdd, the step state and, where the model has a law for it, the

@@ -25,6 +25,8 @@
 
 namespace pushid {
 
+inline constexpr double kFootTime = 0.01;  // s, in which stepping feet get their speed
+
 // Factors from the reference person's gains to this body's, with the rod of frame 0: gains are the
 // person's, not the posture's.
 struct GainScale {
@@ -48,9 +50,14 @@ struct SelfForce {
   GainScale scale;
   FrictionKind friction;
   bool cart_derivative;
-  Eigen::Vector2d posture;                            // reference (theta, phi), rad
-  Eigen::Vector2d hold;                               // N m
-  double dt;                                          // s, for the backward difference
+  Eigen::Vector2d posture;  // reference (theta, phi), rad
+  Eigen::Vector2d hold;     // N m
+  double dt;                // s, for the backward difference
+  // Of feet that stand and step (stance.h): 1/s, sqrt(g / l); the hip before the cart in the
+  // reference posture, m; how fast stepping feet get their speed, 1/s.
+  double capture_rate;
+  Eigen::Vector2d rest_offset;
+  double foot_rate;
   std::vector<std::shared_ptr<const ForceLaw>> laws;  // the user's own
 
   // q0: the pose at frame 0.
@@ -62,10 +69,14 @@ struct SelfForce {
         posture(Eigen::Vector2d::Zero()),
         hold(Eigen::Vector2d::Zero()),
         dt(step),
+        capture_rate(std::sqrt(kGravity / person.rod_length)),
+        rest_offset(Eigen::Vector2d::Zero()),
+        foot_rate(-std::expm1(-step / kFootTime) / step),
         laws(options.own_laws) {
     if (options.posture == Posture::kInitial) {
       posture = q0.tail<2>();
       hold = Gravity(person, q0).tail<2>();
+      rest_offset = (HipPosition(person, q0).head<2>() - q0.head<2>());
     }
   }
 

@@ -36,7 +36,6 @@ namespace pushid {
 
 inline constexpr double kSupportEdge = 0.05;         // of rho: where feet begin to let go
 inline constexpr double kGroundTime = 1.0 / 180.0;   // s, in which standing feet stop
-inline constexpr double kFootTime = 0.01;            // s, in which stepping feet get their speed
 inline constexpr double kPublishedFriction = 100.0;  // N s/m, taken out of net_without_friction
 
 // The parameters of stance, which derivatives are taken by.
@@ -71,20 +70,16 @@ struct StanceForces {
   T next_step;                    // the step state after the step
 };
 
-inline double CaptureRate(const Body& body) { return std::sqrt(kGravity / body.rod_length); }
-
 // xi above; of the rod of frame 0.
 template <typename T>
-Eigen::Matrix<T, 2, 1> CaptureOffset(const Body& body, const Eigen::Vector2d& posture,
-                                     const PendulumState<T>& state) {
-  using std::cos, std::sin;
-  const double l = body.rod_length, inverse = 1.0 / CaptureRate(body);
-  const T s_th = sin(state.q[2]), c_th = cos(state.q[2]);
-  const T s_ph = sin(state.q[3]), c_ph = cos(state.q[3]);
-  const T vx = state.qd[0] + l * c_th * state.qd[2];
-  const T vy = state.qd[1] + l * (s_th * s_ph * state.qd[2] - c_th * c_ph * state.qd[3]);
-  return {l * (s_th - std::sin(posture[0])) + inverse * vx,
-          l * (std::cos(posture[0]) * std::sin(posture[1]) - c_th * s_ph) + inverse * vy};
+Eigen::Matrix<T, 2, 1> CaptureOffset(const SelfForce& self, const Angles<T>& angles,
+                                     const Vector4<T>& qd) {
+  const double l = self.body.rod_length, inverse = 1.0 / self.capture_rate;
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  const T vx = qd[0] + l * c_th * qd[2];
+  const T vy = qd[1] + l * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3]);
+  return {l * s_th - self.rest_offset[0] + inverse * vx,
+          -l * c_th * s_ph - self.rest_offset[1] + inverse * vy};
 }
 
 // rho above: how far the capture point has left the support; 1 at its edge.
@@ -142,16 +137,16 @@ Eigen::Matrix<T, 2, 1> AnkleTorque(const SelfForce& self, const StanceParameters
 // The torques between legs and trunk under which, with the cart's own forces, the cart's velocity
 // goes to kappa omega xi.
 template <typename T>
-Eigen::Matrix<T, 2, 1> FootTorque(const Body& body, const StanceParameters<T>& p,
-                                  const PendulumState<T>& state,
+Eigen::Matrix<T, 2, 1> FootTorque(const SelfForce& self, const StanceParameters<T>& p,
+                                  const Angles<T>& angles, const Vector4<T>& qd,
                                   const Eigen::Matrix<T, 2, 1>& capture,
-                                  const Eigen::Matrix<T, 2, 1>& cart_force, double dt) {
-  const double rate = -std::expm1(-dt / kFootTime) / dt, omega = CaptureRate(body);
-  const Matrix4<T> mass = MassMatrix<T>(body, state.q);
-  const Vector4<T> coriolis = Coriolis<T>(body, state.q, state.qd);
-  const Vector4<T> gravity = Gravity<T>(body, state.q);
+                                  const Eigen::Matrix<T, 2, 1>& cart_force) {
+  const Body& body = self.body;
+  const Matrix4<T> mass = MassMatrix(body, angles);
+  const Vector4<T> coriolis = Coriolis(body, angles, qd), gravity = Gravity(body, angles);
+  const T speed = self.capture_rate * p.gain;
   Vector4<T> qdd;
-  for (int i = 0; i < 2; ++i) qdd[i] = rate * (omega * p.gain * capture[i] - state.qd[i]);
+  for (int i = 0; i < 2; ++i) qdd[i] = self.foot_rate * (speed * capture[i] - qd[i]);
   // The cart's rows of M qdd + C = F, solved for the angles.
   const T x = cart_force[0] - coriolis[0] - body.mass * qdd[0];
   const T y = cart_force[1] - coriolis[1] - body.mass * qdd[1];
@@ -165,12 +160,13 @@ Eigen::Matrix<T, 2, 1> FootTorque(const Body& body, const StanceParameters<T>& p
 // cart_force: F_c above, not yet times s.
 template <typename T>
 StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
-                         const PendulumState<T>& state, const Eigen::Matrix<T, 2, 1>& cart_force) {
-  const Eigen::Matrix<T, 2, 1> capture = CaptureOffset(self.body, self.posture, state);
+                         const Angles<T>& angles, const PendulumState<T>& state,
+                         const Eigen::Matrix<T, 2, 1>& cart_force) {
+  const Eigen::Matrix<T, 2, 1> capture = CaptureOffset(self, angles, state.qd);
   const T& s = state.step;
   StanceForces<T> forces;
   forces.torque = (1.0 - s) * AnkleTorque(self, p, state) +
-                  s * FootTorque(self.body, p, state, capture, cart_force, self.dt);
+                  s * FootTorque(self, p, angles, state.qd, capture, cart_force);
   forces.ground = GroundResistance(p, self.body.mass, state);
   forces.next_step = NextStepState<T>(p, SupportRatio(p, capture), s, self.dt);
   return forces;

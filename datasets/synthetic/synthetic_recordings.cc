@@ -149,6 +149,24 @@ ParameterSet<double> PublishedTailParameters() {
   return p;
 }
 
+ParameterSet<double> PublishedStanceParameters() {
+  ParameterSet<double> p{};
+  p[kMu] = p[kMuY] = 90.0;
+  p[kKpTheta] = p[kKpPhi] = 1150.0;
+  p[kKdTheta] = p[kKdPhi] = 330.0;
+  p[kAx] = p[kAy] = 16.0;
+  p[kTailGain] = 2.0;
+  p[kTailTime] = 0.15;
+  p[kSupportFront] = p[kSupportSide] = 0.1;
+  p[kSupportBack] = 0.06;
+  p[kAnkleReach] = 1.5;
+  p[kStepGain] = 1.0;
+  p[kStepOnset] = 0.13;
+  p[kStepRelease] = 0.4;
+  p[kStaticFriction] = 1.0;
+  return p;
+}
+
 MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
   const auto range = [](const std::string& what, double low, double high, double min,
                         double max) -> MaybeError {

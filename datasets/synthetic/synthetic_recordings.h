@@ -35,6 +35,8 @@ struct PushStrength {
 // The settled tail model for the person of 85 kg and 0.95 m: round values near those identified
 // from the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
+// The same of feet that hold and step (models/stance.h).
+ParameterSet<double> PublishedStanceParameters();
 
 struct SyntheticOptions {
   // The truth. model.push decides what a `net` push is: with kAdded, a force beside all others;

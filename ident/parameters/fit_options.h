@@ -44,6 +44,15 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
   return {{{"nominal", FitStart::kNominal}, {"equation_error", FitStart::kEquationError}}};
 }
 
+// Where the support of standing feet comes from (models/stance.h).
+enum class SupportSource {
+  kTable,  // the table's values, free or fixed
+  kFeet    // held at the people's own feet: ankle to toe and heel, half the ankles' distance
+};
+constexpr EnumNames<SupportSource, 2> Names(SupportSource) {
+  return {{{"table", SupportSource::kTable}, {"feet", SupportSource::kFeet}}};
+}
+
 // Whose errors are independent of each other.
 enum class ClusterBy {
   kAuto,      // people where some were recorded more than once, otherwise recordings
@@ -63,6 +72,8 @@ struct FitOptions {
   ModelOptions model;
   ParameterTable table;
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
+
+  SupportSource support = SupportSource::kTable;
 
   // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;

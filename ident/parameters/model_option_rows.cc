@@ -133,6 +133,11 @@ std::vector<Row> ModelOptionRows() {
   return {
       PresetRow(),
       StanceRow(),
+      MayBeAbsent(NameRow<SupportSource>(
+          "support", "/support", [](O & o) -> auto& { return o.support; },
+          "with --stance=threshold, what feet support: table (support_front and its like, free or "
+          "fixed) or feet (held at the distances from ankles to toes and heels, where recorded, "
+          "with ankle torques up to the weight times these)")),
       SelfForceRow(),
       RodRow(),
       RodInputRow(),

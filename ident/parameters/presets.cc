@@ -123,6 +123,7 @@ void SetStance(Stance stance, FitOptions* options) {
   options->start = FitStart::kNominal;
   // Who stands gives way about the ankles, not at them: people push at the hip, or above.
   table[kContactHeight].nominal = 0.95;
+  table[kAy].nominal = 15;
   // Ankles that bring the capture point back: 1.6 m g l of stiffness, and as much damping as keeps
   // the way back from swinging. Few of those who were recorded stand: the data say little of them.
   for (Parameter id : {kKpTheta, kKpPhi}) table[id].nominal = 1150;

@@ -121,7 +121,7 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters);
   const Eigen::Matrix4d inverse =
-      InverseMassMatrix<double>(body, Vector4<double>::Zero(), body.mass + scene.dt * rest.ground);
+      InverseMassMatrix<double>(body, Angles<double>(), body.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
   if (options.self_network != nullptr) {

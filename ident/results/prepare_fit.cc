@@ -73,11 +73,50 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
                       NameOf(options->pool_by) + ", '" + *units.begin() + "'");
 }
 
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Holds the support at what the recorded feet have.
+MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
+                               FitOptions* options) {
+  if (options->support != SupportSource::kFeet) return std::nullopt;
+  if (options->model.stance != Stance::kThreshold) {
+    return Error{"--support=feet is for feet that hold; add --stance=threshold"};
+  }
+  std::vector<double> forward, back, side;
+  for (const PendulumRecording& recording : recordings) {
+    for (const FootSupport& feet : recording.foot_support) {
+      if (feet.forward && *feet.forward > 0.0) forward.push_back(*feet.forward);
+      if (feet.back && *feet.back > 0.0) back.push_back(*feet.back);
+      if (feet.side > 0.0) side.push_back(feet.side);
+    }
+  }
+  if (forward.empty()) {
+    return Error{
+        "--support=feet, but no toes are recorded; name them in the mapping, or leave "
+        "it out"};
+  }
+  const auto hold = [options](Parameter id, const std::vector<double>& values) {
+    ParameterSpec& spec = options->table[id];
+    if (!values.empty()) spec.nominal = std::clamp(Median(values), spec.lower, spec.upper);
+    spec.free = spec.pooled = false;
+  };
+  hold(kSupportFront, forward);
+  hold(kSupportBack, back);
+  hold(kSupportSide, side);
+  options->table[kAnkleReach].nominal = 1.0;
+  return std::nullopt;
+}
+
 }  // namespace
 
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (MaybeError error = TakeSupportFromFeet(recordings, options)) return error;
   std::vector<std::string> told;
   UnpoolOneUnit(recordings, options, &told);
   std::string invalid;

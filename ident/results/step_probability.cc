@@ -67,7 +67,7 @@ double StepMargin(const ModelOptions& options, const ParameterSet<double>& param
   double margin = -std::numeric_limits<double>::infinity();
   for (int t = 0; t < path.num_frames(); ++t) {
     const Eigen::Vector2d capture =
-        CaptureOffset<double>(person.body, self.posture, path.At(t, index));
+        CaptureOffset(self, Angles<double>(path.At(t, index).q), path.At(t, index).qd);
     const double distance = capture.norm();
     // At rest there is no direction; then the nearest edge.
     const double reach = distance < kRestDistance ? std::min({p.front, p.back, p.side})

@@ -283,7 +283,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>() = now.bottomRows<4>();
       const Matrix4<double> inverse =
-          scene.dt * InverseMassMatrix(now_body, state.q, body.mass + scene.dt * force.ground);
+          scene.dt * InverseMassMatrix(now_body, force.angles, body.mass + scene.dt * force.ground);
       AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
       if (!rod_moves) continue;

@@ -28,7 +28,7 @@ StanceForces<Jet> JetsOfStance(const SelfForce& self, const ParameterSet<double>
   int input = kParametersAt;
   // In the order of kIds, which is that of the members.
   const StanceParameters<Jet> parameters([&](Parameter id) { return Jet(p[id], input++); });
-  return StanceAt(self, parameters, jets, force);
+  return StanceAt(self, parameters, Angles<Jet>(jets.q), jets, force);
 }
 
 // One output's derivatives by the state, by s and by the parameters. own: of the cart's forces.
@@ -58,7 +58,8 @@ void AddTailJacobianAtHip(const ScenePush& push, const SelfForce& self,
   ParameterSet<TailJet> parameters;
   for (int i = 0; i < 3; ++i) parameters[kTail[i]] = TailJet(p[kTail[i]], 2 + i);
   const Vector4<TailJet> angles{TailJet(q[0]), TailJet(q[1]), TailJet(q[2], 0), TailJet(q[3], 1)};
-  const Vector4<TailJet> force = TailForceAtHip(push, parameters, self.body, angles, frame, dt);
+  const Vector4<TailJet> force =
+      TailForceAtHip(push, parameters, self.body, Angles<TailJet>(angles), frame, dt);
   for (int row = 0; row < 4; ++row) {
     jacobian->by_state.row(row).segment<2>(2) += force[row].v.head<2>().transpose();
     for (int i = 0; i < 3; ++i) jacobian->by_parameter(row, kTail[i]) += force[row].v[2 + i];

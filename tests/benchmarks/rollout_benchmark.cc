@@ -30,10 +30,35 @@ void IpmStep(benchmark::State& state) {
     const NetForce<double> force =
         NetForceAt(recording.scene, options, self[0], p, 0, 20, pose, pose.qd);
     benchmark::DoNotOptimize(
-        Step(pose, Acceleration(body, pose, force.Total()), recording.scene.dt));
+        Step(pose, Acceleration(body, force.angles, pose.qd, force.Total()), recording.scene.dt));
   }
 }
 BENCHMARK(IpmStep)->Unit(benchmark::kNanosecond);
+
+// The same of feet that hold and step, in the middle of a step.
+void IpmStepOfStance(benchmark::State& state) {
+  const PendulumRecording& recording = SinglePeople().recordings[0];
+  ModelOptions options;
+  options.stance = Stance::kThreshold;
+  const ParameterSet<double> p = PublishedStanceParameters();
+  const std::vector<SelfForce> self = SelfForces(recording.scene, options);
+  const Body& body = recording.scene.people[0].body;
+  PendulumState<double> pose = recording.states[0][20];
+  pose.step = 0.6;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(pose);
+    const NetForce<double> force =
+        NetForceAt(recording.scene, options, self[0], p, 0, 20, pose, pose.qd);
+    PendulumState<double> next =
+        Step(pose,
+             AccelerationOnGround(body, force.angles, pose.qd, force.Total(), force.ground,
+                                  recording.scene.dt),
+             recording.scene.dt);
+    next.step = force.next_step;
+    benchmark::DoNotOptimize(next);
+  }
+}
+BENCHMARK(IpmStepOfStance)->Unit(benchmark::kNanosecond);
 
 // 72 frames: the mean length.
 void RolloutOfDoubles(benchmark::State& state) {

@@ -151,7 +151,8 @@ TEST(Stance, CapturePointIsThatOfTheHip) {
     const Eigen::Vector2d place =
         (HipPosition(body, state.q) - HipPosition<double>(body, rest)).head<2>();
     const Eigen::Vector2d expected = place + velocity / std::sqrt(kGravity / body.rod_length);
-    ExpectClose(CaptureOffset<double>(body, posture, state), expected, 1e-8);
+    const SelfForce self(Threshold(), body, rest, 1.0 / 60);
+    ExpectClose(CaptureOffset(self, Angles<double>(state.q), state.qd), expected, 1e-8);
   }
 }
 
@@ -165,11 +166,13 @@ TEST(Stance, FootTorqueMovesTheCartAsAsked) {
     const Eigen::Vector2d capture(random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3));
     const Eigen::Vector2d cart(random.Uniform(-200, 200), random.Uniform(-200, 200));
     constexpr double kDt = 1.0 / 60;
-    const Eigen::Vector2d torque = FootTorque<double>(body, p, state, capture, cart, kDt);
+    const SelfForce self(Threshold(), body, Vector4<double>::Zero(), kDt);
+    const Eigen::Vector2d torque =
+        FootTorque<double>(self, p, Angles<double>(state.q), state.qd, capture, cart);
     const Vector4<double> qdd =
         Acceleration<double>(body, state, {cart[0], cart[1], torque[0], torque[1]});
     const double rate = -std::expm1(-kDt / kFootTime) / kDt;
-    const Eigen::Vector2d wanted = rate * (CaptureRate(body) * capture - state.qd.head<2>());
+    const Eigen::Vector2d wanted = rate * (self.capture_rate * capture - state.qd.head<2>());
     ExpectClose(Eigen::Vector2d(qdd.head<2>()), wanted, 1e-8);
   }
 }
@@ -209,7 +212,7 @@ TEST(Stance, IsFiniteAtTheEdges) {
       state.q[2] = std::asin(offset / 0.95 * 0.9);
       state.step = step;
       const StanceForces<double> forces =
-          StanceAt<double>(self, Stances(p), state, Eigen::Vector2d(0.0, 0.0));
+          StanceAt<double>(self, Stances(p), Angles<double>(state.q), state, {0.0, 0.0});
       EXPECT_TRUE(forces.torque.allFinite());
       EXPECT_TRUE(std::isfinite(forces.ground) && std::isfinite(forces.next_step));
       EXPECT_GE(forces.next_step, 0.0);
