@@ -46,11 +46,11 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
 
 // Where the support of standing feet comes from (models/stance.h).
 enum class SupportSource {
-  kTable,  // the table's values, free or fixed
-  kFeet    // held at the people's own feet: ankle to toe and heel, half the ankles' distance
+  kTable,    // the table's values, free or fixed
+  kFromFeet  // held at the people's own feet: ankle to toe and heel, half the ankles' distance
 };
 constexpr EnumNames<SupportSource, 2> Names(SupportSource) {
-  return {{{"table", SupportSource::kTable}, {"feet", SupportSource::kFeet}}};
+  return {{{"table", SupportSource::kTable}, {"feet", SupportSource::kFromFeet}}};
 }
 
 // Whose errors are independent of each other.

@@ -82,7 +82,7 @@ double Median(std::vector<double> values) {
 // Holds the support at what the recorded feet have.
 MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
                                FitOptions* options) {
-  if (options->support != SupportSource::kFeet) return std::nullopt;
+  if (options->support != SupportSource::kFromFeet) return std::nullopt;
   if (options->model.stance != Stance::kThreshold) {
     return Error{"--support=feet is for feet that hold; add --stance=threshold"};
   }

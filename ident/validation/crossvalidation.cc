@@ -2,6 +2,8 @@
 #include "ident/validation/crossvalidation.h"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 namespace pushid {
 
@@ -15,14 +17,37 @@ struct Sums {
   explicit Sums(size_t recordings) : scores(recordings), counts(recordings, 0) {}
 };
 
-void AddSteps(const std::vector<StepPrediction>& steps, std::vector<StepPrediction>* sum) {
+void AddMargins(const std::vector<StepPrediction>& steps, std::vector<StepPrediction>* sum) {
   if (sum->empty()) {
     *sum = steps;
     return;
   }
   for (size_t n = 0; n < std::min(steps.size(), sum->size()); ++n) {
     (*sum)[n].margin += steps[n].margin;
-    (*sum)[n].probability += steps[n].probability;
+  }
+}
+
+// Each person's probabilities from the held-out margins of everybody else: margins of recordings
+// that were fitted err less, and a person's own steps are what is to be predicted.
+void PredictStepsWithoutThePerson(std::vector<RecordingScore>* scores) {
+  std::vector<StepOutcome> all;
+  std::set<std::string> people;
+  for (const RecordingScore& score : *scores) {
+    for (const StepPrediction& step : score.steps) {
+      all.push_back({step.margin, step.stepped, step.person});
+      people.insert(step.person);
+    }
+  }
+  for (const std::string& person : people) {
+    std::vector<StepOutcome> others;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(others),
+                 [&](const StepOutcome& outcome) { return outcome.person != person; });
+    const std::optional<StepProbability> fitted = FitStepProbability(others);
+    for (RecordingScore& score : *scores) {
+      for (StepPrediction& step : score.steps) {
+        if (step.person == person && fitted) step.probability = fitted->At(step.margin);
+      }
+    }
   }
 }
 
@@ -54,7 +79,7 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
       result.*metric.value += score.*metric.value;
     }
     sum.propagation.Add(score.propagation);
-    AddSteps(score.steps, &sum.steps);
+    AddMargins(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
   }
   for (const HipMetric& metric : kHipMetrics) result.*metric.value /= std::max(1, scored);
@@ -87,14 +112,12 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, Sums su
     if (sums.counts[i] > 0) {
       for (const HipMetric& metric : kHipMetrics) mean.*metric.value /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
-      for (StepPrediction& step : mean.steps) {
-        step.margin /= sums.counts[i];
-        step.probability /= sums.counts[i];
-      }
+      for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }
     held.push_back(recordings[i]);
     means.push_back(mean);
   }
+  PredictStepsWithoutThePerson(&means);
   return Summarize(held, means);
 }
 

@@ -1,10 +1,10 @@
 """Feet that hold and step (--stance=threshold) against feet that slide.
 
-single    errors on held-out recordings of single people, every scheme (models/README.md); 6 minutes
-groups    the same of groups, with who moves and who steps (ident/prediction/README.md); 10 minutes
-steps     who steps: AUC, Brier score, calibration (ident/prediction/README.md); with what the others ran
-sways     80 kg pushed for 0.7 s with so many N s: where the person ends (models/README.md); seconds
-values    what the fit of single people says of the feet (ident/README.md); seconds
+single    errors on held-out recordings of single people, every scheme (models/README.md); 8 minutes
+groups    the same of groups, 5 folds, with who moves for nothing (models/README.md); 15 minutes
+sways     80 kg pushed for 0.7 s: where the person ends, and how probable a step is (models/README.md); seconds
+values    what the fit of single people says of the feet (models/README.md); seconds
+steps     who steps: AUC, Brier score, calibration, held out (ident/prediction/README.md); with single and groups
 
 Times are those of one core.
 """
@@ -12,17 +12,21 @@ import studies
 from studies import number, with_error
 
 STANCE = "--stance=threshold"
-SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("one person at a time", "subject", ()),
-           ("strong pushes", "strong", ())]
+SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out", "subject", ()),
+           ("strong pushes left out", "strong", ())]
+IMPULSES = [5, 10, 15, 20, 25, 30, 40, 60]
 
 
 def compared(setting, scheme, *arguments):
-    """Cross-validation of both, by name: slide, threshold."""
+    """Cross-validations of both by name, and their paired difference."""
     out = studies.on_recordings("pushid-crossvalidate", setting, f"--scheme={scheme}", "--yardsticks=false",
                                 *arguments, f"--compare=threshold: {STANCE}").json
-    first, second = out["predictors"]
-    difference = out["differences"][0]
-    return {"slide": first, "threshold": second}, difference
+    slide, threshold = out["predictors"]
+    return {"slide": slide, "threshold": threshold}, out["paired_differences"][0]
+
+
+def groups_compared():
+    return compared("groups", "stratified", "--folds=5", "--repeats=1")
 
 
 def error_cells(p):
@@ -30,3 +34,75 @@ def error_cells(p):
     return [with_error(mean["hipADE_m"], mean["hipADE_standard_error_m"]),
             with_error(mean["hipFDE_m"], mean["hipFDE_standard_error_m"]),
             f"{p['fits_that_settle']} of {p['fits']}"]
+
+
+def difference_cell(name, difference):
+    if name == "slide":
+        return None
+    return with_error(difference["hipADE_m"], difference["hipADE_standard_error_m"], sign=True)
+
+
+def single():
+    rows = []
+    for title, scheme, arguments in SCHEMES:
+        scores, difference = compared("single", scheme, *arguments)
+        for name, p in scores.items():
+            rows.append([title, f"`{name}`", *error_cells(p), difference_cell(name, difference)])
+    return studies.table(["32 recordings of single people", "feet", "hipADE, m", "hipFDE, m", "settle",
+                          "hipADE - `slide`, m"], rows)
+
+
+def groups():
+    scores, difference = groups_compared()
+    rows = []
+    for name, p in scores.items():
+        moves = p["propagation"]
+        onset = moves["onset_error_frames"]
+        rows.append([f"`{name}`", *error_cells(p), difference_cell(name, difference),
+                     f"{moves['false_movers']:.3g} of {moves['bystanders']:.0f}",
+                     f"{moves['missed_movers']:.3g} of {moves['movers']:.0f}",
+                     with_error(onset["value"], onset["standard_error"])])
+    return studies.table(["49 recordings of groups, 5 folds", "hipADE, m", "hipFDE, m", "settle",
+                          "hipADE - `slide`, m", "false movers", "missed movers", "onset error, frames"], rows)
+
+
+def sways():
+    model = studies.fit("single", STANCE).path
+    rows = []
+    for impulse in IMPULSES:
+        out = studies.run("pushid-simulate", f"--model={model}", "--formation=line", "--people=1",
+                          f"--push={impulse}", "--push_duration=0.7", "--duration=6", out="csv_out").text
+        lines = out.splitlines()
+        row = dict(zip(lines[1].replace("x m", "x_m").replace("y m", "y_m").replace("onset s", "onset_s")
+                       .replace("peak m/s", "peak").replace("displaced m", "displaced").split(), lines[2].split()))
+        rows.append([impulse, row["displaced"], row["peak"], row["P(step)"]])
+    return studies.table(["impulse of 0.7 s on 80 kg, N s", "hip after 6 s, m", "peak speed, m/s", "P(step)"], rows)
+
+
+def values():
+    shared = {p["name"]: p for p in studies.fit("single", STANCE).json["parameters"]}
+    rows = []
+    for name in ("mu", "a_x", "support_front", "step_onset", "step_release"):
+        p = shared[name]
+        rows.append([f"`{name}`", with_error(p["value"], p["standard_error"]), p["unit"],
+                     f"{100 * p['shares']['data']:.0f}", p["status"]])
+    return studies.table(["", "value", "unit", "share of the data, %", "status"], rows)
+
+
+def steps():
+    tried = [("single people, 5 x 4 folds", compared("single", *SCHEMES[0][1:2], *SCHEMES[0][2])[0]),
+             ("single people, a person left out", compared("single", "subject")[0]),
+             ("groups, 5 folds", groups_compared()[0])]
+    rows = []
+    for title, scores in tried:
+        for name, p in scores.items():
+            s = p["who_steps"]
+            worst = max(abs(f["predicted"] - f["observed"]) for f in s["fifths"])
+            rows.append([title, f"`{name}`", f"{s['stepped']} of {s['tracks']}",
+                         with_error(s["auc"], s["auc_error"]), with_error(s["brier"], s["brier_error"]),
+                         number(worst, 2)])
+    return studies.table(["held out", "feet", "step", "AUC", "Brier score", "worst fifth: P(step) - share"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"single": single, "groups": groups, "sways": sways, "values": values, "steps": steps})
