@@ -1,7 +1,16 @@
 // models: Jacobians of the self force; tests hold them against automatic derivatives.
 #include "models/self_force.h"
 
+#include <algorithm>
+
 namespace pushid {
+
+double FootRate(double step) {
+  constexpr double kFootTime = 0.02;  // s
+  // Explicit in time: at 30 frames a second as well, but not much below.
+  constexpr double kLeastOfStep = 0.6;
+  return 1.0 / std::max(kFootTime, kLeastOfStep * step);
+}
 
 void SelfForce::FrictionJacobian(const ParameterSet<double>& p, const Vector4<double>& qd,
                                  Jacobian* jacobian) const {

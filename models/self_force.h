@@ -25,7 +25,9 @@
 
 namespace pushid {
 
-inline constexpr double kFootTime = 0.01;  // s, in which stepping feet get their speed
+// How fast stepping feet (stance.h) get their speed, 1/s: within 20 ms, or 0.6 steps of the rollout
+// where these are longer.
+double FootRate(double step);
 
 // Factors from the reference person's gains to this body's, with the rod of frame 0: gains are the
 // person's, not the posture's.
@@ -71,7 +73,7 @@ struct SelfForce {
         dt(step),
         capture_rate(std::sqrt(kGravity / person.rod_length)),
         rest_offset(Eigen::Vector2d::Zero()),
-        foot_rate(-std::expm1(-step / kFootTime) / step),
+        foot_rate(FootRate(step)),
         laws(options.own_laws) {
     if (options.posture == Posture::kInitial) {
       posture = q0.tail<2>();

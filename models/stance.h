@@ -16,7 +16,7 @@
 //   to
 //           r_a m g times the support: the ground presses no farther out than the toes
 //   feet    s F_c, and s times the torque between legs and trunk that takes the cart's velocity to
-//           kappa omega xi within 10 ms: the feet go where the person would come to rest
+//           kappa omega xi within 20 ms: the feet go where the person would come to rest
 // A torque inside the body moves the feet and leaves the momentum to F_c, to pushes and to gravity.
 //
 // While a `net` push lasts none of it acts: its rows hold the feet's reaction. From a

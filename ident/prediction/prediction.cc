@@ -47,7 +47,7 @@ void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
               Prediction* prediction) {
   if (!model.step_probability) return;
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  for (int n = 0; n < recording.num_people(); ++n) {
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
     const double margin =
         StepMargin(model.options, parameters[n], recording.scene.people[n], prediction->path, n);
     prediction->steps.push_back(
