@@ -275,7 +275,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.derived = Derived(problem, best.to, result.uncertainty);
   AddUnits(problem, best.to, &result);
   result.push_range = FittedPushRange(ModelOf(result), recordings);
-  result.step_probability = FitStepProbability(ModelOf(result), recordings);
+  const auto steps = FitStepProbability(ModelOf(result), recordings);
+  if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
+    result.step_probability = steps;
+  }
   result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);

@@ -106,7 +106,7 @@ std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>
     fitted.stepped += outcome.stepped ? 1 : 0;
     scores.try_emplace(outcome.person, Eigen::Vector2d::Zero());
   }
-  if (fitted.stepped == 0 || fitted.stepped == fitted.tracks) return std::nullopt;
+  if (outcomes.empty()) return std::nullopt;
   fitted.clusters = static_cast<int>(scores.size());
   Eigen::Matrix2d hessian;
   fitted.coefficients = Maximize(outcomes, &hessian);

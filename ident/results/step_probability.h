@@ -46,7 +46,7 @@ double StepMargin(const ModelOptions& options, const ParameterSet<double>& param
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
                                       const PendulumRecording& recording);
 
-// Nothing where nobody stepped, or everybody.
+// Nothing where no steps are known; where all do the same, what the prior leaves of it.
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes);
 // After the trajectories of a model.
 std::optional<StepProbability> FitStepProbability(const IdentifiedModel& model,

@@ -53,10 +53,14 @@ TEST(StepProbability, IsFiniteWhereAllAreToldApart) {
   EXPECT_GE(fitted->ErrorAt(0.02), 0.0);
 }
 
-TEST(StepProbability, NothingIsSaidWhereAllDoTheSame) {
+TEST(StepProbability, IsFiniteWhereAllDoTheSame) {
   EXPECT_FALSE(FitStepProbability(std::vector<StepOutcome>{}).has_value());
-  EXPECT_FALSE(FitStepProbability({{0.1, true, "A"}, {0.2, true, "B"}}).has_value());
-  EXPECT_FALSE(FitStepProbability({{0.1, false, "A"}, {0.2, false, "B"}}).has_value());
+  const auto all = FitStepProbability({{0.1, true, "A"}, {0.2, true, "B"}});
+  ASSERT_TRUE(all.has_value());
+  EXPECT_GT(all->At(0.15), 0.7);
+  const auto none = FitStepProbability({{0.1, false, "A"}, {0.2, false, "B"}});
+  ASSERT_TRUE(none.has_value());
+  EXPECT_LT(none->At(0.15), 0.3);
 }
 
 TEST(StepProbability, SurvivesAFile) {
