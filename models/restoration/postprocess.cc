@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/restoration/planted_feet.h"
 #include "models/restoration/skeleton_fit.h"
 
 namespace pushid {
@@ -54,8 +55,6 @@ class FootLock {
   int fading_ = 0;
 };
 
-constexpr double kOutOfReach = 0.005;  // m
-
 }  // namespace
 
 void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion) {
@@ -81,7 +80,7 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
       const Eigen::Vector3d correction = lock.Correction(at);
       if (correction.isZero(0.0)) continue;
       const double missed = ReachWithLeg(left, at + correction, &pose);
-      if (missed > kOutOfReach && lock.locked()) {
+      if (missed > options.out_of_reach && lock.locked()) {
         Eigen::Vector3d reached = pose.col(ankle) - at;
         reached.z() = 0.0;
         lock.LetGo(reached);
@@ -93,7 +92,12 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion) {
   if (options.fade_residual) FadeResidual(person.first_pose, options.fade_frames, motion);
   if (options.keep_bones) KeepBones(person.first_pose, motion);
-  if (options.lock_feet) LockFeet(person.first_pose, person.dt, options, motion);
+  if (!options.lock_feet) return;
+  if (person.stands.empty()) {
+    LockFeet(person.first_pose, person.dt, options, motion);
+  } else {
+    PlantFeet(person, options, motion);
+  }
 }
 
 }  // namespace pushid
