@@ -53,19 +53,23 @@ std::vector<Footing> Footings(const RestorationInput& person, const BodyMotion& 
 
 class PlantedFoot {
  public:
-  PlantedFoot(bool left, std::vector<Footing> footings, const PostprocessOptions& options)
-      : left_(left), options_(options), footings_(std::move(footings)), at_(footings_[0]) {}
+  PlantedFoot(bool left, std::vector<Footing> footings, double dt,
+              const PostprocessOptions& options)
+      : left_(left),
+        options_(options),
+        dt_(dt),
+        footings_(std::move(footings)),
+        at_(footings_[0]),
+        before_(at_.ankle) {}
 
   void Move(int t, bool stands, Pose* pose) {
     const Vector3d ankle = pose->col(AnkleOf(left_)), foot = FootOf(left_, *pose);
-    if (stands) {
-      Stand(t, ankle, foot);
-    } else if (holds_) {
-      LetGo(at_.ankle - ankle);
-    }
-    const double held = holds_ ? 1.0 : Fade();
-    Vector3d target = holds_ ? at_.ankle : Vector3d(ankle + held * left_over_);
-    Vector3d toe = foot + held * (at_.foot - foot);
+    Hold(t, stands, ankle, foot);
+    before_ = ankle;
+    flat_ = stands && holds_ ? 1.0 : std::max(0.0, flat_ - 1.0 / options_.release_frames);
+    Vector3d target = holds_ ? at_.ankle : Vector3d(ankle + Fade() * left_over_);
+    target.z() = ankle.z() + flat_ * (at_.ankle.z() - ankle.z());
+    Vector3d toe = foot + flat_ * (at_.foot - foot);
     if (!stands && next_ < footings_.size()) {
       const double landing = Landing(t);
       target += landing * (footings_[next_].ankle - target);
@@ -79,14 +83,19 @@ class PlantedFoot {
   }
 
  private:
-  void Stand(int t, const Vector3d& ankle, const Vector3d& foot) {
+  // Whether it holds at this frame, and where.
+  void Hold(int t, bool stands, const Vector3d& ankle, const Vector3d& foot) {
     if (next_ < footings_.size() && footings_[next_].begin == t) {
       at_ = footings_[next_++];
       holds_ = true;
-    } else if (!holds_ && fading_ == 0) {
-      at_ = {t, {ankle.x(), ankle.y(), at_.ankle.z()}, Flat(foot, at_.foot)};
-      holds_ = true;
+      return;
     }
+    const bool rests = stands || Rests(ankle, before_, footings_[0].ankle.z(), dt_, options_);
+    const double drift = (at_.ankle - ankle).head<2>().norm();
+    if (holds_ && (!rests || (!stands && drift > options_.release_drift))) LetGo(at_.ankle - ankle);
+    if (holds_ || !rests || fading_ > 0) return;
+    at_ = {t, ankle, foot};
+    holds_ = true;
   }
 
   void LetGo(const Vector3d& left_over) {
@@ -108,12 +117,15 @@ class PlantedFoot {
 
   const bool left_;
   const PostprocessOptions& options_;
+  const double dt_;
   const std::vector<Footing> footings_;
   Footing at_;                             // where it stands, or stood last
+  Vector3d before_;                        // the restored ankle of the last frame
   size_t next_ = 1;                        // of footings_
-  Vector3d left_over_ = Vector3d::Zero();  // of what held it
+  Vector3d left_over_ = Vector3d::Zero();  // of what held it, horizontally
   bool holds_ = true;                      // people stand at frame 0
   int fading_ = 0;
+  double flat_ = 1.0;  // how much height and toe are those of standing; a resting heel may rise
 };
 
 }  // namespace
@@ -123,7 +135,7 @@ void PlantFeet(const RestorationInput& person, const PostprocessOptions& options
   if (motion->empty()) return;
   const BodyMotion restored = *motion;
   for (const bool left : {false, true}) {
-    PlantedFoot foot(left, Footings(person, restored, left), options);
+    PlantedFoot foot(left, Footings(person, restored, left), person.dt, options);
     for (int t = 1; t < static_cast<int>(motion->size()); ++t) {
       foot.Move(t, person.stands[t], &(*motion)[t]);
     }

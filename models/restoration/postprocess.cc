@@ -18,10 +18,8 @@ class FootLock {
 
   // The horizontal correction of an ankle that the restoration puts at `ankle`.
   Eigen::Vector3d Correction(const Eigen::Vector3d& ankle) {
-    const double speed = (ankle - before_).head<2>().norm() / dt_;
+    const bool standing = Rests(ankle, before_, floor_, dt_, options_);
     before_ = ankle;
-    const bool standing =
-        ankle.z() < floor_ + options_.contact_height && speed < options_.contact_speed;
     if (locked_ && (!standing || Drift(ankle) > options_.release_drift)) Release(ankle);
     if (!locked_ && standing && fading_ == 0) Lock(ankle);
     if (locked_) return Flat(place_ - ankle);
@@ -56,6 +54,12 @@ class FootLock {
 };
 
 }  // namespace
+
+bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
+           const PostprocessOptions& options) {
+  const double speed = (ankle - before).head<2>().norm() / dt;
+  return ankle.z() < floor + options.contact_height && speed < options.contact_speed;
+}
 
 void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion) {
   if (motion->empty()) return;

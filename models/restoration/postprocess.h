@@ -24,6 +24,10 @@ struct PostprocessOptions {
   double out_of_reach = 0.005;  // m by which a leg may miss the place that it stands on
 };
 
+// Whether a restored ankle is low and slow; floor: its own height at frame 0.
+bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
+           const PostprocessOptions& options);
+
 void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion);
 void KeepBones(const Pose& first_pose, BodyMotion* motion);
 void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,

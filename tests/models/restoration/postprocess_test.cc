@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/restoration/planted_feet.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {
@@ -125,6 +126,27 @@ TEST(PostprocessTest, FeetStandAndLandWhereTheModelSays) {
     EXPECT_LT((s.motion[t] - s.motion[t - 1]).colwise().norm().maxCoeff(), 0.05) << t;
     EXPECT_LT((BoneLengths(s.motion[t]) - BoneLengths(first)).cwiseAbs().maxCoeff(), 1e-9) << t;
   }
+}
+
+TEST(PostprocessTest, OneFootStandsWhileTheOtherSteps) {
+  SteppingPerson s;
+  s.motion.assign(60, s.person.first_pose);
+  for (int t = 20; t < 60; ++t) {
+    s.person.stands[t] = false;  // to the end
+    const double swing = std::min(1.0, (t - 20) / 15.0);
+    for (int j : {kLeftAnkle, kLeftToe}) {
+      s.motion[t](0, j) += 0.25 * swing;
+      s.motion[t](2, j) += 0.08 * std::sin(M_PI * swing);
+    }
+    for (int j : {kRightAnkle, kRightToe}) s.motion[t](0, j) += 0.001 * (t - 20);
+  }
+  PlantFeet(s.person, PostprocessOptions(), &s.motion);
+  for (int j : {kRightAnkle, kRightToe}) {
+    for (int t = 0; t < 60; ++t) {
+      EXPECT_LT((s.motion[t] - s.person.first_pose).col(j).norm(), 1e-9) << t;
+    }
+  }
+  EXPECT_NEAR(s.motion[59](0, kLeftAnkle), s.person.first_pose(0, kLeftAnkle) + 0.25, 0.01);
 }
 
 TEST(PostprocessTest, APlaceThatTheLegDoesNotReachIsLetGo) {
