@@ -55,7 +55,7 @@ int WriteBodies(const PredictFlags& flags, const Recording& recorded, SkeletonMa
   if (!recording.ok()) return Fail(recording.error());
   std::vector<BodyMotion> bodies =
       RestoreBodies(*restoration.value(), flags.restoration.postprocess,
-                    PredictedPeople(recording.value(), prediction.path));
+                    PredictedPeople(recording.value(), prediction));
   BodyScore score;
   if (flags.whole_recording()) score = ScoreBodies(recording.value(), bodies);
   const BodyScene scene = SceneOf(recording.value(), std::move(bodies));

@@ -50,7 +50,7 @@ int Run() {
   if (flags.recorded) AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
   AddPrediction(pendulum, prediction,
                 RestoreBodies(*restoration.value(), flags.restoration.postprocess,
-                              PredictedPeople(recording.value(), prediction.path)),
+                              PredictedPeople(recording.value(), prediction)),
                 &animation);
   MaybeError error;
   if (!flags.out.empty()) error = Write(flags.out, AnimationHtml(animation));

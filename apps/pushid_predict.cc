@@ -8,10 +8,25 @@
 #include "apps/predict_bodies.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/predicted_steps.h"
 
 namespace {
 
 using namespace pushid;
+
+int WritePendulums(const PredictFlags& flags, const PendulumRecording& recording,
+                   const Prediction& prediction) {
+  if (MaybeError error = WriteTrajectoryCsv(flags.out, recording, prediction)) {
+    return Fail(*error);
+  }
+  std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
+              prediction.path.num_frames(), flags.out.c_str());
+  if (flags.whole_recording()) {
+    const RecordingScore score = ScoreHip(recording, prediction.hip);
+    std::printf("against the recording: %s\n", MetricsText(score, 3).c_str());
+  }
+  return kDone;
+}
 
 int Run() {
   const Result<PredictFlags> read = PredictFlagsFromCommandLine();
@@ -37,19 +52,11 @@ int Run() {
                  prediction.status.person, prediction.status.frame);
     return kFitFailed;
   }
-  if (flags.restoration.given()) {
-    return WriteBodies(flags, recordings.value().front(), model.value().mapping, prediction);
-  }
-  if (MaybeError error = WriteTrajectoryCsv(flags.out, recording, prediction)) {
-    return Fail(*error);
-  }
-  std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
-              prediction.path.num_frames(), flags.out.c_str());
-  if (flags.whole_recording()) {
-    const RecordingScore score = ScoreHip(recording, prediction.hip);
-    std::printf("against the recording: %s\n", MetricsText(score, 3).c_str());
-  }
-  return kDone;
+  const int code = flags.restoration.given() ? WriteBodies(flags, recordings.value().front(),
+                                                           model.value().mapping, prediction)
+                                             : WritePendulums(flags, recording, prediction);
+  if (code == kDone) std::printf("%s", PredictedStepsText(recording, prediction).c_str());
+  return code;
 }
 
 }  // namespace

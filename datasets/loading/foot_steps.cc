@@ -164,16 +164,20 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 
 std::string StepText(const FootStep& step, double fps) {
-  const char* const ways[] = {"forwards", "to the left", "backwards", "to the right"};
-  const int quarter = static_cast<int>(std::lround(step.Direction() / (0.5 * kPi)));
   const std::string from = Rounded(step.lift_off / fps, 3);
   return std::string(Name(step.foot)) +
          (step.finished ? " " + from + "-" + Rounded(step.landing / fps, 3) : " from " + from) +
-         " s " + Rounded(step.Length(), 2) + " m " + ways[(quarter + 4) % 4] +
-         (step.finished ? "" : ", cut off");
+         " s " + TravelText(step.travel) + (step.finished ? "" : ", cut off");
 }
 
 }  // namespace
+
+std::string TravelText(const Eigen::Vector2d& travel) {
+  const char* const ways[] = {"forwards", "to the left", "backwards", "to the right"};
+  const double direction = std::atan2(travel.y(), travel.x());
+  const int quarter = static_cast<int>(std::lround(direction / (0.5 * kPi)));
+  return Rounded(travel.norm(), 2) + " m " + ways[(quarter + 4) % 4];
+}
 
 std::string StepsText(const PersonSteps& steps, double fps) {
   if (!steps.Stepped()) return "none";

@@ -71,6 +71,9 @@ struct PersonSteps {
 std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps);
 PersonSteps FindSteps(const RecordedPerson& person, double fps);
 
+// "0.31 m forwards"; also backwards, to the left, to the right: the nearest of them.
+std::string TravelText(const Eigen::Vector2d& travel);
+
 // "left 0.42-0.78 s 0.31 m forwards; right from 0.95 s 0.12 m to the left, cut off"; "none".
 std::string StepsText(const PersonSteps& steps, double fps);
 

@@ -67,7 +67,7 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
     }
     return;
   }
-  const std::vector<RestorationInput> people = PredictedPeople(recording, prediction.path);
+  const std::vector<RestorationInput> people = PredictedPeople(recording, prediction);
   add("restoration", RestoreBodies(restoration, options, people));
   add("rigid", RigidRestoration().Restore(people));
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "ident/prediction/predicted_steps.h"
+
 namespace pushid {
 namespace {
 
@@ -74,6 +76,15 @@ std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
   std::vector<RestorationInput> people = People(recording);
   for (int n = 0; n < recording.num_people(); ++n) {
     for (int t = 0; t < path.num_frames(); ++t) people[n].q.push_back(path.At(t, n).q);
+  }
+  return people;
+}
+
+std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
+                                              const Prediction& prediction) {
+  std::vector<RestorationInput> people = PredictedPeople(recording, prediction.path);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    people[n].stands = StandingFrames(prediction, n);
   }
   return people;
 }

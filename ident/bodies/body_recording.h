@@ -6,6 +6,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/prediction/prediction.h"
 #include "models/restoration/restoration.h"
 #include "models/rollout.h"
 
@@ -27,7 +28,10 @@ Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recordin
                                                       SkeletonMapping mapping);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
-// People with predicted pendulums, or with those seen in the recording.
+// People with predicted pendulums (and whether their feet stand, where a prediction says so), or
+// with those seen in the recording.
+std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
+                                              const Prediction& prediction);
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const RolloutPath<double>& path);
 std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording);

@@ -6,6 +6,7 @@
 #include "datasets/formats/bvh_kinematics.h"
 #include "datasets/synthetic/synthetic_skeleton.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/prediction/predicted_steps.h"
 #include "models/skeleton_mapping.h"
 
 namespace pushid {
@@ -73,6 +74,7 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
     for (int t = 0; t < run.num_frames(); ++t) {
       people[n].q.push_back(run.prediction.path.At(t, n).q);
     }
+    people[n].stands = StandingFrames(run.prediction, n);
   }
   return RestoreBodies(restoration, options, people);
 }

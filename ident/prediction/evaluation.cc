@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
 #include "residuals/cost_functions/rest_residual.h"
 
@@ -89,6 +90,20 @@ HipPaths ConstantVelocityBaseline(const PendulumRecording& recording) {
 
 namespace {
 
+StepTiming TimingOf(const PendulumRecording& recording, const Prediction& prediction, int person) {
+  const double dt = recording.scene.dt;
+  StepTiming timing;
+  if (const FootStep* first = recording.steps[person].First()) {
+    timing.recorded_lift_off = first->lift_off * dt;
+  }
+  const std::vector<SteppingPhase> phases = SteppingPhases(prediction.path, person);
+  if (phases.empty()) return timing;
+  timing.lift_off = phases.front().lift_off * dt;
+  if (phases.front().finished) timing.landing = phases.front().landing * dt;
+  timing.travel = phases.front().travel;
+  return timing;
+}
+
 bool AnybodyFalls(const Prediction& prediction) {
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     for (int n = 0; n < prediction.path.num_people(); ++n) {
@@ -108,6 +123,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
     const int person = static_cast<int>(n);
     steps.push_back({prediction.steps[n].margin, prediction.steps[n].probability,
                      recording.Stepped(person), PersonKey(recording, person)});
+    if (prediction.feet_step) steps.back().timing = TimingOf(recording, prediction, person);
   }
   return steps;
 }

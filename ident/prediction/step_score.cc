@@ -73,6 +73,23 @@ std::vector<StepFifth> Fifths(std::vector<StepPrediction> predictions) {
   return fifths;
 }
 
+LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
+  std::vector<double> errors;
+  LiftOffError result;
+  for (const StepPrediction& p : predictions) {
+    if (!p.timing || !p.timing->lift_off || !p.timing->recorded_lift_off) continue;
+    errors.push_back(*p.timing->lift_off - *p.timing->recorded_lift_off);
+    result.mean_absolute += std::abs(errors.back());
+  }
+  if (errors.empty()) return result;
+  std::sort(errors.begin(), errors.end());
+  const size_t half = errors.size() / 2;
+  result.people = static_cast<int>(errors.size());
+  result.mean_absolute /= result.people;
+  result.median = errors.size() % 2 == 1 ? errors[half] : 0.5 * (errors[half - 1] + errors[half]);
+  return result;
+}
+
 }  // namespace
 
 double StepScore::WorstCalibration() const {
@@ -98,6 +115,7 @@ StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
   score.brier_error = JackknifeError(predictions, people, Brier);
   score.auc_error = JackknifeError(predictions, people, AreaUnderCurve);
   score.fifths = Fifths(predictions);
+  score.lift_off = LiftOffErrorOf(predictions);
   return score;
 }
 

@@ -30,11 +30,22 @@ Json GroupsJson(const std::map<std::string, MeanScore>& groups) {
   return json;
 }
 
+Json SecondsOrNull(const std::optional<double>& time) { return time ? Json(*time) : Json(nullptr); }
+
+// All null where the model has the person stand.
+void AddTiming(const StepTiming& timing, Json* json) {
+  (*json)["lift_off_s"] = SecondsOrNull(timing.lift_off);
+  (*json)["landing_s"] = SecondsOrNull(timing.landing);
+  (*json)["travel_m"] =
+      timing.lift_off ? Json({timing.travel.x(), timing.travel.y()}) : Json(nullptr);
+}
+
 Json StepsJson(const std::vector<StepPrediction>& steps) {
   Json people = Json::array();
   for (const StepPrediction& step : steps) {
     people.push_back(
         {{"margin_m", step.margin}, {"probability", step.probability}, {"stepped", step.stepped}});
+    if (step.timing) AddTiming(*step.timing, &people.back());
   }
   return people;
 }

@@ -19,6 +19,24 @@ std::string FifthText(const StepFifth& fifth) {
   return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);
 }
 
+// "+0.05 s, mean |.| 0.11 s, 23 people"
+std::string LiftOffText(const LiftOffError& error) {
+  return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
+         Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people";
+}
+
+// Nothing where no model has step states.
+void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
+  std::vector<std::string> row = {"first lift-off, predicted - recorded: median"};
+  bool any = false;
+  for (const auto& [name, score] : scores) {
+    const LiftOffError& error = score->lift_off;
+    any = any || error.people > 0;
+    row.push_back(error.people == 0 ? std::string() : LiftOffText(error));
+  }
+  if (any) table->Add(row);
+}
+
 }  // namespace
 
 std::string StepProbabilityText(const StepProbability& p) {
@@ -63,6 +81,7 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
       return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
     });
   }
+  AddLiftOff(known, &table);
   return table;
 }
 
@@ -71,8 +90,8 @@ std::string StepScoresText(const NamedStepScores& scores) {
   if (table.rows().size() < 2) return "";
   int people = 0;
   for (const auto& [name, score] : scores) people = std::max(people, score->people);
-  return table.ToString() + "+-: standard errors by leaving out each of " +
-         std::to_string(people) + " people\n";
+  return table.ToString() + "+-: standard errors by leaving out each of " + std::to_string(people) +
+         " people\n";
 }
 
 Json ToJson(const StepScore& score) {
@@ -83,6 +102,11 @@ Json ToJson(const StepScore& score) {
   for (const StepFifth& fifth : score.fifths) {
     json["fifths"].push_back(
         {{"tracks", fifth.tracks}, {"predicted", fifth.predicted}, {"observed", fifth.observed}});
+  }
+  if (score.lift_off.people > 0) {
+    json["lift_off"] = {{"people", score.lift_off.people},
+                        {"median_error_s", score.lift_off.median},
+                        {"mean_absolute_error_s", score.lift_off.mean_absolute}};
   }
   return json;
 }
@@ -96,6 +120,11 @@ StepScore StepScoreFromJson(const Json& json) {
   score.brier_error = json.at("brier_error");
   score.auc = json.at("auc");
   score.auc_error = json.at("auc_error");
+  if (json.contains("lift_off")) {
+    const Json& error = json.at("lift_off");
+    score.lift_off = {error.at("people"), error.at("median_error_s"),
+                      error.at("mean_absolute_error_s")};
+  }
   for (const Json& fifth : json.at("fifths")) {
     score.fifths.push_back({fifth.at("tracks"), fifth.at("predicted"), fifth.at("observed")});
   }

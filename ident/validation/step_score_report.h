@@ -23,7 +23,8 @@ TextTable StepScoresTable(const NamedStepScores& scores);
 std::string StepScoresText(const NamedStepScores& scores);
 
 // {tracks, stepped, people, brier, brier_error, auc, auc_error,
-//  fifths: [{tracks, predicted, observed}, ...]}
+//  fifths: [{tracks, predicted, observed}, ...]}, and for models with step states
+// lift_off: {people, median_error_s, mean_absolute_error_s}
 nlohmann::ordered_json ToJson(const StepScore& score);
 StepScore StepScoreFromJson(const nlohmann::ordered_json& json);
 

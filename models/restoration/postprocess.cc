@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/restoration/planted_feet.h"
 #include "models/restoration/skeleton_fit.h"
 
 namespace pushid {
@@ -17,10 +18,8 @@ class FootLock {
 
   // The horizontal correction of an ankle that the restoration puts at `ankle`.
   Eigen::Vector3d Correction(const Eigen::Vector3d& ankle) {
-    const double speed = (ankle - before_).head<2>().norm() / dt_;
+    const bool standing = Rests(ankle, before_, floor_, dt_, options_);
     before_ = ankle;
-    const bool standing =
-        ankle.z() < floor_ + options_.contact_height && speed < options_.contact_speed;
     if (locked_ && (!standing || Drift(ankle) > options_.release_drift)) Release(ankle);
     if (!locked_ && standing && fading_ == 0) Lock(ankle);
     if (locked_) return Flat(place_ - ankle);
@@ -54,9 +53,13 @@ class FootLock {
   int fading_ = 0;
 };
 
-constexpr double kOutOfReach = 0.005;  // m
-
 }  // namespace
+
+bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
+           const PostprocessOptions& options) {
+  const double speed = (ankle - before).head<2>().norm() / dt;
+  return ankle.z() < floor + options.contact_height && speed < options.contact_speed;
+}
 
 void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion) {
   if (motion->empty()) return;
@@ -81,7 +84,7 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
       const Eigen::Vector3d correction = lock.Correction(at);
       if (correction.isZero(0.0)) continue;
       const double missed = ReachWithLeg(left, at + correction, &pose);
-      if (missed > kOutOfReach && lock.locked()) {
+      if (missed > options.out_of_reach && lock.locked()) {
         Eigen::Vector3d reached = pose.col(ankle) - at;
         reached.z() = 0.0;
         lock.LetGo(reached);
@@ -93,7 +96,12 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion) {
   if (options.fade_residual) FadeResidual(person.first_pose, options.fade_frames, motion);
   if (options.keep_bones) KeepBones(person.first_pose, motion);
-  if (options.lock_feet) LockFeet(person.first_pose, person.dt, options, motion);
+  if (!options.lock_feet) return;
+  if (person.stands.empty()) {
+    LockFeet(person.first_pose, person.dt, options, motion);
+  } else {
+    PlantFeet(person, options, motion);
+  }
 }
 
 }  // namespace pushid

@@ -4,7 +4,8 @@
 //      motion begins where the person stands.
 //   2. The person's own skeleton carries it out (skeleton_fit.h): bones keep their length.
 //   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
-//      inverse kinematics; when it leaves, the correction fades over 4 frames.
+//      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model says
+//      when feet stand (RestorationInput::stands), they stand then (planted_feet.h).
 #pragma once
 
 #include "models/restoration/restoration.h"
@@ -20,7 +21,12 @@ struct PostprocessOptions {
   double contact_speed = 0.5;     // m/s, horizontal: slower is standing
   double release_drift = 0.10;    // m: a lock that would pull further than this lets go
   int release_frames = 4;
+  double out_of_reach = 0.005;  // m by which a leg may miss the place that it stands on
 };
+
+// Whether a restored ankle is low and slow; floor: its own height at frame 0.
+bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
+           const PostprocessOptions& options);
 
 void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion);
 void KeepBones(const Pose& first_pose, BodyMotion* motion);

@@ -23,6 +23,8 @@ struct RestorationInput {
   std::vector<Vector4<double>> q;  // the pendulum, frame by frame; at least one
   double dt = 1.0 / 60.0;          // s
   double push_start = 0.0;         // s, of the first push on anybody
+  // Frame by frame, whether the feet stand; empty: the model says nothing of them.
+  std::vector<bool> stands = {};
 };
 
 class Restoration {

@@ -51,6 +51,29 @@ TEST(ScoresJsonTest, ThereAndBack) {
   EXPECT_FALSE(read.value().propagation.figures[kOnsetBias].known());
 }
 
+TEST(ScoresJsonTest, WhenPeopleStep) {
+  ScoreSummary scores = SampleScores();
+  StepTiming timing;
+  timing.lift_off = 0.5;
+  timing.travel = {0.25, 0.0};
+  timing.recorded_lift_off = 0.25;
+  scores.recordings[0].steps = {{0.1, 0.75, true, "a", timing},
+                                {-0.1, 0.25, false, "b", StepTiming()},
+                                {-0.1, 0.25, false, "c"}};
+  scores.steps = ScoreSteps(scores.recordings[0].steps);
+  const nlohmann::ordered_json json = ToJson(scores, true);
+  const auto& people = json["recordings"][0]["predicted_steps"];
+  EXPECT_EQ(people[0]["lift_off_s"], 0.5);
+  EXPECT_TRUE(people[0]["landing_s"].is_null());  // still stepping at the end
+  EXPECT_EQ(people[0]["travel_m"], nlohmann::ordered_json({0.25, 0.0}));
+  EXPECT_TRUE(people[1]["lift_off_s"].is_null());
+  EXPECT_FALSE(people[2].contains("lift_off_s"));  // a model without step states
+  EXPECT_EQ(json["who_steps"]["lift_off"]["median_error_s"], 0.25);
+  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), false)["who_steps"], json["who_steps"]);
+}
+
 // A row in the table of metrics is all that files need.
 TEST(ScoresJsonTest, EveryMetricIsWritten) {
   const nlohmann::ordered_json json = ToJson(SampleScores(), true);
