@@ -89,24 +89,25 @@ void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveFor
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                      const PendulumState<T>& state, NetForce<T>* force) {
-  const Vector4<T> friction = self.Friction(p, state.qd),
-                   balance = self.Balance(p, state, state.qd), linear = self.Linear(p, state);
-  const Eigen::Matrix<T, 2, 1> cart_force = (friction + balance + linear).template head<2>();
+  using Cart = Eigen::Matrix<T, 2, 1>;
+  const T &vx = state.qd[0], &vy = state.qd[1], &s = state.step;
+  const Cart friction = self.Friction(p, state.qd).template head<2>();
+  const Cart balance = self.Balance(p, state, state.qd).template head<2>();
+  const Cart linear = self.LinearOnCart(p, state), cart_force = friction + balance + linear;
   const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
   const StanceForces<T> of_stance = StanceAt(self, stance, force->angles, state, cart_force);
   force->next_step = of_stance.next_step;
   if (active == ActiveForces::kPushOnly) return;
-  auto of_cart = [force](ForcePart part) { return (*force)[part].template head<2>(); };
+  Vector4<T>& ground = (*force)[ForcePart::kFriction];
   if (active == ActiveForces::kPushAndFriction) {
-    for (int i = 0; i < 2; ++i)
-      (*force)[ForcePart::kFriction][i] = -kPublishedFriction * state.qd[i];
+    ground = {-kPublishedFriction * vx, -kPublishedFriction * vy, T(0.0), T(0.0)};
     return;
   }
   force->ground = of_stance.ground;
-  of_cart(ForcePart::kFriction) = state.step * friction.template head<2>();
-  of_cart(ForcePart::kBalance) = state.step * balance.template head<2>();
-  of_cart(ForcePart::kLinear) = state.step * linear.template head<2>();
-  (*force)[ForcePart::kBalance].template tail<2>() = of_stance.torque;
+  ground = {s * friction[0], s * friction[1], T(0.0), T(0.0)};
+  (*force)[ForcePart::kBalance] = {s * balance[0], s * balance[1], of_stance.torque[0],
+                                   of_stance.torque[1]};
+  (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
 }
 
 template <typename T>

@@ -106,14 +106,23 @@ struct SelfForce {
     return force;
   }
 
+  // The rows of the cart, and all.
   template <typename T>
-  Vector4<T> Linear(const ParameterSet<T>& p, const PendulumState<T>& state) const {
-    const double mass = body.mass, ml2 = PointInertia();
+  Eigen::Matrix<T, 2, 1> LinearOnCart(const ParameterSet<T>& p,
+                                      const PendulumState<T>& state) const {
+    const double mass = body.mass;
     const Vector4<T>& qd = state.qd;
     const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
     const T speed = SmoothNorm(qd[0], qd[1]);
     return {mass * (p[kAx] * e_th + p[kBx] * qd[2] - p[kCq] * speed * qd[0]),
-            mass * (-p[kAy] * e_ph - p[kBy] * qd[3] - p[kCq] * speed * qd[1]),
+            mass * (-p[kAy] * e_ph - p[kBy] * qd[3] - p[kCq] * speed * qd[1])};
+  }
+  template <typename T>
+  Vector4<T> Linear(const ParameterSet<T>& p, const PendulumState<T>& state) const {
+    const double mass = body.mass, ml2 = PointInertia();
+    const Vector4<T>& qd = state.qd;
+    const Eigen::Matrix<T, 2, 1> cart = LinearOnCart(p, state);
+    return {cart[0], cart[1],
             mass * p[kTx] * qd[0] - ml2 * p[kDq] * SmoothNorm(qd[2], T(0.0)) * qd[2],
             -mass * p[kTy] * qd[1] - ml2 * p[kDq] * SmoothNorm(qd[3], T(0.0)) * qd[3]};
   }

@@ -92,20 +92,22 @@ T SupportRatio(const StanceParameters<T>& p, const Eigen::Matrix<T, 2, 1>& captu
   return sqrt(x * x + y * y + kTiny);
 }
 
-// u limited to -1 .. 1: smooth, and within 8 % of u up to 0.8.
+// x limited to -most .. most: smooth, and within 8 % of x up to 0.8 most.
 template <typename T>
-T SmoothLimit(const T& u) {
+T SmoothLimit(const T& x, const T& most) {
   using std::sqrt;
-  const T square = u * u;
-  return u / sqrt(sqrt(1.0 + square * square));
+  const T x2 = x * x, most2 = most * most;
+  return x * most / sqrt(sqrt(x2 * x2 + most2 * most2));
 }
 
+// (s + dt beyond / t_on) / (1 + dt beyond / t_on + dt (1 - beyond) / t_off), written with a single
+// division; `within` is exp((1 - rho) / 0.05) of beyond = 1 / (1 + within), at most e^20.
 template <typename T>
 T NextStepState(const StanceParameters<T>& p, const T& rho, const T& step, double dt) {
   using std::exp;
-  const T beyond = 1.0 / (1.0 + exp((1.0 - rho) / kSupportEdge));
-  const T on = dt * beyond / p.onset, off = dt * (1.0 - beyond) / p.release;
-  return (step + on) / (1.0 + on + off);
+  const T within = exp((1.0 - rho) * (1.0 / kSupportEdge));
+  const T times = p.onset * p.release * (1.0 + within), on = dt * p.release;
+  return (step * times + on) / (times + on + dt * p.onset * within);
 }
 
 template <typename T>
@@ -129,7 +131,7 @@ Eigen::Matrix<T, 2, 1> AnkleTorque(const SelfForce& self, const StanceParameters
                      self.scale.damping * p.Kd[i] * state.qd[2 + i];
     const T& reach = i == 1 ? p.side : RealPart(wanted) < 0.0 ? p.back : p.front;
     const T most = weight * p.ankle_reach * reach;
-    torque[i] = self.hold[i] - most * SmoothLimit<T>(wanted / most);
+    torque[i] = self.hold[i] - SmoothLimit(wanted, most);
   }
   return torque;
 }

@@ -41,6 +41,7 @@ FittedModel OfPreset(const std::string& name) {
   result.starts = {start};
   result.best_start = 0;
   result.warnings = {"a warning"};
+  result.step_probability = StepProbability{{0.5, 30.0}, Eigen::Matrix2d::Identity(), 20, 12, 5};
   model.provenance.version = "0.1.0";
   model.provenance.configuration = {{"seed", "1"}, {"preset", name}};
   model.provenance.changed_flags = {"preset"};

@@ -179,8 +179,9 @@ TEST(Stance, FootTorqueMovesTheCartAsAsked) {
 
 TEST(Stance, LimitIsSmoothAndKept) {
   for (double u : {-30.0, -1.0, -0.3, 0.0, 0.3, 1.0, 5.0, 1e4}) {
-    EXPECT_LE(std::abs(SmoothLimit(u)), 1.0);
-    if (std::abs(u) <= 0.8) EXPECT_NEAR(SmoothLimit(u), u, 0.08 * std::abs(u));
+    EXPECT_LE(std::abs(SmoothLimit(u, 1.0)), 1.0);
+    EXPECT_NEAR(SmoothLimit(40.0 * u, 40.0), 40.0 * SmoothLimit(u, 1.0), 1e-12 * 40.0);
+    if (std::abs(u) <= 0.8) EXPECT_NEAR(SmoothLimit(u, 1.0), u, 0.08 * std::abs(u));
   }
 }
 

@@ -18,7 +18,8 @@ from studies import number
 
 # Row of the table, and the benchmarks whose times stand in it.
 ROWS = [
-    ("one step of the model / one rollout of 72 frames", ["IpmStep", "RolloutOfDoubles"]),
+    ("one step of the model / with feet that hold and step", ["IpmStep", "IpmStepOfStance"]),
+    ("one rollout of 72 frames", ["RolloutOfDoubles"]),
     ("Jacobian of the 32 recordings by forward sensitivities, P = 6 / 12 / 64",
      [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
     ("the same by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),

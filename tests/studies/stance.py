@@ -12,21 +12,23 @@ import studies
 from studies import number, with_error
 
 STANCE = "--stance=threshold"
+HELD = "threshold, b_x held"  # and c_q: terms that drive people on who step
 SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out", "subject", ()),
            ("strong pushes left out", "strong", ())]
 IMPULSES = [5, 10, 15, 20, 25, 30, 40, 60]
 
 
-def compared(setting, scheme, *arguments):
-    """Cross-validations of both by name, and their paired difference."""
+def compared(setting, scheme, *arguments, more=""):
+    """Cross-validations by name, and their paired differences from the first."""
     out = studies.on_recordings("pushid-crossvalidate", setting, f"--scheme={scheme}", "--yardsticks=false",
-                                *arguments, f"--compare=threshold: {STANCE}").json
-    slide, threshold = out["predictors"]
-    return {"slide": slide, "threshold": threshold}, out["paired_differences"][0]
+                                *arguments, f"--compare=threshold: {STANCE}{more}").json
+    scores = {p["name"]: p for p in out["predictors"][1:]}
+    return {"slide": out["predictors"][0], **scores}, {d["to"]: d for d in out["paired_differences"]}
 
 
 def groups_compared():
-    return compared("groups", "stratified", "--folds=5", "--repeats=1")
+    return compared("groups", "stratified", "--folds=5", "--repeats=1",
+                    more=f"; {HELD}: {STANCE} --fix=b_x=0,c_q=0")
 
 
 def error_cells(p):
@@ -36,29 +38,30 @@ def error_cells(p):
             f"{p['fits_that_settle']} of {p['fits']}"]
 
 
-def difference_cell(name, difference):
-    if name == "slide":
+def difference_cell(name, differences):
+    if name not in differences:
         return None
-    return with_error(difference["hipADE_m"], difference["hipADE_standard_error_m"], sign=True)
+    d = differences[name]
+    return with_error(d["hipADE_m"], d["hipADE_standard_error_m"], sign=True)
 
 
 def single():
     rows = []
     for title, scheme, arguments in SCHEMES:
-        scores, difference = compared("single", scheme, *arguments)
+        scores, differences = compared("single", scheme, *arguments)
         for name, p in scores.items():
-            rows.append([title, f"`{name}`", *error_cells(p), difference_cell(name, difference)])
+            rows.append([title, f"`{name}`", *error_cells(p), difference_cell(name, differences)])
     return studies.table(["32 recordings of single people", "feet", "hipADE, m", "hipFDE, m", "settle",
                           "hipADE - `slide`, m"], rows)
 
 
 def groups():
-    scores, difference = groups_compared()
+    scores, differences = groups_compared()
     rows = []
     for name, p in scores.items():
         moves = p["propagation"]
         onset = moves["onset_error_frames"]
-        rows.append([f"`{name}`", *error_cells(p), difference_cell(name, difference),
+        rows.append([f"`{name}`", *error_cells(p), difference_cell(name, differences),
                      f"{moves['false_movers']:.3g} of {moves['bystanders']:.0f}",
                      f"{moves['missed_movers']:.3g} of {moves['movers']:.0f}",
                      with_error(onset["value"], onset["standard_error"])])
