@@ -66,6 +66,57 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
 }
 
+// Feet that hold bring what goes with them, and refuse what is for sliding feet.
+TEST(FitSetup, StanceBringsWhatGoesWithIt) {
+  const FitOptions slide = MakeFitOptions({{"preset", "tail"}}).value();
+  EXPECT_EQ(slide.model.stance, Stance::kSlide);
+  EXPECT_FALSE(slide.table[kStepOnset].free);
+  const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}}).value();
+  EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
+  EXPECT_EQ(holds.start, FitStart::kNominal);
+  for (Parameter id : {kMu, kAx, kTailGain, kSupportFront, kStepOnset, kStepRelease}) {
+    EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
+    EXPECT_TRUE(holds.table[id].prior.has_value()) << holds.table[id].name;
+  }
+  for (Parameter id : {kKpTheta, kTailTorque, kSupportBack}) {
+    EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
+  }
+  const FitOptions added =
+      MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}, {"push", "added"}}).value();
+  EXPECT_EQ(added.model.push, PushUse::kAdded);
+  for (const auto& [flag, value] :
+       {std::pair("rod", "linear"), std::pair("start", "equation_error"),
+        std::pair("cart_derivative", "backward"), std::pair("self_force", "lstm:64")}) {
+    EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "threshold"}, {flag, value}}),
+                         "is for feet that slide"))
+        << flag;
+  }
+  EXPECT_TRUE(Contains(Complaint({{"stance", "walk"}}), "--stance is 'walk'"));
+}
+
+TEST(PrepareFit, TakesTheSupportFromTheFeet) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitOptions options =
+      MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}, {"support", "feet"}}).value();
+  for (PendulumRecording& recording : recordings) {
+    recording.foot_support.assign(1, FootSupport{0.12, std::nullopt, std::nullopt});
+  }
+  FitOptions without = options;
+  const MaybeError no_toes = PrepareFit(recordings, &without);
+  ASSERT_TRUE(no_toes.has_value());
+  EXPECT_TRUE(Contains(no_toes->ToString(), "no toes are recorded"));
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    recordings[i].foot_support[0].forward = 0.16 + 0.01 * static_cast<double>(i);
+  }
+  ASSERT_FALSE(PrepareFit(recordings, &options).has_value());
+  EXPECT_NEAR(options.table[kSupportFront].nominal, 0.185, 0.006);
+  EXPECT_EQ(options.table[kSupportSide].nominal, 0.12);
+  EXPECT_EQ(options.table[kAnkleReach].nominal, 1.0);
+  EXPECT_FALSE(options.table[kSupportFront].free);
+  FitOptions slide = MakeFitOptions({{"preset", "tail"}, {"support", "feet"}}).value();
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &slide)->ToString(), "--stance=threshold"));
+}
+
 TEST(FitSetup, PoolingSigmaIsANumberOrEstimated) {
   const FitOptions given = MakeFitOptions({{"preset", "tail"}, {"pooling_sigma", "0.4"}}).value();
   EXPECT_EQ(given.pooling_sigma, 0.4);
