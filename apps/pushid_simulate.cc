@@ -10,24 +10,31 @@
 #include "apps/simulate_formation.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/parameters/presets.h"
+#include "ident/results/fit_setup.h"
 
 namespace {
 
 using namespace pushid;
 
-// The model of --model, else the tail preset: what it fits has the values identified from the
-// published recordings, what it holds keeps its value, so that a fit can find the truth exactly.
-// Either with --set.
-Result<IdentifiedModel> Truth() {
+// The model of --model, else the tail preset with feet that do as --truth_stance says: what it fits
+// has values near those identified from the published recordings, what it holds keeps its value, so
+// that a fit can find the truth exactly. Either with --set.
+Result<IdentifiedModel> Truth(Stance stance) {
   const ModelFlags flags = ModelFlagsFromCommandLine();
-  if (!flags.file.empty()) return LoadFlaggedModel();
-  const FitOptions preset = MakePreset("tail").value();
+  if (!flags.file.empty()) {
+    if (stance == Stance::kSlide) return LoadFlaggedModel();
+    return Error{"--model says what feet do; leave --truth_stance out"};
+  }
+  const Result<FitOptions> made = MakeFitOptions({{"preset", "tail"}, {"stance", NameOf(stance)}});
+  if (!made.ok()) return made.error();
+  const FitOptions& preset = made.value();
+  const ParameterSet<double> published =
+      stance == Stance::kSlide ? PublishedTailParameters() : PublishedStanceParameters();
   IdentifiedModel model;
   model.options = preset.model;
   model.table = preset.table;
   model.parameters = preset.table.Values();
-  for (Parameter id : preset.table.Free()) model.parameters[id] = PublishedTailParameters()[id];
+  for (Parameter id : preset.table.Free()) model.parameters[id] = published[id];
   if (MaybeError error = SetValues(flags.set, &model)) return *error;
   return model;
 }
@@ -51,7 +58,7 @@ int Run() {
   if (FormationGiven()) return SimulateFormation();
   const Result<SimulateFlags> flags = SimulateFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
-  const Result<IdentifiedModel> truth = Truth();
+  const Result<IdentifiedModel> truth = Truth(flags.value().recordings.model.stance);
   if (!truth.ok()) return Fail(truth.error());
   const std::string& out = flags.value().out;
   SyntheticOptions options = flags.value().recordings;

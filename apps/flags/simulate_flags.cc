@@ -20,8 +20,9 @@ DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames a second");
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
 DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
               "net (only the push's first part, the tail follows) or external");
-DEFINE_string(truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
-              "what the feet of the people made do: slide, or threshold (hold, then step)");
+DEFINE_string(
+    truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
+    "without --model, what the feet of the people made do: slide, or threshold (hold, then step)");
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
               "how much all parameters vary between recordings (standard deviation of the "
               "logarithm; 0.1 is about 10 %)");
@@ -62,10 +63,6 @@ Result<SimulateFlags> SimulateFlagsFromCommandLine() {
   SimulateFlags flags;
   Stance& stance = flags.recordings.model.stance;
   if (MaybeError error = ParseName("--truth_stance", FLAGS_truth_stance, &stance)) return *error;
-  if (stance == Stance::kThreshold) {
-    flags.recordings.model.push = PushUse::kAsRecorded;
-    flags.recordings.parameters = PublishedStanceParameters();
-  }
   flags.out = FLAGS_out;
   flags.recordings.subjects = FLAGS_people;
   flags.recordings.recordings_per_subject = FLAGS_recordings_per_person;

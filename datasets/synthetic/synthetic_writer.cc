@@ -71,6 +71,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
   manifest.length_unit = kUnit;
   auto& about = manifest.json["synthetic"];
   about["seed"] = options.seed;
+  about["stance"] = NameOf(options.model.stance);
   about["joint_noise_m"] = options.joint_noise_m;
   for (int i = 0; i < kFirstOwnParameter; ++i) {
     about["truth"][std::string(kParameterNames[i])] = options.parameters[i];

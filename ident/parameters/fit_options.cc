@@ -64,7 +64,9 @@ std::string StanceViolation(const FitOptions& o) {
                         : o.model.cart_derivative != CartDerivative::kNone ? "--cart_derivative"
                                                                            : nullptr;
   if (sliding == nullptr) return "";
-  return std::string(sliding) + " is for feet that slide; leave it out, or --stance=threshold";
+  return std::string(sliding) +
+         " is for feet that slide and does not go together with --stance=threshold; drop one of "
+         "the two";
 }
 
 }  // namespace

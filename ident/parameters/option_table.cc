@@ -196,9 +196,9 @@ std::vector<Row> SolverRows() {
   using O = FitOptions;
   return {
       HorizonsRow(),
-      NameRow<FitStart>(
+      Decided(NameRow<FitStart>(
           "start", "/start", [](O & o) -> auto& { return o.start; },
-          "first start: equation_error or nominal"),
+          "first start: equation_error, or nominal (where feet hold)")),
       CountRow(
           "starts", "/num_starts", [](O & o) -> auto& { return o.num_starts; },
           "how many starts; the best one is taken"),

@@ -8,7 +8,8 @@
 namespace pushid {
 namespace {
 
-constexpr double kSteps = 0.5, kStandsAgain = 0.4;
+// At 0.85 the ground holds with a fortieth of its strength: before, feet hardly move.
+constexpr double kSteps = 0.85, kStandsAgain = 0.75;
 
 std::string PhaseText(const SteppingPhase& phase, double dt) {
   const std::string from = "from " + Rounded(phase.lift_off * dt, 3) + " s ";

@@ -1,8 +1,8 @@
 // ident: when people step in a predicted path, for how long and how far.
 //
 // A path with step states (models/stance.h) says of a person, not of a foot, how much the feet are
-// let go. A stepping phase begins with the first frame in which the state is above 0.5 and lasts
-// until it falls below 0.4, so that a state that flickers about one half makes one phase. It may
+// let go. A stepping phase begins with the first frame in which the state is above 0.85, where feet
+// begin to move, and lasts until it falls below 0.75: a state that flickers makes one phase. It may
 // hold several steps of a real person: compare its beginning with the recorded first lift-off
 // (datasets/loading/foot_steps.h); its travel is the cart's, not a foot's.
 #pragma once

@@ -1,7 +1,9 @@
 // ident: options made fit for recordings.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "datasets/files/number_text.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
@@ -81,7 +83,7 @@ double Median(std::vector<double> values) {
 
 // Holds the support at what the recorded feet have.
 MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
-                               FitOptions* options) {
+                               FitOptions* options, std::vector<std::string>* told) {
   if (options->support != SupportSource::kFromFeet) return std::nullopt;
   if (options->model.stance != Stance::kThreshold) {
     return Error{"--support=feet is for feet that hold; add --stance=threshold"};
@@ -108,6 +110,12 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
   hold(kSupportBack, back);
   hold(kSupportSide, side);
   options->table[kAnkleReach].nominal = 1.0;
+  told->push_back("--support=feet: held at the medians of " + std::to_string(forward.size()) +
+                  " people with toes: support_front " +
+                  DoubleText(std::round(1e3 * options->table[kSupportFront].nominal) / 1e3) +
+                  " m, support_side " +
+                  DoubleText(std::round(1e3 * options->table[kSupportSide].nominal) / 1e3) + " m" +
+                  (back.empty() ? "; no heels: support_back as in the table" : ""));
   return std::nullopt;
 }
 
@@ -116,8 +124,8 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
-  if (MaybeError error = TakeSupportFromFeet(recordings, options)) return error;
   std::vector<std::string> told;
+  if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
   UnpoolOneUnit(recordings, options, &told);
   std::string invalid;
   if (!options->IsValid(&invalid)) return Error{invalid};

@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "ident/results/identified_model.h"
@@ -19,7 +18,6 @@ namespace {
 // known from any data there is.
 constexpr double kPriorIntercept = 10.0, kPriorSlope = 200.0;  // standard deviations; 1/m
 constexpr int kMostIterations = 50;
-constexpr double kRestDistance = 1e-4;  // m
 
 double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
@@ -64,17 +62,13 @@ double StepMargin(const ModelOptions& options, const ParameterSet<double>& param
                   const ScenePerson& person, const RolloutPath<double>& path, int index) {
   const SelfForce self(options, person.body, person.start.q, 1.0);
   const StanceParameters<double> p([&parameters](Parameter id) { return parameters[id]; });
-  double margin = -std::numeric_limits<double>::infinity();
+  double most = 0.0;
   for (int t = 0; t < path.num_frames(); ++t) {
-    const Eigen::Vector2d capture =
-        CaptureOffset(self, Angles<double>(path.At(t, index).q), path.At(t, index).qd);
-    const double distance = capture.norm();
-    // At rest there is no direction; then the nearest edge.
-    const double reach = distance < kRestDistance ? std::min({p.front, p.back, p.side})
-                                                  : distance / SupportRatio<double>(p, capture);
-    margin = std::max(margin, distance - reach);
+    const PendulumState<double>& state = path.At(t, index);
+    const Eigen::Vector2d capture = CaptureOffset(self, Angles<double>(state.q), state.qd);
+    most = std::max(most, SupportRatio<double>(p, capture));
   }
-  return margin;
+  return p.front * (most - 1.0);
 }
 
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,

@@ -1,8 +1,8 @@
 // ident: how probable it is that a pushed person steps.
 //
 // The margin of a person in a predicted motion is how far the capture point (models/stance.h) gets
-// beyond the edge of the feet's support, along its own direction, at most:
-//   margin = max over frames of |xi| (1 - 1 / rho)      m; negative while it stays inside
+// beyond the edge of the feet's support, at most, as if it were in front:
+//   margin = b (max over frames of rho - 1)      m; negative while it stays inside, -b at rest
 //   P(step) = 1 / (1 + exp(-(a + margin / w)))
 // a, w by maximum likelihood over everybody in the fitted recordings, after the trajectories, with
 // a weak prior that holds them finite where a margin tells all who step from all who do not. Errors

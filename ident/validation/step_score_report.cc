@@ -77,7 +77,8 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
   add("AUC", [](const StepScore& s) { return WithError(s.auc, s.auc_error); });
   add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
   for (size_t i = 0; i < fifths; ++i) {
-    add(i == 0 ? "least probable fifth: P(step) -> share" : "next", [i](const StepScore& s) {
+    const std::string title = "group " + std::to_string(i + 1) + " by P(step): mean -> share";
+    add(title, [i](const StepScore& s) {
       return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
     });
   }

@@ -14,7 +14,7 @@ constexpr double kChartWidth = 320, kChartHeight = 260;
 ReportFigure MapFigure(const IdentifiedModel& model) {
   const StepMap map = ComputeStepMap(model);
   HeatMap picture;
-  picture.title = "P(step): impulse per mass (m/s) down, duration of the push (s) across";
+  picture.title = "P(step) by impulse per mass and duration";
   std::vector<std::string> header = {"impulse_per_mass_m_s"};
   for (double duration : map.duration_s) {
     picture.columns.push_back(Rounded(duration, 2) + " s");
@@ -65,7 +65,9 @@ ReportSection StepSection(const FittedModel& model, const std::vector<RecordingV
   const StepScore score = ScoreOf(views);
   if (!score.known()) return section;
   section.tables.push_back(
-      {"who steps in the recordings shown here", StepScoresTable({{"predicted", &score}})});
+      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
+       "others",
+       StepScoresTable({{"predicted", &score}})});
   section.figures.push_back(ReliabilityFigure(score));
   return section;
 }

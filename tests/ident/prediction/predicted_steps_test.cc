@@ -47,7 +47,7 @@ TEST(PredictedSteps, APhaseFromLiftOffToLanding) {
 
 TEST(PredictedSteps, TheEdgesOfAPath) {
   EXPECT_TRUE(SteppingPhases(RolloutPath<double>(), 0).empty());
-  EXPECT_TRUE(SteppingPhases(PathWith({0.0, 0.5, 0.5}).path, 0).empty());
+  EXPECT_TRUE(SteppingPhases(PathWith({0.0, 0.85, 0.85}).path, 0).empty());
   EXPECT_EQ(Text(PathWith({0.0, 0.0})), "S01: stands\n");
   const Prediction cut_off = PathWith({0.0, 0.7, 0.8});
   const std::vector<SteppingPhase> phases = SteppingPhases(cut_off.path, 0);
@@ -60,7 +60,7 @@ TEST(PredictedSteps, TheEdgesOfAPath) {
 }
 
 TEST(PredictedSteps, AFlickerIsOnePhaseAndARestPartsTwo) {
-  EXPECT_EQ(SteppingPhases(PathWith({0.51, 0.49, 0.51, 0.45, 0.6, 0.0}).path, 0).size(), 1u);
+  EXPECT_EQ(SteppingPhases(PathWith({0.86, 0.84, 0.86, 0.8, 0.9, 0.0}).path, 0).size(), 1u);
   const Prediction twice = PathWith({0.6, 0.2, 0.6, 0.7});
   EXPECT_EQ(SteppingPhases(twice.path, 0).size(), 2u);
   EXPECT_EQ(Text(twice),

@@ -76,18 +76,18 @@ TEST(StepProbability, SurvivesAFile) {
   EXPECT_THROW(StepProbabilityFromJson(damaged), std::runtime_error);
 }
 
-// At rest the margin is the distance to the nearest edge; a lean moves it by the hip's way.
+// At rest the margin is the support in front; a lean forwards moves it by the hip's way.
 TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   ModelOptions options;
   ParameterSet<double> p{};
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.06, p[kSupportSide] = 0.12;
   ScenePerson person;
   RolloutPath<double> path(3, 1);
-  EXPECT_NEAR(StepMargin(options, p, person, path, 0), -0.06, 1e-12);
+  EXPECT_NEAR(StepMargin(options, p, person, path, 0), -0.1, 1e-6);
   path.At(1, 0).q[2] = std::asin(0.15 / kReferenceRod);
   EXPECT_NEAR(StepMargin(options, p, person, path, 0), 0.05, 1e-6);
   path.At(1, 0).q[2] = std::asin(-0.15 / kReferenceRod);
-  EXPECT_NEAR(StepMargin(options, p, person, path, 0), 0.09, 1e-6);
+  EXPECT_NEAR(StepMargin(options, p, person, path, 0), 0.1 * (0.15 / 0.06 - 1.0), 1e-6);
 }
 
 }  // namespace
