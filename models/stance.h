@@ -22,10 +22,11 @@
 // While a `net` push lasts none of it acts: its rows hold the feet's reaction. From a
 // `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
 //
-// Sources: capture point, Hof 2008 and Pratt et al. 2006; the rest was chosen by cross-validation
-// (tests/studies/stance.py). Rejected: feet that are let go to slide under the forces of sliding
-// feet (those who step stop too early); feet drawn to a target that was fixed when the step began
-// (it fits worse, and nothing follows it when the first step was too short).
+// Sources: capture point, Hof 2008 and Pratt et al. 2006; the rest was chosen by how well it
+// predicts recordings (tests/studies/stance.py compares it with feet that slide). Rejected: feet
+// that are let go to slide under the forces of sliding feet (those who step stop too early); feet
+// drawn to a target that was fixed when the step began (it fits worse, and nothing follows it when
+// the first step was too short).
 #pragma once
 
 #include <cmath>
@@ -92,7 +93,7 @@ T SupportRatio(const StanceParameters<T>& p, const Eigen::Matrix<T, 2, 1>& captu
   return sqrt(x * x + y * y + kTiny);
 }
 
-// x limited to -most .. most: smooth, and within 8 % of x up to 0.8 most.
+// x limited to -most .. most: smooth, and within 9 % of x up to 0.8 most.
 template <typename T>
 T SmoothLimit(const T& x, const T& most) {
   using std::sqrt;

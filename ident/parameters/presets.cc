@@ -128,7 +128,10 @@ void SetStance(Stance stance, FitOptions* options) {
   // the way back from swinging. Few of those who were recorded stand: the data say little of them.
   for (Parameter id : {kKpTheta, kKpPhi}) table[id].nominal = 1150;
   for (Parameter id : {kKdTheta, kKdPhi}) table[id].nominal = 330;
-  table[kKpTheta].free = false;
+  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) {
+    table[id].free = false;
+    table[id].prior = Prior{table[id].nominal, 0.3 * table[id].nominal};
+  }
   for (const Start& start : {Start{kMu, 80, 80}, Start{kAx, 15, 10}, Start{kTailGain, 2, 2},
                              Start{kSupportFront, 0.1, 0.03}}) {
     Free(start, &table);

@@ -65,11 +65,12 @@ MaybeError Assign(const std::string& list, const std::string& flag, std::optiona
       return Error{flag + ": '" + text + "' needs a value, as in " + text + "=1"};
     }
     if (item.value().has_value) {
-      // A fixed parameter may sit on zero, where a log scale has no place for a free one; not the
-      // tail's time, which divides.
+      // A fixed parameter may sit on zero, where a log scale has no place for a free one; not
+      // those that divide: the tail's time, and those of feet that stand.
       const bool free_after = make_free.value_or(spec->free);
       const bool may_be_zero =
-          !free_after && spec->transform == Transform::kLog && spec->id != kTailTime;
+          !free_after && spec->transform == Transform::kLog && spec->id != kTailTime &&
+          !(spec->id >= kSupportFront && spec->id <= kStaticFriction && spec->id != kStepGain);
       if (!may_be_zero || item.value().value != 0.0) {
         if (MaybeError error = CheckInBounds(*spec, item.value().value, flag)) return error;
       }

@@ -21,7 +21,7 @@ const std::string* Find(const GivenOptions& given, const std::string& name) {
 }
 
 // Takes over what a person does alone; the terms between people stay as they are.
-MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
+MaybeError TakeSelfFrom(const std::string& path, Stance stance, ParameterTable* table) {
   const Result<FittedModel> read = ReadFittedModel(path);
   if (!read.ok()) return read.error();
   const FitResult& source = read.value().fit;
@@ -30,8 +30,13 @@ MaybeError TakeSelfFrom(const std::string& path, ParameterTable* table) {
                      ", which --self_from cannot take over; fit one without",
                  path};
   }
+  if (source.options.model.stance != stance) {
+    return Error{"was fitted with --stance=" + NameOf(source.options.model.stance) +
+                     ", which --self_from cannot take into a fit with --stance=" + NameOf(stance),
+                 path};
+  }
   for (ParameterSpec& spec : table->specs) {
-    if (spec.id >= kFirstPairParameter) continue;
+    if (spec.id >= kFirstPairParameter && spec.id < kSupportFront) continue;
     spec.nominal = source.parameters[spec.id];
     spec.free = false;
   }
@@ -43,7 +48,8 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
     const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
     if (value == nullptr) continue;
     if (stage == OptionStage::kOtherModel) {
-      if (MaybeError error = TakeSelfFrom(*value, &options->table)) return error;
+      if (MaybeError error = TakeSelfFrom(*value, options->model.stance, &options->table))
+        return error;
     } else if (MaybeError error = row.apply(*value, options)) {
       return error;
     }

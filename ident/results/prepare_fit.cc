@@ -75,6 +75,21 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
                       NameOf(options->pool_by) + ", '" + *units.begin() + "'");
 }
 
+// Stepping feet get their speed within 20 ms: longer steps of the rollout lag behind.
+MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
+                           const FitOptions& options) {
+  constexpr double kLeastRate = 29.0;  // 1/s
+  if (options.model.stance == Stance::kSlide) return std::nullopt;
+  for (const PendulumRecording& recording : recordings) {
+    const double rate = 1.0 / recording.scene.dt;
+    if (rate >= kLeastRate) continue;
+    return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
+                 " frames per second, too few for --stance=threshold; resample it "
+                 "(--resample_fps=60), or let feet slide"};
+  }
+  return std::nullopt;
+}
+
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -89,10 +104,14 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
     return Error{"--support=feet is for feet that hold; add --stance=threshold"};
   }
   std::vector<double> forward, back, side;
+  // The capture point counts from where it rests, which need not be over the ankles.
+  const bool initial = options->model.posture == Posture::kInitial;
   for (const PendulumRecording& recording : recordings) {
-    for (const FootSupport& feet : recording.foot_support) {
-      if (feet.forward && *feet.forward > 0.0) forward.push_back(*feet.forward);
-      if (feet.back && *feet.back > 0.0) back.push_back(*feet.back);
+    for (size_t n = 0; n < recording.foot_support.size(); ++n) {
+      const FootSupport& feet = recording.foot_support[n];
+      const double rest = initial ? recording.hip[n][0].x() - recording.states[n][0].q[0] : 0.0;
+      if (feet.forward && *feet.forward > rest) forward.push_back(*feet.forward - rest);
+      if (feet.back && *feet.back > -rest) back.push_back(*feet.back + rest);
       if (feet.side > 0.0) side.push_back(feet.side);
     }
   }
@@ -124,6 +143,7 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
   std::vector<std::string> told;
   if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
   UnpoolOneUnit(recordings, options, &told);

@@ -41,13 +41,14 @@ void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
 
 std::string StepProbabilityText(const StepProbability& p) {
   const double a = p.coefficients[0], b = p.coefficients[1];
-  std::string text = "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
-                     " margin))), margin in m: how far the capture point gets beyond the feet's "
-                     "support (negative: stays within); errors +- " +
-                     Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
-                     Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " +
-                     std::to_string(p.clusters) + " people, of " + std::to_string(p.tracks) +
-                     " tracks with " + std::to_string(p.stepped) + " who step";
+  std::string text =
+      "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
+      " margin))), margin in m: how far the capture point gets beyond the feet's "
+      "support (negative: stays within; in any direction as if in front); errors +- " +
+      Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
+      Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " + std::to_string(p.clusters) +
+      " people, of " + std::to_string(p.tracks) + " tracks with " + std::to_string(p.stepped) +
+      " who step";
   if (b > 0.0) text += "; half of all people step at a margin of " + Rounded(-a / b, 2) + " m";
   return text + ".";
 }
@@ -71,7 +72,7 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
     for (const auto& [name, score] : known) row.push_back(cell(*score));
     table.Add(row);
   };
-  add("people who step / people", [](const StepScore& s) {
+  add("tracks with a step / tracks", [](const StepScore& s) {
     return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
   });
   add("AUC", [](const StepScore& s) { return WithError(s.auc, s.auc_error); });

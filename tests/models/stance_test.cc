@@ -159,7 +159,9 @@ TEST(Stance, CapturePointIsThatOfTheHip) {
 // The torque between legs and trunk does what it says, and its momentum is the cart forces' alone.
 TEST(Stance, FootTorqueMovesTheCartAsAsked) {
   Random random(6);
-  const StanceParameters<double> p = Stances(StandingParameters());
+  ParameterSet<double> parameters = StandingParameters();
+  parameters[kStepGain] = 1.3;
+  const StanceParameters<double> p = Stances(parameters);
   for (int trial = 0; trial < 50; ++trial) {
     const Body body = RandomBody(&random);
     const PendulumState<double> state = RandomState(&random, 0.2);
@@ -172,16 +174,17 @@ TEST(Stance, FootTorqueMovesTheCartAsAsked) {
     const Vector4<double> qdd =
         Acceleration<double>(body, state, {cart[0], cart[1], torque[0], torque[1]});
     const double rate = FootRate(kDt);
-    const Eigen::Vector2d wanted = rate * (self.capture_rate * capture - state.qd.head<2>());
+    const Eigen::Vector2d wanted = rate * (1.3 * self.capture_rate * capture - state.qd.head<2>());
     ExpectClose(Eigen::Vector2d(qdd.head<2>()), wanted, 1e-8);
   }
 }
 
 TEST(Stance, LimitIsSmoothAndKept) {
-  for (double u : {-30.0, -1.0, -0.3, 0.0, 0.3, 1.0, 5.0, 1e4}) {
+  for (double u : {-30.0, -1.0, -0.8, -0.3, 0.0, 0.3, 0.8, 1.0, 5.0, 1e4}) {
     EXPECT_LE(std::abs(SmoothLimit(u, 1.0)), 1.0);
     EXPECT_NEAR(SmoothLimit(40.0 * u, 40.0), 40.0 * SmoothLimit(u, 1.0), 1e-12 * 40.0);
-    if (std::abs(u) <= 0.8) EXPECT_NEAR(SmoothLimit(u, 1.0), u, 0.08 * std::abs(u));
+    if (std::abs(u) > 0.8) continue;
+    EXPECT_NEAR(SmoothLimit(u, 1.0), u, 0.09 * std::abs(u));
   }
 }
 
@@ -190,16 +193,17 @@ TEST(Stance, ANetPushIsTheWholeForce) {
   Scene scene = PushedFor(30.0);
   scene.pushes[0].kind = PushKind::kNet;
   ForceTrace trace;
-  const RolloutPath<double> path = PathOf(scene, StandingParameters(), 1.5, &trace);
+  PathOf(scene, StandingParameters(), 1.5, &trace);
   for (int t = 0; t < scene.pushes[0].EndFrame(); ++t) {
     EXPECT_EQ(trace.At(t, 0).Total(), scene.pushes[0].force[t]);
   }
   scene.pushes[0].kind = PushKind::kNetWithoutFriction;
-  PathOf(scene, StandingParameters(), 1.5, &trace);
-  const Vector4<double> rest = trace.At(5, 0).Total() - scene.pushes[0].force[5];
-  EXPECT_EQ(rest.tail<2>().norm(), 0.0);
-  EXPECT_NE(rest[0], 0.0);
-  (void)path;
+  const RolloutPath<double> other = PathOf(scene, StandingParameters(), 1.5, &trace);
+  for (int t = 1; t < scene.pushes[0].EndFrame(); ++t) {
+    const Vector4<double> rest = trace.At(t, 0).Total() - scene.pushes[0].force[t];
+    const Vector4<double>& qd = other.At(t, 0).qd;
+    ExpectClose(rest, Vector4<double>(-100.0 * qd[0], -100.0 * qd[1], 0.0, 0.0), 1e-10);
+  }
 }
 
 // At rest, at the edges and far out: finite everywhere.

@@ -12,23 +12,21 @@ import studies
 from studies import number, with_error
 
 STANCE = "--stance=threshold"
-HELD = "threshold, b_x held"  # and c_q: terms that drive people on who step
 SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out", "subject", ()),
            ("strong pushes left out", "strong", ())]
 IMPULSES = [5, 10, 15, 20, 25, 30, 40, 60]
 
 
-def compared(setting, scheme, *arguments, more=""):
+def compared(setting, scheme, *arguments):
     """Cross-validations by name, and their paired differences from the first."""
     out = studies.on_recordings("pushid-crossvalidate", setting, f"--scheme={scheme}", "--yardsticks=false",
-                                *arguments, f"--compare=threshold: {STANCE}{more}").json
+                                *arguments, f"--compare=threshold: {STANCE}").json
     scores = {p["name"]: p for p in out["predictors"][1:]}
     return {"slide": out["predictors"][0], **scores}, {d["to"]: d for d in out["paired_differences"]}
 
 
 def groups_compared():
-    return compared("groups", "stratified", "--folds=5", "--repeats=1",
-                    more=f"; {HELD}: {STANCE} --fix=b_x=0,c_q=0")
+    return compared("groups", "stratified", "--folds=5", "--repeats=1")
 
 
 def error_cells(p):

@@ -28,7 +28,7 @@ std::string Text(const Prediction& prediction) {
 }
 
 TEST(PredictedSteps, APhaseFromLiftOffToLanding) {
-  Prediction prediction = PathWith({0.0, 0.3, 0.6, 0.9, 0.6, 0.3, 0.1});
+  Prediction prediction = PathWith({0.0, 0.3, 0.9, 0.95, 0.8, 0.3, 0.1});
   const std::vector<SteppingPhase> phases = SteppingPhases(prediction.path, 0);
   ASSERT_EQ(phases.size(), 1u);
   EXPECT_EQ(phases[0].lift_off, 2);
@@ -49,7 +49,7 @@ TEST(PredictedSteps, TheEdgesOfAPath) {
   EXPECT_TRUE(SteppingPhases(RolloutPath<double>(), 0).empty());
   EXPECT_TRUE(SteppingPhases(PathWith({0.0, 0.85, 0.85}).path, 0).empty());
   EXPECT_EQ(Text(PathWith({0.0, 0.0})), "S01: stands\n");
-  const Prediction cut_off = PathWith({0.0, 0.7, 0.8});
+  const Prediction cut_off = PathWith({0.0, 0.87, 0.9});
   const std::vector<SteppingPhase> phases = SteppingPhases(cut_off.path, 0);
   ASSERT_EQ(phases.size(), 1u);
   EXPECT_FALSE(phases[0].finished);
@@ -61,7 +61,7 @@ TEST(PredictedSteps, TheEdgesOfAPath) {
 
 TEST(PredictedSteps, AFlickerIsOnePhaseAndARestPartsTwo) {
   EXPECT_EQ(SteppingPhases(PathWith({0.86, 0.84, 0.86, 0.8, 0.9, 0.0}).path, 0).size(), 1u);
-  const Prediction twice = PathWith({0.6, 0.2, 0.6, 0.7});
+  const Prediction twice = PathWith({0.9, 0.2, 0.9, 0.95});
   EXPECT_EQ(SteppingPhases(twice.path, 0).size(), 2u);
   EXPECT_EQ(Text(twice),
             "S01: steps from 0 s to 0.1 s, 0.01 m forwards; from 0.2 s on, 0.01 m forwards by the "
