@@ -11,10 +11,10 @@
 //
 // With the cart's own forces F_c of self_force.h (friction, Kp_x, Kp_y, cart rows of the linear
 // terms) these act:
-//   ground  -D v on the cart's velocity v after the step, D = (1 - s)^2 M / 5.6 ms; at most mu_s M
-//   g ankles  (1 - s) (hold - lim(Kp e + Kd e')) about each axis; lim keeps the torque, smoothly,
-//   to
-//           r_a m g times the support: the ground presses no farther out than the toes
+//   ground  -D v on the cart's velocity v after the step, D = (1 - s)^2 M / 5.6 ms, limited by the
+//           velocity before the step to about mu_s M g
+//   ankles  (1 - s) (hold - lim(Kp e + Kd e')) about each axis; lim keeps the torque, smoothly,
+//           to r_a m g times the support: the ground presses no farther out than the toes
 //   feet    s F_c, and s times the torque between legs and trunk that takes the cart's velocity to
 //           kappa omega xi within 20 ms: the feet go where the person would come to rest
 // A torque inside the body moves the feet and leaves the momentum to F_c, to pushes and to gravity.
