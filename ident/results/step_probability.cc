@@ -104,6 +104,7 @@ std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>
   fitted.clusters = static_cast<int>(scores.size());
   Eigen::Matrix2d hessian;
   fitted.coefficients = Maximize(outcomes, &hessian);
+  if (!fitted.coefficients.allFinite()) return std::nullopt;  // no support, no margin
   for (const StepOutcome& outcome : outcomes) {
     const double error = (outcome.stepped ? 1.0 : 0.0) - fitted.At(outcome.margin);
     scores[outcome.person] += error * Features(outcome);

@@ -10,11 +10,13 @@ namespace pushid {
 using Json = nlohmann::ordered_json;
 
 Json ToJson(const StepProbability& p) {
+  Json covariance = Json::array();
+  for (int i = 0; i < 2; ++i) {
+    covariance.push_back(NumbersJson({p.covariance(i, 0), p.covariance(i, 1)}));
+  }
   return {{"intercept", NumberJson(p.coefficients[0])},
           {"slope_per_m", NumberJson(p.coefficients[1])},
-          {"covariance",
-           {{NumberJson(p.covariance(0, 0)), NumberJson(p.covariance(0, 1))},
-            {NumberJson(p.covariance(1, 0)), NumberJson(p.covariance(1, 1))}}},
+          {"covariance", covariance},
           {"tracks", p.tracks},
           {"stepped", p.stepped},
           {"people", p.clusters}};
