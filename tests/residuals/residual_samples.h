@@ -218,7 +218,8 @@ inline std::string Describe(const ModelOptions& options) {
   return "posture " + number(options.posture) + ", scaling " + number(options.gain_scaling) +
          ", friction " + number(options.friction) + ", push use " + number(options.push) +
          ", tail " + number(options.push_tail) + ", cart derivative " +
-         number(options.cart_derivative) + ", stance " + number(options.stance) + ", interaction " + DescribeTerms(options.interaction);
+         number(options.cart_derivative) + ", stance " + number(options.stance) + ", interaction " +
+         DescribeTerms(options.interaction);
 }
 
 }  // namespace pushid

@@ -200,8 +200,7 @@ double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double
   forces.Update(&state);
   forces.Prepare(0, &scratch);
   const NetForce<Jet> force = forces.On(0, kAfterThePush, previous);
-  const PendulumState<Jet> next =
-      forces.Next(0, forces.AccelerationOf(0, force), force, previous);
+  const PendulumState<Jet> next = forces.Next(0, forces.AccelerationOf(0, force), force, previous);
   Eigen::Matrix<double, 8, 8> step = Eigen::Matrix<double, 8, 8>::Zero();
   for (int i = 0; i < 2; ++i) step.row(i) = next.q[2 + i].v.transpose();
   for (int i = 0; i < 4; ++i) step.row(2 + i) = next.qd[i].v.transpose();
