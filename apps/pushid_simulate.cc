@@ -22,7 +22,7 @@ using namespace pushid;
 Result<IdentifiedModel> Truth(Stance stance) {
   const ModelFlags flags = ModelFlagsFromCommandLine();
   if (!flags.file.empty()) {
-    if (stance == Stance::kSlide) return LoadFlaggedModel();
+    if (!Given("truth_stance")) return LoadFlaggedModel();
     return Error{"--model says what feet do; leave --truth_stance out"};
   }
   const Result<FitOptions> made = MakeFitOptions({{"preset", "tail"}, {"stance", NameOf(stance)}});

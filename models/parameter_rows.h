@@ -173,15 +173,15 @@
   /* feet that stand and step (stance.h) */ \
   X(kSupportFront, "support_front", "b", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
     m.stance == Stance::kThreshold, false, \
-    "how far in front of the ankles feet support", \
+    "how far feet support in front of where the hip rests", \
     "with pushes forwards, some of which make people step and some not") \
   X(kSupportBack, "support_back", "b_back", "m", 0.06, 0.01, 0.5, 0.06, kLog, \
     m.stance == Stance::kThreshold, false, \
-    "how far behind the ankles feet support", \
+    "how far feet support behind where the hip rests", \
     "with pushes backwards, some of which make people step and some not") \
   X(kSupportSide, "support_side", "b_side", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
     m.stance == Stance::kThreshold, false, \
-    "how far to the side of the ankles' middle feet support", \
+    "how far feet support to the side of where the hip rests", \
     "with pushes to the side, some of which make people step and some not") \
   X(kAnkleReach, "ankle_reach", "r_a", "1", 1.5, 0.2, 10, 1, kLog, \
     m.stance == Stance::kThreshold, false, \

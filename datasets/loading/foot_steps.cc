@@ -161,8 +161,6 @@ class StepFinder {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 std::string StepText(const FootStep& step, double fps) {
   const std::string from = Rounded(step.lift_off / fps, 3);
   return std::string(Name(step.foot)) +
@@ -175,7 +173,7 @@ std::string StepText(const FootStep& step, double fps) {
 std::string TravelText(const Eigen::Vector2d& travel) {
   const char* const ways[] = {"forwards", "to the left", "backwards", "to the right"};
   const double direction = std::atan2(travel.y(), travel.x());
-  const int quarter = static_cast<int>(std::lround(direction / (0.5 * kPi)));
+  const int quarter = static_cast<int>(std::lround(direction / (0.5 * M_PI)));
   return Rounded(travel.norm(), 2) + " m " + ways[(quarter + 4) % 4];
 }
 

@@ -1,7 +1,9 @@
 // ident: medians, number by number.
 #include "ident/prediction/median_prediction.h"
 
-#include <algorithm>
+#include <utility>
+
+#include "ident/uncertainty/median.h"
 
 namespace pushid {
 namespace {
@@ -11,9 +13,7 @@ template <typename Pick>
 double MedianOf(const std::vector<Prediction>& predictions, const Pick& value) {
   std::vector<double> values;
   for (const Prediction& prediction : predictions) values.push_back(value(prediction));
-  std::sort(values.begin(), values.end());
-  const size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return Median(std::move(values));
 }
 
 template <typename Vector, typename Pick>

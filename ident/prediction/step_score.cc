@@ -6,6 +6,8 @@
 #include <functional>
 #include <set>
 
+#include "ident/uncertainty/median.h"
+
 namespace pushid {
 namespace {
 
@@ -82,11 +84,9 @@ LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
     result.mean_absolute += std::abs(errors.back());
   }
   if (errors.empty()) return result;
-  std::sort(errors.begin(), errors.end());
-  const size_t half = errors.size() / 2;
   result.people = static_cast<int>(errors.size());
   result.mean_absolute /= result.people;
-  result.median = errors.size() % 2 == 1 ? errors[half] : 0.5 * (errors[half - 1] + errors[half]);
+  result.median = Median(errors);
   return result;
 }
 

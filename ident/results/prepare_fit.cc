@@ -9,6 +9,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/uncertainty/median.h"
 
 namespace pushid {
 namespace {
@@ -88,12 +89,6 @@ MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
                  "(--resample_fps=60), or let feet slide"};
   }
   return std::nullopt;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Holds the support at what the recorded feet have.

@@ -1,17 +1,16 @@
 // ident: the steps that people took in recordings, in words and as JSON.
 #include "ident/validation/steps_report.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/uncertainty/median.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct StepSummary {
   int people = 0, stepping = 0;
@@ -35,13 +34,6 @@ StepSummary Summarize(const std::vector<PendulumRecording>& recordings) {
   return summary;
 }
 
-// Of an even number: the mean of the middle two.
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
 Json MedianJson(const std::vector<double>& values) {
   return values.empty() ? Json(nullptr) : Json(Median(values));
 }
@@ -51,7 +43,7 @@ Json ToJson(const FootStep& step, double dt) {
           {"lift_off_s", step.lift_off * dt},
           {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
           {"length_m", step.Length()},
-          {"direction_deg", step.Direction() * 180.0 / kPi}};
+          {"direction_deg", step.Direction() * 180.0 / M_PI}};
 }
 
 }  // namespace

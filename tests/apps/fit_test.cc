@@ -209,6 +209,9 @@ TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
   FitModel("m.json", {"--self_from=" + alone, "--free=mu", "--pool=mu", "--pool_by=subject"});
   EXPECT_TRUE(Contains(fit_.out, "pooled by subject, self parameters from " + alone));
   EXPECT_TRUE(Contains(fit_.out, "spread between subjects"));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-fit", {Recordings(), "--self_from=" + alone, "--stance=threshold"}),
+              {"was fitted with --stance=slide"}));
   // All of them stand in one setting.
   FitModel("m.json", {"--pool=mu", "--pool_by=setting"});
   EXPECT_FALSE(Contains(fit_.out, "pooled by"));

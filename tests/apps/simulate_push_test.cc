@@ -43,6 +43,21 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
   EXPECT_TRUE(Contains(report.out, "6 of 6 intervals cover the truth"));
 }
 
+// Feet that hold, with default flags: errors of the fit hold the truth of most parameters.
+TEST_F(SimulateAppTest, TheTruthMayStand) {
+  const std::string manifest = Simulate("made", {"--truth_stance=threshold", "--people=5"});
+  EXPECT_EQ(Json(manifest)["synthetic"]["stance"], "threshold");
+  const AppRun fit = RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=threshold",
+                                           "--model_out=" + Path("model.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const AppRun report =
+      RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
+  EXPECT_TRUE(Contains(report.out, "7 of 7 intervals cover the truth")) << report.out;
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--model=" + Path("model.json"),
+                                                 "--truth_stance=slide", "--out=" + Path("again")}),
+                      {"--truth_stance"}));
+}
+
 TEST_F(SimulateAppTest, TheSameSeedWritesTheSameFiles) {
   const auto bvh = [this](const std::string& name, const std::string& seed) {
     const auto first = Json(Simulate(name, {"--people=1", seed}))["recordings"][0];

@@ -15,6 +15,8 @@ ParameterSet<double> Touching() {
   p[kContactStiffness] = 2500.0, p[kContactDistance] = 0.42, p[kContactKappa] = 0.5;
   p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
   p[kDriveGain] = 0.3, p[kDriveTorque] = 0.1, p[kDriveTime] = 0.3;
+  p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.08, p[kAnkleReach] = 1.5;
+  p[kStepGain] = p[kStaticFriction] = 1.0, p[kStepOnset] = 0.1, p[kStepRelease] = 0.3;
   return p;
 }
 
@@ -41,22 +43,30 @@ ModelOptions Options() {
   return options;
 }
 
-TEST(Crowd, IsTheRolloutForAnyNumberOfThreads) {
+class CrowdOf : public testing::TestWithParam<Stance> {};
+
+TEST_P(CrowdOf, IsTheRolloutForAnyNumberOfThreads) {
   const Scene scene = Block(60, 50);  // enough for four threads
   constexpr int kFrames = 25;
+  ModelOptions options = Options();
+  options.stance = GetParam();
   RolloutPath<double> path;
   ASSERT_TRUE(
-      Rollout<double>(scene, Options(), {Touching()}, InitialVelocities(scene), kFrames, &path).ok);
+      Rollout<double>(scene, options, {Touching()}, InitialVelocities(scene), kFrames, &path).ok);
   for (int threads : {1, 2, 4}) {
-    Crowd crowd(scene, Options(), {Touching()}, threads);
+    Crowd crowd(scene, options, {Touching()}, threads);
     for (int t = 1; t < kFrames; ++t) ASSERT_TRUE(crowd.Advance().ok);
     EXPECT_EQ(crowd.frame(), kFrames - 1);
     for (int n = 0; n < scene.num_people(); ++n) {
       ASSERT_EQ(crowd.states()[n].q, path.At(kFrames - 1, n).q) << n << ", " << threads;
       ASSERT_EQ(crowd.states()[n].qd, path.At(kFrames - 1, n).qd) << n << ", " << threads;
+      ASSERT_EQ(crowd.states()[n].step, path.At(kFrames - 1, n).step) << n << ", " << threads;
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(SlidingAndStanding, CrowdOf,
+                         testing::Values(Stance::kSlide, Stance::kThreshold));
 
 TEST(Crowd, NamesWhoFallsAndStaysBefore) {
   Scene scene = Block(2, 3);
