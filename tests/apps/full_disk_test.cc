@@ -54,6 +54,15 @@ class SmallDiskTest : public BatchFixture {
     return files;
   }
 
+  // Bytes of all files below a folder.
+  size_t SizeOfFiles(const std::string& name) const {
+    size_t bytes = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(Path(name))) {
+      if (entry.is_regular_file()) bytes += entry.file_size();
+    }
+    return bytes;
+  }
+
   bool mounted_ = false;
 };
 
@@ -153,12 +162,12 @@ TEST_F(SmallDiskTest, ABootstrapStopsAtTheFirstReplicaItCannotKeep) {
 }
 
 TEST_F(SmallDiskTest, ABatchGoesOnWhenThereIsSpaceAgain) {
-  if (!Mount(2048)) GTEST_SKIP() << kNoMounts;
+  if (!Mount(4096)) GTEST_SKIP() << kNoMounts;
   const std::string jobs = "group_by = \"recording\"";
   const std::vector<std::pair<std::string, std::string>> variants = {{"a", ""}};
   ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml")).exit_code, 0);
   const std::string plan = Plan(jobs, variants, "disk/out");
-  Fill(150000);  // a few jobs
+  Fill(SizeOfFiles("whole") / 3);  // of twelve jobs, two at a time, one at least fits
   const AppRun full = Batch(plan, {"--jobs=2"});
   EXPECT_EQ(full.exit_code, 1) << full.out << full.err;
   EXPECT_TRUE(Contains(full.err, Path("disk/out")));
