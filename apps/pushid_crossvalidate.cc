@@ -6,12 +6,14 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/crossvalidate_flags.h"
 #include "apps/flags/fit_option_flags.h"
+#include "apps/flags/futures_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/validation/frontier_svg.h"
+#include "ident/validation/futures_validation.h"
 #include "ident/validation/predictors.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
@@ -21,17 +23,36 @@ namespace {
 using namespace pushid;
 using Predictors = std::vector<std::unique_ptr<Predictor>>;
 
-// recordings: as in FitOptionsFromFlags.
-MaybeError AddCandidates(const CrossvalidateFlags& flags, const FitOptions& options,
-                         const std::vector<PendulumRecording>* recordings, Predictors* predictors) {
-  predictors->push_back(std::make_unique<ModelPredictor>(options.preset, options));
+using Candidates = std::vector<std::pair<std::string, FitOptions>>;
+
+// The flags' own model and those of --compare. recordings: as in FitOptionsFromFlags.
+Result<Candidates> ModelCandidates(const CrossvalidateFlags& flags, const FitOptions& options,
+                                   const std::vector<PendulumRecording>* recordings) {
+  Candidates candidates = {{options.preset, options}};
   for (const auto& [name, more] : flags.candidates) {
     const Result<FitOptions> candidate =
         MakeFitOptions(Merged(GivenFitFlags(), more), recordings, more);
     if (!candidate.ok()) return Error{"--compare, '" + name + "': " + candidate.error().message};
-    predictors->push_back(std::make_unique<ModelPredictor>(name, candidate.value()));
+    candidates.emplace_back(name, candidate.value());
   }
-  return std::nullopt;
+  return candidates;
+}
+
+// Those that futures can be drawn from.
+Result<Candidates> NoisyModels(const CrossvalidateFlags& flags, const FitOptions& options,
+                               const std::vector<PendulumRecording>* recordings) {
+  Result<Candidates> all = ModelCandidates(flags, options, recordings);
+  if (!all.ok()) return all;
+  Candidates noisy;
+  for (auto& [name, candidate] : all.value()) {
+    if (candidate.model.process_noise.Any()) noisy.emplace_back(name, candidate);
+  }
+  if (noisy.empty()) {
+    return Error{
+        "--samples: no candidate has process noise to draw from; add "
+        "--process_noise=diagonal or --likelihood=innovation"};
+  }
+  return noisy;
 }
 
 void AddBaselines(Predictors* predictors) {
@@ -56,7 +77,11 @@ MaybeError CheckNames(const Predictors& predictors) {
 Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOptions& options,
                                   const std::vector<PendulumRecording>* recordings) {
   Predictors predictors;
-  if (MaybeError error = AddCandidates(flags, options, recordings, &predictors)) return *error;
+  const Result<Candidates> candidates = ModelCandidates(flags, options, recordings);
+  if (!candidates.ok()) return candidates.error();
+  for (const auto& [name, candidate] : candidates.value()) {
+    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate));
+  }
   if (flags.baselines) AddBaselines(&predictors);
   // What the preset auto is called is known with the recordings.
   if (recordings == nullptr) return predictors;
@@ -92,6 +117,8 @@ int Run() {
   const Result<CrossvalidateFlags> read = CrossvalidateFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const CrossvalidateFlags& flags = read.value();
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  if (!drawn.ok()) return Fail(drawn.error());
   if (MaybeError error = CheckFlags(flags)) return Fail(*error);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
   if (!recordings.ok()) return Fail(recordings.error());
@@ -116,6 +143,19 @@ int Run() {
                     std::to_string(total));
         }));
   }
+  std::vector<HeldOutFutures> futures;
+  if (const int draws = drawn.value().samples; draws > 0) {
+    const auto models = NoisyModels(flags, options.value(), &pendulums);
+    if (!models.ok()) return Fail(models.error());
+    for (const auto& [name, model] : models.value()) {
+      futures.push_back(
+          CrossValidateFutures(name, pendulums, folds.value(), model, draws, drawn.value().seed,
+                               NumThreads(), [&line, &of = name](int done, int total) {
+                                 line.Show(of + ", futures: fold " + std::to_string(done) + " of " +
+                                           std::to_string(total));
+                               }));
+    }
+  }
   std::vector<BandCoverage> bands;
   if (flags.bands) {
     BandOptions asked;
@@ -133,8 +173,11 @@ int Run() {
     if (MaybeError error = WriteFileAtomically(flags.frontier_out, svg)) return Fail(*error);
   }
   if (flags.bands) std::printf("\n%s", BandCoverageText(bands).c_str());
+  if (!futures.empty()) std::printf("\n%s", HeldOutFuturesText(pendulums, futures).c_str());
   if (!flags.json_out.empty()) {
-    if (MaybeError error = WriteJson(flags.json_out, ScoresJson(validations))) return Fail(*error);
+    nlohmann::ordered_json json = ScoresJson(validations);
+    for (const HeldOutFutures& one : futures) json["futures"].push_back(ToJson(one.summary));
+    if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   }
   return kDone;
 }

@@ -4,11 +4,13 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/evaluate_flags.h"
+#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/simlpe_files.h"
+#include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 #include "ident/validation/steps_report.h"
@@ -44,6 +46,8 @@ int Run() {
   const Result<EvaluateFlags> read = EvaluateFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const EvaluateFlags& flags = read.value();
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  if (!drawn.ok()) return Fail(drawn.error());
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   const Result<std::vector<Recording>> recordings =
@@ -59,6 +63,12 @@ int Run() {
   std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, flags.per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
+  if (const int draws = drawn.value().samples; draws > 0) {
+    const auto futures = EvaluateFutures(model.value(), pendulums, draws, drawn.value().seed);
+    if (!futures.ok()) return Fail(futures.error());
+    std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures.value()}).c_str());
+    json["futures"] = ToJson(futures.value());
+  }
   AddStepsJson(pendulums, &json);
   if (bodies.value()) {
     std::printf("\n%s", BodyText(*bodies.value()).c_str());

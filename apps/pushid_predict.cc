@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/predict_flags.h"
 #include "apps/flags/recording_flags.h"
@@ -32,6 +33,8 @@ int Run() {
   const Result<PredictFlags> read = PredictFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const PredictFlags& flags = read.value();
+  const Result<FuturesFlags> futures = FuturesFlagsFromCommandLine();
+  if (!futures.ok()) return Fail(futures.error());
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   const Result<std::vector<Recording>> recordings =
@@ -55,8 +58,9 @@ int Run() {
   const int code = flags.restoration.given() ? WriteBodies(flags, recordings.value().front(),
                                                            model.value().mapping, prediction)
                                              : WritePendulums(flags, recording, prediction);
-  if (code == kDone) std::printf("%s", PredictedStepsText(recording, prediction).c_str());
-  return code;
+  if (code != kDone) return code;
+  std::printf("%s", PredictedStepsText(recording, prediction).c_str());
+  return PrintFutures(futures.value(), model.value(), recording, flags.frames);
 }
 
 }  // namespace

@@ -10,22 +10,27 @@
 #include "apps/simulate_formation.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/option_names.h"
 #include "ident/results/fit_setup.h"
 
 namespace {
 
 using namespace pushid;
 
-// The model of --model, else the tail preset with feet that do as --truth_stance says: what it fits
-// has values near those identified from the published recordings, what it holds keeps its value, so
-// that a fit can find the truth exactly. Either with --set.
-Result<IdentifiedModel> Truth(Stance stance) {
+// The model of --model, else the tail preset with the feet of --truth_stance and the process noise
+// of --truth_noise: what it fits has values near those identified from the published recordings,
+// what it holds keeps its value, so that a fit can find the truth exactly. Either with --set.
+Result<IdentifiedModel> Truth(Stance stance, const ProcessNoiseTerms& noise) {
   const ModelFlags flags = ModelFlagsFromCommandLine();
   if (!flags.file.empty()) {
-    if (!Given("truth_stance")) return LoadFlaggedModel();
-    return Error{"--model says what feet do; leave --truth_stance out"};
+    for (const char* flag : {"truth_stance", "truth_noise"}) {
+      if (!Given(flag)) continue;
+      return Error{std::string("--model says what people are like; leave --") + flag + " out"};
+    }
+    return LoadFlaggedModel();
   }
-  const Result<FitOptions> made = MakeFitOptions({{"preset", "tail"}, {"stance", NameOf(stance)}});
+  const Result<FitOptions> made = MakeFitOptions(
+      {{"preset", "tail"}, {"stance", NameOf(stance)}, {"process_noise", NameOf(noise)}});
   if (!made.ok()) return made.error();
   const FitOptions& preset = made.value();
   const ParameterSet<double> published =
@@ -43,7 +48,10 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   TextTable table({"parameter", "truth", "unit"}, {true, false, true});
   for (const ParameterSpec& spec : truth.table.specs) {
     const double value = truth.parameters[spec.id];
-    if (spec.free || value != spec.nominal) table.Add({spec.name, Rounded(value, 4), spec.unit});
+    const bool noise =
+        IsNoiseParameter(spec.id) && !IsMeasurementError(spec.id) && Acts(spec.id, truth.options);
+    if (spec.free || noise || value != spec.nominal)
+      table.Add({spec.name, Rounded(value, 4), spec.unit});
   }
   std::printf("%s", table.ToString().c_str());
   if (options.recording_spread > 0.0 || options.subject_spread > 0.0) {
@@ -58,7 +66,8 @@ int Run() {
   if (FormationGiven()) return SimulateFormation();
   const Result<SimulateFlags> flags = SimulateFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
-  const Result<IdentifiedModel> truth = Truth(flags.value().recordings.model.stance);
+  const ModelOptions& asked = flags.value().recordings.model;
+  const Result<IdentifiedModel> truth = Truth(asked.stance, asked.process_noise);
   if (!truth.ok()) return Fail(truth.error());
   const std::string& out = flags.value().out;
   SyntheticOptions options = flags.value().recordings;

@@ -7,6 +7,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
 #include "apps/flags/formation_output_flags.h"
+#include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/simulate_formation_bodies.h"
 #include "datasets/files/atomic_file.h"
@@ -158,6 +159,8 @@ int SimulateFormation() {
   const Result<FormationBodyFlags> body_flags = FormationBodyFlagsFromCommandLine();
   if (!body_flags.ok()) return Fail(body_flags.error());
 
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  if (!drawn.ok()) return Fail(drawn.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   const auto bodies = PlanBodies(body_flags.value(), RodMoves(model.value().options), &scene);
@@ -181,7 +184,7 @@ int SimulateFormation() {
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);
   PrintWave(run);
-  return kDone;
+  return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
 }
 
 }  // namespace pushid

@@ -88,6 +88,7 @@ struct ModelOptions {
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
   // this order. AddForceLaw (ident/parameters/own_laws.h) adds one with its rows.
   std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};
+  ProcessNoiseTerms process_noise = {};
 };
 
 }  // namespace pushid

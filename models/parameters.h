@@ -28,6 +28,15 @@ constexpr bool IsPairParameter(Parameter id) {
   return id >= kFirstPairParameter && id < kFirstPairParameter + kNumPairParameters;
 }
 
+// What process noise has: its factor, and what is measured.
+inline constexpr int kFirstNoiseParameter = kSigmaX, kLastNoiseParameter = kMeasuredHip;
+constexpr bool IsNoiseParameter(Parameter id) {
+  return id >= kFirstNoiseParameter && id <= kLastNoiseParameter;
+}
+constexpr bool IsMeasurementError(Parameter id) {
+  return id == kMeasuredCart || id == kMeasuredHip;
+}
+
 // Of those with a row.
 inline constexpr std::array<std::string_view, kFirstOwnParameter> kParameterNames = {
 #define PUSHID_PARAMETER(id, name, ...) name,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "models/ipm.h"
+#include "models/process_noise.h"
 #include "models/scene_forces.h"
 
 namespace pushid {
@@ -65,13 +66,15 @@ std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) 
 
 // initial_velocity: one entry per person; parameters as in SceneForces. path is overwritten; on
 // failure it holds the frames before the named one. trace may be null. network_weights: as in
-// SceneForces.
+// SceneForces. noise: standard normal draws by frame and person that drive the process noise
+// (process_noise.h); null: none.
 template <typename T>
 RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const std::vector<ParameterSet<T>>& parameters,
                       const std::vector<Vector4<T>>& initial_velocity, int num_frames,
                       RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
-                      const T* network_weights = nullptr) {
+                      const T* network_weights = nullptr,
+                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const int people = scene.num_people();
   SceneForces<T> forces(scene, options, parameters, network_weights);
   std::vector<int> scratch;
@@ -88,7 +91,14 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
     for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
     for (int n = 0; n < people; ++n) {
       const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
-      const NetForce<T> force = forces.On(n, t, qd_previous);
+      NetForce<T> force = forces.On(n, t, qd_previous);
+      if (noise != nullptr) {
+        const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
+        force[ForcePart::kNoise] =
+            NoiseFactor<T>(options.process_noise, scene.people[n].body, forces.Parameters(n),
+                           path->At(t, n).qd, Pushed(scene, n, t)) *
+            white.template cast<T>();
+      }
       const Vector4<T> qdd = forces.AccelerationOf(n, force);
       if (trace != nullptr) {
         trace->At(t, n) = force;

@@ -23,8 +23,12 @@ Vector4<double> PushForceAt(const Scene& scene, int person, int frame) {
 }
 
 std::vector<ForcePart> ReportedParts(const ModelOptions& options) {
-  std::vector<ForcePart> parts(kForceParts.begin(), kForceParts.end());
-  if (options.own_laws.empty()) parts.pop_back();
+  std::vector<ForcePart> parts;
+  for (ForcePart part : kForceParts) {
+    if (part == ForcePart::kNoise) continue;  // a model's rollout is without
+    if (part == ForcePart::kOwn && options.own_laws.empty()) continue;
+    parts.push_back(part);
+  }
   return parts;
 }
 

@@ -56,7 +56,8 @@ struct NetForce {
   }
 };
 
-// The parts that reports list: all, but for a user's own laws where the model has none.
+// The parts that reports list: all but for noise, and for a user's own laws where the model has
+// none.
 std::vector<ForcePart> ReportedParts(const ModelOptions& options);
 
 // What a person gets from others: now, by part, and lately (drive.h).

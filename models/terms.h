@@ -36,10 +36,29 @@ inline constexpr InteractionTermName kInteractionTerms[] = {
     {"network", &InteractionTerms::network},
     {"drive", &InteractionTerms::drive}};
 
+// White forces that act on everybody beside all others (process_noise.h).
+struct ProcessNoiseTerms {
+  bool diagonal = false;  // one standard deviation for each generalized force
+  bool full = false;      // a full Cholesky factor: they may be correlated
+  bool speed = false;     // growing with the cart's speed
+  bool push = false;      // with a factor of its own while a push acts
+
+  bool Any() const { return diagonal || full; }
+};
+
+struct ProcessNoiseTermName {
+  std::string_view name;
+  bool ProcessNoiseTerms::*member;
+};
+inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
+    {"diagonal", &ProcessNoiseTerms::diagonal},
+    {"full", &ProcessNoiseTerms::full},
+    {"speed", &ProcessNoiseTerms::speed},
+    {"push", &ProcessNoiseTerms::push}};
+
 // The parts of the net force, in the order of the CSV's columns. Those that pairs of people make
 // stand together, from kFirstPairPart on; a pair term that names another than kInteraction
-// (pair.h) is summed there. kOwn stays the last: it is told of only where a model has laws of its
-// user's own (force_law.h).
+// (pair.h) is summed there. The last two are told of only where there are any (ReportedParts).
 #define PUSHID_FORCE_PARTS(X)                             \
   X(kFriction, "friction")       /* of the ground */      \
   X(kBalance, "balance")         /* PD control */         \
@@ -49,6 +68,7 @@ inline constexpr InteractionTermName kInteractionTerms[] = {
   X(kInteraction, "interaction") /* with others */        \
   X(kDrive, "drive")             /* after being pushed */ \
   X(kNetwork, "network")         /* learned self force */ \
+  X(kNoise, "noise")             /* drawn */              \
   X(kOwn, "own")                 /* laws of the user's */
 
 enum class ForcePart : int {

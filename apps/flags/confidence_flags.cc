@@ -114,6 +114,11 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
         "trained by its "
         "gradient; choose a smaller one"};
   }
+  if (options.likelihood != Likelihood::kTrajectory && FLAGS_horizon_check) {
+    return Error{
+        "--horizon_check compares rollouts of many lengths, single steps among them; leave "
+        "--likelihood out"};
+  }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";
   for (Parameter id : options.table.Free()) {

@@ -23,6 +23,10 @@ DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
 DEFINE_string(
     truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
     "without --model, what the feet of the people made do: slide, or threshold (hold, then step)");
+DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
+              "without --model, the process noise that drives the people made: none, diagonal or "
+              "full; with speed and push, comma-separated, as --process_noise of pushid-fit "
+              "(--set=sigma_x=...)");
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
               "how much all parameters vary between recordings (standard deviation of the "
               "logarithm; 0.1 is about 10 %)");
@@ -63,6 +67,8 @@ Result<SimulateFlags> SimulateFlagsFromCommandLine() {
   SimulateFlags flags;
   Stance& stance = flags.recordings.model.stance;
   if (MaybeError error = ParseName("--truth_stance", FLAGS_truth_stance, &stance)) return *error;
+  ProcessNoiseTerms& noise = flags.recordings.model.process_noise;
+  if (MaybeError error = ParseName("--truth_noise", FLAGS_truth_noise, &noise)) return *error;
   flags.out = FLAGS_out;
   flags.recordings.subjects = FLAGS_people;
   flags.recordings.recordings_per_subject = FLAGS_recordings_per_person;

@@ -48,9 +48,23 @@ std::vector<Vector4<double>> DrawPush(const SyntheticOptions& options, const Sce
 }
 
 RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
-                   SyntheticRecording* made, ForceTrace* forces = nullptr) {
-  return Rollout(made->scene, model, made->parameters, InitialVelocities(made->scene),
-                 options.frames, &made->path, forces);
+                   SyntheticRecording* made, ForceTrace* forces = nullptr,
+                   const FrameTable<Vector4<double>>* noise = nullptr) {
+  return Rollout<double>(made->scene, model, made->parameters, InitialVelocities(made->scene),
+                         options.frames, &made->path, forces, nullptr, noise);
+}
+
+// The motion, driven by process noise where the truth has any.
+RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
+                         SyntheticRecording* made) {
+  if (!options.model.process_noise.Any()) return Roll(options, options.model, made);
+  FrameTable<Vector4<double>> noise(options.frames, made->scene.num_people());
+  for (int t = 0; t < options.frames; ++t) {
+    for (int n = 0; n < made->scene.num_people(); ++n) {
+      for (double& w : noise.At(t, n)) w = random->Normal();
+    }
+  }
+  return Roll(options, options.model, made, nullptr, &noise);
 }
 
 // Where a push stands for other forces too while it lasts, its rows must contain them. They are
@@ -223,6 +237,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
   Random people(root.Fork()), motion(root.Fork()), spread(root.Fork());
   const uint64_t own_noise = root.Fork();
   Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
+  Random driving(root.Fork());
 
   const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
   std::vector<SyntheticRecording> result;
@@ -245,7 +260,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
           MakeScenePush(0, options.push_start_frame, options.push_kind, rows));
 
       RolloutStatus status = AbsorbOtherForces(options, &made);
-      if (status.ok) status = Roll(options, options.model, &made);
+      if (status.ok) status = RollDriven(options, &driving, &made);
       if (!status.ok) {
         return Error{"simulated recording " + id + " leaves the model at frame " +
                      std::to_string(status.frame) + " (" + std::string(status.quantity) +

@@ -9,8 +9,9 @@
 //
 // Every recording is one person, or a row of them one behind the other, who stand; the last in the
 // row (the first along +x) is pushed mostly forwards and partly to the side; all move as Rollout
-// says. The same options and seed give the same bytes everywhere. Noise, gain
-// variation and motion draw from separate streams: changing one leaves the others as they were.
+// says, driven by process noise where the model has any. The same options and seed give the same
+// bytes everywhere. Noise of both kinds, gain variation and motion draw from separate streams:
+// changing one leaves the others as they were.
 #pragma once
 
 #include <cstdint>

@@ -11,6 +11,7 @@
 #include "models/skeleton_mapping.h"
 #include "residuals/frame_residual.h"
 #include "residuals/jacobian_method.h"
+#include "residuals/likelihood.h"
 
 namespace pushid {
 
@@ -74,6 +75,7 @@ struct FitOptions {
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
   SupportSource support = SupportSource::kTable;
+  Likelihood likelihood = Likelihood::kTrajectory;  // by SetLikelihood (presets.h)
 
   // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;

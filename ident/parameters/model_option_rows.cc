@@ -49,6 +49,22 @@ Row StanceRow() {
   return MayBeAbsent(row);
 }
 
+Row LikelihoodRow() {
+  Row row = NameRow<Likelihood>(
+      "likelihood", "/likelihood", [](FitOptions & o) -> auto& { return o.likelihood; },
+      "what a fit maximizes: trajectory (whole rollouts), transition (each measured state given "
+      "the "
+      "one before), innovation (each measurement given all before it, with errors of measurement), "
+      "or transition_as_printed (Eq. 6 of Lyu et al., to compare)");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    Likelihood likelihood;
+    if (MaybeError error = ParseName("--likelihood", text, &likelihood)) return error;
+    SetLikelihood(likelihood, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
 Row SelfForceRow() {
   Row row = Decided(WordsRow(
       "self_force", OptionStage::kModel,
@@ -170,6 +186,12 @@ std::vector<Row> ModelOptionRows() {
           "potential, lean, ldp_discrete (LDP's exact form, to evaluate), network (of "
           "--interaction_network), drive (who was pushed by others steps on)")),
       InteractionNetworkRow(),
+      MayBeAbsent(NameRow<ProcessNoiseTerms>(
+          "process_noise", "/process_noise", [](O & o) -> auto& { return o.model.process_noise; },
+          "white forces beside all others: none, diagonal, or full (correlated); with speed and "
+          "push, comma-separated, it grows with the cart's speed and has a factor while a push "
+          "acts")),
+      LikelihoodRow(),
       PresetPriorsRow(),
   };
 }

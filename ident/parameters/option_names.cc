@@ -1,4 +1,4 @@
-// ident: names of the interaction terms.
+// ident: names of interaction terms and of process noise.
 #include "ident/parameters/option_names.h"
 
 #include <sstream>
@@ -19,14 +19,41 @@ std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
   return {};
 }
 
-}  // namespace
-
-std::string NameOf(const InteractionTerms& terms) {
+// The names of those that are true.
+template <typename Terms, typename Names>
+std::string ListOf(const Terms& terms, const Names& names) {
   std::string text;
-  for (const auto& [name, member] : kInteractionTerms) {
+  for (const auto& [name, member] : names) {
     if (terms.*member) text += (text.empty() ? "" : ",") + std::string(name);
   }
   return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+std::string NameOf(const InteractionTerms& terms) { return ListOf(terms, kInteractionTerms); }
+
+std::string NameOf(const ProcessNoiseTerms& terms) { return ListOf(terms, kProcessNoiseTerms); }
+
+MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms) {
+  *terms = {};
+  if (text == "none") return std::nullopt;
+  std::stringstream list(text);
+  for (std::string part; std::getline(list, part, ',');) {
+    bool known = false;
+    for (const auto& [name, member] : kProcessNoiseTerms) {
+      if (part != name) continue;
+      terms->*member = known = true;
+    }
+    if (!known) {
+      return Error{flag + " names '" + part +
+                   "'; it must be none, or diagonal or full, with speed, push or both"};
+    }
+  }
+  if (terms->diagonal == terms->full) {
+    return Error{flag + " is '" + text + "'; it must name either diagonal or full"};
+  }
+  return std::nullopt;
 }
 
 MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms) {

@@ -28,4 +28,8 @@ MaybeError ParseName(const std::string& flag, const std::string& text, E* value)
 std::string NameOf(const InteractionTerms& terms);
 MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms);
 
+// Process noise: diagonal or full, and what it grows with: "diagonal,speed,push".
+std::string NameOf(const ProcessNoiseTerms& terms);
+MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms);
+
 }  // namespace pushid

@@ -138,6 +138,31 @@ void SetStance(Stance stance, FitOptions* options) {
   }
 }
 
+std::string MemoryOf(const ModelOptions& model) {
+  if (model.stance != Stance::kSlide) return "--stance=" + NameOf(model.stance);
+  if (model.self_network != nullptr) return "a network";
+  if (model.cart_derivative != CartDerivative::kNone) return "--cart_derivative";
+  if (model.interaction.drive) return "--interaction=drive";
+  return "";
+}
+
+void FreeNoise(FitOptions* o) {
+  if (o->likelihood == Likelihood::kTrajectory) return;
+  for (int id = kFirstNoiseParameter; id <= kLastNoiseParameter; ++id) {
+    const bool of_measurement = IsMeasurementError(static_cast<Parameter>(id));
+    if (of_measurement && o->likelihood != Likelihood::kInnovation) continue;
+    o->table.specs[id].free = Acts(static_cast<Parameter>(id), o->model);
+  }
+}
+
+void SetLikelihood(Likelihood likelihood, FitOptions* options) {
+  options->likelihood = likelihood;
+  if (likelihood == Likelihood::kTrajectory) return;
+  ProcessNoiseTerms& noise = options->model.process_noise;
+  if (!noise.Any()) noise.diagonal = true;
+  options->settling_weight = options->mode_weight = options->stability_weight = 0.0;
+}
+
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {
   if (name != kAutoPreset) return name;
   const bool groups =
@@ -167,6 +192,7 @@ Result<FitOptions> MakePreset(const std::string& name) {
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
+  FreeNoise(o);
   for (ParameterSpec& spec : o->table.specs) {
     if (!o->preset_priors) spec.prior.reset();
     if (!Acts(spec.id, o->model)) spec.free = spec.pooled = false;

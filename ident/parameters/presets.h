@@ -47,6 +47,18 @@ MaybeError PoolParameters(FitOptions* options);
 // from the nominal values, for equation error knows no step state.
 void SetStance(Stance stance, FitOptions* options);
 
+// What the fit maximizes. A likelihood of single steps has process noise, at least a diagonal one,
+// and demands nothing of people in simulations: these see rollouts, which it does not fit.
+void SetLikelihood(Likelihood likelihood, FitOptions* options);
+
+// What of a model has a state besides place and velocity, as its flag is called; empty: nothing.
+// Likelihoods of single steps are for models without.
+std::string MemoryOf(const ModelOptions& model);
+
+// Frees the noise that a likelihood of single steps tells of, without priors: it is seen thousands
+// of times. FreeTerms calls it.
+void FreeNoise(FitOptions* options);
+
 // The self force together with the hinge on the free modes that goes with it: a linear self force
 // can feed a mode that the settling simulations do not excite.
 void SetSelfForce(SelfForceKind self_force, FitOptions* options);

@@ -9,7 +9,6 @@
 #include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
-namespace {
 
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording) {
@@ -19,6 +18,8 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   }
   return sets;
 }
+
+namespace {
 
 Prediction PredictOne(const ModelOptions& options,
                       const std::vector<ParameterSet<double>>& parameters,

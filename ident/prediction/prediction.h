@@ -37,6 +37,10 @@ struct Prediction {
   }
 };
 
+// Of each person in a recording, by their units.
+std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
+                                                    const PendulumRecording& recording);
+
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0);

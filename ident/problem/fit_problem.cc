@@ -94,7 +94,31 @@ std::vector<std::string> FitProblem::SettlingUnits(const FitPoint& point) const 
   return units;
 }
 
+LikelihoodProblem FitProblem::LikelihoodOf(int recording, double weight) const {
+  return MakeLikelihoodProblem(options_.likelihood, recordings_[recording], options_.model, map_,
+                               weight, options_.seed);
+}
+
+int FitProblem::RowsPerPerson() const {
+  return options_.likelihood == Likelihood::kTrajectory ? kFrameResiduals : kGaussianRows;
+}
+
+Deviance FitProblem::DevianceAt(const FitPoint& point) const {
+  Deviance sum;
+  FitPoint copy = point;
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    const LikelihoodProblem problem = LikelihoodOf(i, 1.0);
+    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
+    const Deviance one =
+        DevianceOf(problem, problem.layout.Parameters<double>(map_, blocks.data()));
+    sum.value += Count(i) * one.value;
+    sum.measured += Count(i) * one.measured;
+  }
+  return sum;
+}
+
 double FitProblem::DataCost(const FitPoint& point) const {
+  if (options_.likelihood != Likelihood::kTrajectory) return 0.5 * DevianceAt(point).value;
   FitPoint copy = point;
   double cost = 0.0;
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
@@ -113,6 +137,7 @@ double FitProblem::DataCost(const FitPoint& point) const {
 
 std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
   std::vector<FailedRollout> failures;
+  if (options_.likelihood != Likelihood::kTrajectory) return failures;  // rolls nothing out
   FitPoint copy = point;
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     if (Count(i) == 0) continue;
@@ -156,6 +181,7 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
 
 double FitProblem::Weight(int recording, int horizon) const {
   const double counted = std::sqrt(static_cast<double>(Count(recording)));
+  if (options_.likelihood != Likelihood::kTrajectory) return counted;
   if (options_.recording_weight == RecordingWeight::kFrame) return counted;
   if (options_.recording_weight == RecordingWeight::kEffective && options_.effective_weight > 0.0) {
     return counted * std::sqrt(options_.effective_weight);

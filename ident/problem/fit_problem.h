@@ -15,6 +15,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_point.h"
 #include "ident/problem/parallel_evaluation.h"
+#include "residuals/cost_functions/likelihood_residual.h"
 #include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
@@ -59,8 +60,16 @@ class FitProblem {
   // leaves the domain.
   double DataCost(const FitPoint& point) const;
 
-  // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point.
+  // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point; none
+  // where the likelihood needs no rollout.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
+
+  // How many rows of a recording a frame of one person has in what is built.
+  int RowsPerPerson() const;
+
+  // Of all recordings, as they count, under the likelihood of the options, which is none of whole
+  // rollouts.
+  Deviance DevianceAt(const FitPoint& point) const;
 
   // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
   // then person. Empty where its rollout leaves the domain.
@@ -81,6 +90,9 @@ class FitProblem {
     std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
+    // The cost less this is the negative log likelihood, up to a constant that no point changes
+    // (residuals/gaussian_rows.h): only so do costs of problems built at different points compare.
+    double offset = 0.0;
     int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
 
     void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
@@ -100,6 +112,9 @@ class FitProblem {
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
   void AddPriors(FitPoint* point, Built* built) const;
+  void AddRollouts(FitPoint* point, int horizon, Built* built) const;
+  void AddLikelihoods(FitPoint* point, Built* built) const;
+  LikelihoodProblem LikelihoodOf(int recording, double weight) const;
   void AddStagePriors(FitPoint* point, Built* built) const;
   void AddRest(FitPoint* point, Built* built) const;
 

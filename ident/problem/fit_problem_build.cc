@@ -152,17 +152,10 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
                                     int num_threads) const {
   Built built;
   AddParameterBlocks(point, num_threads, &built);
-  built.shortened = Failures(*point, horizon);
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
-    int frames = horizon;
-    for (const FailedRollout& failed : built.shortened) {
-      if (failed.recording == i) frames = failed.status.frame;
-    }
-    if (Count(i) == 0) continue;
-    if (frames == 1) continue;  // fails in its very first step: nothing left to compare
-    const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
-                                            Weight(i, horizon), frames);
-    built.AddRollout(MakeRolloutCost(rollout, options_.jacobian), RecordingBlocks(point, i), i);
+  if (options_.likelihood == Likelihood::kTrajectory) {
+    AddRollouts(point, horizon, &built);
+  } else {
+    AddLikelihoods(point, &built);
   }
   AddPriors(point, &built);
   // The settling simulations are long rollouts: they join once the horizon is as long.
@@ -175,6 +168,37 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
     built.problem->SetParameterBlockConstant(point->weights.data());
   }
   return built;
+}
+
+void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
+  built->shortened = Failures(*point, horizon);
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    int frames = horizon;
+    for (const FailedRollout& failed : built->shortened) {
+      if (failed.recording == i) frames = failed.status.frame;
+    }
+    if (Count(i) == 0) continue;
+    if (frames == 1) continue;  // fails in its very first step: nothing left to compare
+    const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
+                                            Weight(i, horizon), frames);
+    built->AddRollout(MakeRolloutCost(rollout, options_.jacobian), RecordingBlocks(point, i), i);
+  }
+}
+
+void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
+  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+    if (Count(i) == 0) continue;
+    const std::vector<double*> blocks = RecordingBlocks(point, i);
+    auto residual =
+        std::make_unique<LikelihoodResidual>(LikelihoodOf(i, Weight(i, 0)), blocks.data(),
+                                             options_.jacobian == JacobianMethod::kAutodiff);
+    if (!residual->status().ok) {
+      built->shortened.push_back({i, residual->status()});
+      continue;
+    }
+    built->offset += Count(i) * residual->offset();
+    built->AddRollout(std::move(residual), blocks, i);
+  }
 }
 
 FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {

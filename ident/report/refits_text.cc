@@ -131,12 +131,19 @@ std::string DriftText(const RefitTable& check) {
     const RefitRow& row = check.rows[drift.row];
     text += check.parameters[drift.parameter] + " drifts: " +
             ValueText(row.value[drift.parameter], row.standard_error[drift.parameter]) +
-            " in the first " + row.name + ", " +
+            (row.frames == kOneStep ? " in single steps, " : " in the first " + row.name + ", ") +
             ValueText(check.value[drift.parameter], check.standard_error[drift.parameter]) +
             " in all, " + Rounded(drift.in_errors, 2) +
             " errors apart; it stands for something that the model leaves out\n";
   }
   return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
+}
+
+std::string HorizonClaims(const RefitTable& check) {
+  if (check.rows.empty() || check.rows[0].frames != kOneStep) return "";
+  return "one step: how people answer from one frame to the next, for controllers and filters\n"
+         "first frames: what a prediction of so many frames needs\n"
+         "all: where a push takes people, for predictions from the push and for simulations\n";
 }
 
 std::string PushCheckText(const RefitTable& check) {
@@ -154,7 +161,8 @@ std::string PriorCheckText(const RefitTable& check) {
 
 std::string HorizonCheckText(const RefitTable& check) {
   if (check.rows.empty()) return "no recording is longer than the shortest horizon\n";
-  return HorizonTable(check).ToString() + DriftText(check) + FailuresText(check);
+  return HorizonTable(check).ToString() + DriftText(check) + HorizonClaims(check) +
+         FailuresText(check);
 }
 
 }  // namespace pushid

@@ -24,6 +24,8 @@ TextTable PriorTable(const RefitTable& check);
 // For a terminal, with headings.
 std::string PushCheckText(const RefitTable& check);
 std::string HorizonCheckText(const RefitTable& check);
+// Which claim belongs to which horizon; empty where single steps were not fitted.
+std::string HorizonClaims(const RefitTable& check);
 std::string PriorCheckText(const RefitTable& check);
 
 }  // namespace pushid

@@ -72,6 +72,16 @@ std::string NetworkText(const FitResult& result) {
          " m/s^2 times the mass (root mean square)";
 }
 
+std::string LikelihoodText(const FitResult& result) {
+  const LikelihoodScore& score = *result.likelihood;
+  return "likelihood " + NameOf(result.options.likelihood) + ", noise " +
+         NameOf(result.options.model.process_noise) + ": -2 log L " + Rounded(score.deviance, 7) +
+         " of " + std::to_string(score.measured) + " numbers, AIC " + Rounded(score.Aic(), 7) +
+         ", BIC " + Rounded(score.Bic(), 7) + " (" + Count(score.parameters, "parameter") +
+         "); compare with other models by the same likelihood of the same recordings\n"
+         "  it fits single steps: what a rollout does over many of them is another question";
+}
+
 std::string ReportText(const FittedModel& model) {
   const FitResult& result = model.fit;
   const FitOptions& o = result.options;
@@ -115,6 +125,7 @@ std::string ReportText(const FittedModel& model) {
           Count(result.starts[result.best_start].iterations, "iteration") + " from " +
           Count(static_cast<int>(result.starts.size()), "start") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
+  if (result.likelihood) text += LikelihoodText(result) + "\n";
   text += PreparationText(model.provenance.configuration);
   text += AcrossStartsText(result);
   for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";

@@ -9,6 +9,7 @@
 #include "ident/problem/behaviour_text.h"
 #include "ident/results/weighted_solve.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/solver/likelihood_solve.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
@@ -248,8 +249,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.message = trained.error().ToString();
     return result;
   }
-  const WeightedSolution solved = SolveWeighted(recordings, &result.options, progress);
+  const bool rollouts = options.likelihood == Likelihood::kTrajectory;
+  const WeightedSolution solved = SolveAsAsked(recordings, &result.options, progress);
   const Solution& solution = solved.solution;
+  if (solution.best >= 0) EstimateNoise(recordings, solution.Best().to, &result.options);
   const FitProblem problem(recordings, result.options);
   result.starts = solution.starts;
   result.best_start = solution.best;
@@ -283,7 +286,13 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
-  if (!solved.weights_settled) {
+  if (!rollouts && options.likelihood != Likelihood::kTransitionAsPrinted) {
+    result.likelihood = ScoreByLikelihood(problem, best.to);
+  }
+  if (!solved.weights_settled && !rollouts) {
+    result.warnings.push_back("the likelihood still rose when the rounds of solving ended");
+  }
+  if (!solved.weights_settled && rollouts) {
     result.warnings.push_back(
         "the data's weight still changed by more than 1 % when the rounds "
         "of weighing ended: priors may count too much or too little");

@@ -13,6 +13,7 @@
 #include "ident/results/ensemble.h"
 #include "ident/results/push_range.h"
 #include "ident/results/step_probability.h"
+#include "ident/solver/likelihood_score.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/network_takeover.h"
@@ -48,6 +49,7 @@ struct FitResult {
   std::optional<PushRange> push_range;  // none in files that are older than it
   // None where nobody stepped or everybody did, and in older files.
   std::optional<StepProbability> step_probability;
+  std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
   Uncertainty uncertainty;
   Diagnostics diagnostics;
   Behaviour behaviour;

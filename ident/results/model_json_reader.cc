@@ -184,6 +184,7 @@ class ModelReader {
     ReadEstimates();
     ReadPooled();
     ReadStepProbability();
+    ReadLikelihood();
     ReadPushRange();
     ReadValues();
     ReadJudgement();
@@ -265,6 +266,14 @@ class ModelReader {
   void ReadStepProbability() {
     if (!json_.contains("step_probability")) return;
     result_.step_probability = StepProbabilityFromJson(At("step_probability"));
+  }
+
+  void ReadLikelihood() {
+    if (!json_.contains("likelihood")) return;
+    const Json& json = At("likelihood");
+    result_.likelihood =
+        LikelihoodScore{NumberFrom(json.at("deviance")), json.at("measured").get<int>(),
+                        json.at("parameters").get<int>()};
   }
 
   void ReadPushRange() {

@@ -252,6 +252,14 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   if (result.step_probability) {
     json["step_probability"] = ToJson(*result.step_probability);
   }
+  if (result.likelihood) {
+    const LikelihoodScore& score = *result.likelihood;
+    json["likelihood"] = {{"deviance", NumberJson(score.deviance)},
+                          {"measured", score.measured},
+                          {"parameters", score.parameters},
+                          {"aic", NumberJson(score.Aic())},
+                          {"bic", NumberJson(score.Bic())}};
+  }
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);

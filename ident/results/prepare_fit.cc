@@ -91,6 +91,32 @@ MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
   return std::nullopt;
 }
 
+// A likelihood of single steps knows the state [q, qd] of everybody and nothing else.
+MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
+                           const FitOptions& options) {
+  const ModelOptions& model = options.model;
+  if (options.likelihood == Likelihood::kTrajectory && !model.process_noise.Any()) {
+    return std::nullopt;
+  }
+  if (const std::string what = MemoryOf(model); !what.empty()) {
+    return Error{
+        "process noise and the likelihoods of single steps are for models whose state is "
+        "place and velocity; " +
+        what + " has a memory of its own: leave one of them out"};
+  }
+  for (const PendulumRecording& r : recordings) {
+    if (r.num_frames() < 3) {
+      return Error{"recording " + r.id + " has too few frames for a likelihood of single steps"};
+    }
+    if (options.likelihood == Likelihood::kTrajectory) continue;
+    if (r.initial_velocity != InitialVelocity::kFree) continue;
+    return Error{"recording " + r.id +
+                 " has free initial velocities, which --likelihood=" + NameOf(options.likelihood) +
+                 " does not fit; set initial_velocity to zero or estimated in the manifest"};
+  }
+  return std::nullopt;
+}
+
 // Holds the support at what the recorded feet have.
 MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
                                FitOptions* options, std::vector<std::string>* told) {
@@ -139,6 +165,7 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
+  if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
   std::vector<std::string> told;
   if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
   UnpoolOneUnit(recordings, options, &told);

@@ -3,6 +3,7 @@
 #include "ident/results/fit.h"
 #include "ident/results/weighted_solve.h"
 #include "ident/solver/large_network_stage.h"
+#include "ident/solver/likelihood_solve.h"
 
 namespace pushid {
 
@@ -15,7 +16,8 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
     if (!trained.ok()) return trained.error();
     options = trained.value();
   }
-  const Solution solution = SolveWeighted(recordings, &options).solution;
+  const Solution solution = SolveAsAsked(recordings, &options).solution;
+  if (solution.best >= 0) EstimateNoise(recordings, solution.Best().to, &options);
   const FitProblem problem(recordings, options);
   if (solution.best < 0) return Error{"no usable optimum was found"};
   const FitPoint& best = solution.Best().to;

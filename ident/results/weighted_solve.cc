@@ -8,6 +8,7 @@
 
 #include "ident/problem/behaviour.h"
 #include "ident/problem/pooling_spread.h"
+#include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/data_weight.h"
 
 namespace pushid {
@@ -186,6 +187,18 @@ WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
   if (solution.best < 0) options->settling_weight = weight;
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solved;
+}
+
+WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                              const SolveProgress& progress) {
+  if (options->likelihood == Likelihood::kTrajectory) {
+    return SolveWeighted(recordings, options, progress);
+  }
+  LikelihoodSolution by_steps = SolveByLikelihood(recordings, options, progress);
+  WeightedSolution solved;
+  solved.solution = std::move(by_steps.solution);
+  solved.weights_settled = by_steps.stays;
   return solved;
 }
 

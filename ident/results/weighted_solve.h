@@ -37,4 +37,9 @@ struct WeightedSolution {
 WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
                                FitOptions* options, const SolveProgress& progress = nullptr);
 
+// By rollouts as above, or by a likelihood of single steps (solver/likelihood_solve.h), as options
+// say.
+WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                              const SolveProgress& progress = nullptr);
+
 }  // namespace pushid

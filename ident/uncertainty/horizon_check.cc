@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/solver/likelihood_solve.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/uncertainty.h"
 
@@ -50,6 +52,41 @@ RefitRow FitFirst(const FitProblem& whole, int frames) {
   return row;
 }
 
+// Every step of every recording on its own, by the innovation likelihood.
+RefitRow FitOneStep(const FitProblem& whole) {
+  RefitRow row{"horizon", "one step", {}, {}, "", kOneStep};
+  FitOptions options = whole.options();
+  options.num_threads = options.num_starts = 1;
+  SetLikelihood(Likelihood::kInnovation, &options);
+  FreeNoise(&options);
+  const LikelihoodSolution found = SolveByLikelihood(whole.recordings(), &options);
+  if (found.solution.best < 0) {
+    row.failure = "no start could be solved";
+    return row;
+  }
+  const FitProblem problem(whole.recordings(), options);
+  const FitPoint& best = found.solution.Best().to;
+  const ParameterSet<double> values = problem.Parameters(best, "");
+  const Uncertainty uncertainty = ComputeUncertainty(problem, best);
+  const auto& fitted = problem.map().fitted;
+  for (const FittedParameter& of : whole.map().fitted) {
+    const auto at = std::find_if(fitted.begin(), fitted.end(), [&of](const FittedParameter& f) {
+      return f.parameter == of.parameter;
+    });
+    row.value.push_back(values[of.parameter]);
+    row.standard_error.push_back(uncertainty.estimates[at - fitted.begin()].standard_error);
+  }
+  return row;
+}
+
+bool KnowsSingleSteps(const FitProblem& problem) {
+  const auto& recordings = problem.recordings();
+  return MemoryOf(problem.options().model).empty() &&
+         std::none_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
+           return r.initial_velocity == InitialVelocity::kFree;
+         });
+}
+
 }  // namespace
 
 RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
@@ -65,10 +102,15 @@ RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
   }
   std::sort(horizons.begin(), horizons.end());
   RefitTable table = RefitTableOf(problem, estimate, uncertainty);
+  if (KnowsSingleSteps(problem)) horizons.insert(horizons.begin(), kOneStep);
   table.rows.resize(horizons.size());
   ParallelFor(
       static_cast<int>(horizons.size()), num_threads,
-      [&](int i) { table.rows[i] = FitFirst(problem, horizons[i]); }, progress);
+      [&](int i) {
+        table.rows[i] =
+            horizons[i] == kOneStep ? FitOneStep(problem) : FitFirst(problem, horizons[i]);
+      },
+      progress);
   return table;
 }
 

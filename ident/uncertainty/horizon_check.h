@@ -9,14 +9,22 @@
 //
 // Two fits of one study share their people, so their difference is known better than either value;
 // that it is larger than twice the larger of the two errors is called a drift.
+//
+// Before them stands what single steps want: the innovation likelihood of all recordings
+// (solver/likelihood_solve.h), with the noise of process and measurement fitted beside the same
+// parameters. It answers how people react from one frame to the next, the whole fit where a push
+// takes them; where both want different values, neither may be quoted for the other. Models with a
+// memory have no such row.
 #pragma once
 
 #include "ident/uncertainty/refit_table.h"
 
 namespace pushid {
 
-// A row for each horizon that is shorter than some recording, ascending; the whole fit is what they
-// are compared with.
+inline constexpr int kOneStep = 1;  // frames
+
+// A row for single steps, and for each horizon that is shorter than some recording, ascending; the
+// whole fit is what they are compared with.
 RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
                          const Uncertainty& uncertainty, int num_threads,
                          const JobProgress& progress = nullptr);

@@ -90,6 +90,9 @@ ReportSection HorizonCheckSection(const FittedModel& model) {
       "The fit repeated on the first frames of every recording alone. A parameter that means "
       "something keeps its value; one that drifts stands for what the model leaves out.",
       DriftText(check)};
+  if (const std::string claims = HorizonClaims(check); !claims.empty()) {
+    section.paragraphs.push_back(claims);
+  }
   section.tables.push_back({"values +- standard errors", HorizonTable(check)});
   double all = 0.0;
   for (const FittedRecording& r : model.fit.recordings) all = std::max(all, r.frames - 1.0);

@@ -1,0 +1,52 @@
+// apps: drawn futures by flag.
+#include "apps/flags/futures_flags.h"
+
+#include <gflags/gflags.h>
+
+#include <cstdio>
+
+#include "apps/flags/command_line.h"
+#include "ident/prediction/futures.h"
+
+DEFINE_int32(samples, pushid::FuturesFlags{}.samples,
+             "draw so many futures from the model's process noise; 0: none");
+DEFINE_uint64(samples_seed, pushid::FuturesFlags{}.seed, "with --samples: seed of the draws");
+DEFINE_string(samples_out, "",
+              "with --samples: write every future here (CSV: draw, frame, person, hip, angles)");
+
+namespace pushid {
+
+Result<FuturesFlags> FuturesFlagsFromCommandLine() {
+  if (MaybeError error = CheckRange("samples", FLAGS_samples, 0, 100000)) return *error;
+  if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: ask for 2 or more"};
+  for (const char* flag : {"samples_seed", "samples_out"}) {
+    if (FLAGS_samples > 0 || !Given(flag)) continue;
+    return Error{std::string("--") + flag + " needs --samples, the number of futures"};
+  }
+  if (MaybeError error = CheckOutputFiles({FLAGS_samples_out})) return *error;
+  return FuturesFlags{FLAGS_samples, FLAGS_samples_seed, FLAGS_samples_out};
+}
+
+int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
+                 const PendulumRecording& recording, int num_frames) {
+  if (flags.samples == 0) return kDone;
+  const Result<Futures> drawn =
+      DrawFutures(model, recording, flags.samples, flags.seed, num_frames);
+  if (!drawn.ok()) return Fail(drawn.error());
+  const Futures& futures = drawn.value();
+  if (futures.paths.empty()) {
+    std::fprintf(stderr, "every drawn future leaves the model's domain\n");
+    return kFitFailed;
+  }
+  std::printf("%zu drawn futures, hips at the last frame (median and central 90 %%):\n%s",
+              futures.paths.size(), LastFrameText(futures).c_str());
+  if (futures.failed > 0) {
+    std::printf("%d more left the model's domain\n", futures.failed);
+  }
+  if (flags.out.empty()) return kDone;
+  if (MaybeError error = WriteFuturesCsv(flags.out, futures)) return Fail(*error);
+  std::printf("all of them written to %s\n", flags.out.c_str());
+  return kDone;
+}
+
+}  // namespace pushid

@@ -1,0 +1,24 @@
+// apps: the flags by which programs draw futures from a model with process noise.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/results/identified_model.h"
+
+namespace pushid {
+
+struct FuturesFlags {
+  int samples = 0;  // 0: none are drawn
+  std::uint64_t seed = 1;
+  std::string out;  // all of them (CSV); empty: not written
+};
+Result<FuturesFlags> FuturesFlagsFromCommandLine();
+
+// Draws them, prints where everybody is at the end, writes --samples_out; nothing without
+// --samples. num_frames: 0 means as many as the recording has. Returns an exit code.
+int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
+                 const PendulumRecording& recording, int num_frames);
+
+}  // namespace pushid

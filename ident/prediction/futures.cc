@@ -1,0 +1,237 @@
+// ident: draws, and proper scores of them.
+#include "ident/prediction/futures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
+#include "ident/figures/text_table.h"
+#include "ident/prediction/score_clusters.h"
+#include "ident/problem/time_series.h"
+#include "ident/uncertainty/clusters.h"
+#include "residuals/cost_functions/likelihood_residual.h"
+
+namespace pushid {
+namespace {
+
+// Rows of BandPoint that are scored: hip x, hip y, theta, phi.
+constexpr int kScored[] = {0, 1, 3, 4};
+
+// Whether a value lies within the order statistics whose ranks are p (n + 1) and (1 - p)(n + 1).
+bool Within(const std::vector<double>& sorted, double value, double share) {
+  const double n = static_cast<double>(sorted.size());
+  const double outside = 0.5 * (1.0 - share) * (n + 1.0);
+  const auto at = [&](double rank) {
+    const double clamped = std::clamp(rank - 1.0, 0.0, n - 1.0);
+    const size_t low = static_cast<size_t>(clamped);
+    const size_t high = std::min(sorted.size() - 1, low + 1);
+    const double part = clamped - static_cast<double>(low);
+    return (1.0 - part) * sorted[low] + part * sorted[high];
+  };
+  return at(outside) <= value && value <= at(n + 1.0 - outside);
+}
+
+double Energy(const std::vector<Eigen::Vector2d>& draws, const Eigen::Vector2d& value) {
+  double to_value = 0.0, apart = 0.0;
+  for (size_t i = 0; i < draws.size(); ++i) {
+    to_value += (draws[i] - value).norm();
+    for (size_t j = 0; j < i; ++j) apart += (draws[i] - draws[j]).norm();
+  }
+  const double n = static_cast<double>(draws.size());
+  return to_value / n - apart / (n * (n - 1.0));
+}
+
+}  // namespace
+
+double Crps(std::vector<double> draws, double value) {
+  std::sort(draws.begin(), draws.end());
+  const double n = static_cast<double>(draws.size());
+  double to_value = 0.0, apart = 0.0;
+  for (size_t i = 0; i < draws.size(); ++i) {
+    to_value += std::abs(draws[i] - value);
+    apart += draws[i] * (2.0 * static_cast<double>(i) + 1.0 - n);  // sum over pairs, sorted
+  }
+  return to_value / n - apart / (n * (n - 1.0));
+}
+
+Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecording& recording,
+                            int draws, uint64_t seed, int num_frames) {
+  if (!model.options.process_noise.Any()) {
+    return Error{(model.source.empty() ? "the model" : model.source) +
+                 " has no process noise to draw futures from; fit it with "
+                 "--process_noise=diagonal or --likelihood=innovation"};
+  }
+  const int frames = num_frames > 0 ? num_frames : recording.num_frames();
+  const Scene& scene = recording.scene;
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  Futures futures;
+  futures.id = recording.id;
+  Random random(seed);
+  for (int draw = 0; draw < draws; ++draw) {
+    FrameTable<Vector4<double>> noise(frames, scene.num_people());
+    for (int t = 0; t < frames; ++t) {
+      for (int n = 0; n < scene.num_people(); ++n) {
+        for (double& w : noise.At(t, n)) w = random.Normal();
+      }
+    }
+    RolloutPath<double> path;
+    if (!Rollout<double>(scene, model.options, parameters, InitialVelocities(scene), frames, &path,
+                         nullptr, nullptr, &noise)
+             .ok) {
+      ++futures.failed;
+      continue;
+    }
+    std::vector<std::vector<BandPoint>> people(scene.num_people());
+    for (int n = 0; n < scene.num_people(); ++n) {
+      for (int t = 0; t < frames; ++t) {
+        const PendulumState<double>& state = path.At(t, n);
+        BandPoint point;
+        point << HipPosition(scene.people[n].body, state.q), state.q.tail<2>();
+        people[n].push_back(point);
+      }
+    }
+    futures.paths.push_back(std::move(people));
+  }
+  return futures;
+}
+
+FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording& recording,
+                          const Futures& futures) {
+  FuturesScore score;
+  const int people = recording.num_people();
+  const double share = 1.0 / ((recording.num_frames() - 1.0) * people);
+  std::vector<double> values(futures.paths.size());
+  std::vector<Eigen::Vector2d> places(futures.paths.size());
+  for (int n = 0; n < people; ++n) {
+    for (int t = 1; t < recording.num_frames(); ++t) {
+      BandPoint measured;
+      measured << recording.hip[n][t], recording.states[n][t].q.tail<2>();
+      for (int i = 0; i < 4; ++i) {
+        const int row = kScored[i];
+        for (size_t d = 0; d < values.size(); ++d) values[d] = futures.paths[d][n][t][row];
+        std::sort(values.begin(), values.end());
+        score.inside50[i] += share * Within(values, measured[row], 0.5);
+        score.inside90[i] += share * Within(values, measured[row], 0.9);
+        score.crps[i] += share * Crps(values, measured[row]);
+      }
+      for (size_t d = 0; d < places.size(); ++d) places[d] = futures.paths[d][n][t].head<2>();
+      score.energy += share * Energy(places, measured.head<2>());
+    }
+  }
+  ParameterMap map;
+  map.pool_by = model.pool_by;
+  const Deviance deviance = DevianceOf(
+      MakeLikelihoodProblem(Likelihood::kInnovation, recording, model.options, map, 1.0, 1),
+      PeoplesParameters(model, recording));
+  score.deviance = deviance.value / std::max(1, deviance.measured);
+  return score;
+}
+
+std::string LastFrameText(const Futures& futures) {
+  TextTable table({"person", "x m", "5 %", "95 %", "y m", "5 %", "95 %"},
+                  {false, false, false, false, false, false, false});
+  if (futures.paths.empty()) return "";
+  for (size_t n = 0; n < futures.paths[0].size(); ++n) {
+    std::vector<std::string> row = {std::to_string(n)};
+    for (int axis : {0, 1}) {
+      std::vector<double> values;
+      for (const auto& draw : futures.paths) values.push_back(draw[n].back()[axis]);
+      for (double share : {0.5, 0.05, 0.95}) row.push_back(Rounded(Quantile(values, share), 3));
+    }
+    table.Add(row);
+  }
+  return table.ToString();
+}
+
+MaybeError WriteFuturesCsv(const std::string& file, const Futures& futures) {
+  std::string text = "draw,frame,person,hip_x,hip_y,hip_z,theta,phi\n";
+  for (size_t d = 0; d < futures.paths.size(); ++d) {
+    for (size_t n = 0; n < futures.paths[d].size(); ++n) {
+      for (size_t t = 0; t < futures.paths[d][n].size(); ++t) {
+        text += std::to_string(d) + "," + std::to_string(t) + "," + std::to_string(n);
+        for (double value : futures.paths[d][n][t]) text += "," + DoubleText(value);
+        text += "\n";
+      }
+    }
+  }
+  return WriteFileAtomically(file, text);
+}
+
+FuturesSummary SummarizeFutures(const std::string& name,
+                                const std::vector<PendulumRecording>& recordings,
+                                const std::vector<FuturesScore>& scores, int draws, int failed) {
+  FuturesSummary summary;
+  summary.name = name;
+  summary.recordings = static_cast<int>(scores.size());
+  summary.draws = draws;
+  summary.failed = failed;
+  std::vector<std::string> pushed;
+  for (const PendulumRecording& r : recordings) pushed.push_back(PersonKey(r, r.pushed_person));
+  const ScoreClusters clusters = ClustersOf(pushed);
+  summary.clusters = ClustersText(clusters.by, clusters.count);
+  for (const FuturesMetric& metric : kFuturesMetrics) {
+    std::vector<double> values, deviations;
+    for (const FuturesScore& score : scores) values.push_back(metric.value(score));
+    const double mean = MeanOf(values).mean;
+    for (double value : values) {
+      deviations.push_back((value - mean) / static_cast<double>(values.size()));
+    }
+    summary.mean.push_back(mean);
+    summary.error.push_back(clusters.ErrorOfMean(deviations));
+  }
+  return summary;
+}
+
+std::string FuturesText(const std::vector<FuturesSummary>& summaries) {
+  std::vector<std::string> titles = {"drawn futures"};
+  std::vector<bool> left = {true};
+  for (const FuturesSummary& summary : summaries) {
+    titles.push_back(summary.name);
+    titles.push_back("+-");
+    left.insert(left.end(), 2, false);
+  }
+  TextTable table(titles, left);
+  for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
+    std::vector<std::string> row = {kFuturesMetrics[i].Title()};
+    for (const FuturesSummary& summary : summaries) {
+      row.push_back(Rounded(summary.mean[i], 3));
+      row.push_back(Rounded(summary.error[i], 2));
+    }
+    table.Add(row);
+  }
+  std::string text = table.ToString();
+  for (const FuturesSummary& summary : summaries) {
+    text += (summary.name.empty() ? "" : summary.name + ": ") + std::to_string(summary.draws) +
+            " draws for each of " + std::to_string(summary.recordings) + " recordings, errors by " +
+            summary.clusters;
+    if (summary.failed > 0) {
+      text += "; " + std::to_string(summary.failed) + " draws left the model's domain";
+    }
+    text += "\n";
+  }
+  return text +
+         "inside: share of frames within the central 50 or 90 %; crps, energy: the less the "
+         "better;\ndeviance: -2 log innovation likelihood of one measured number\n";
+}
+
+Result<FuturesSummary> EvaluateFutures(const IdentifiedModel& model,
+                                       const std::vector<PendulumRecording>& recordings, int draws,
+                                       uint64_t seed) {
+  std::vector<PendulumRecording> scored;
+  std::vector<FuturesScore> scores;
+  int failed = 0;
+  for (const PendulumRecording& recording : recordings) {
+    const Result<Futures> futures = DrawFutures(model, recording, draws, seed);
+    if (!futures.ok()) return futures.error();
+    failed += futures.value().failed;
+    if (futures.value().paths.size() < 2) continue;
+    scored.push_back(recording);
+    scores.push_back(ScoreFutures(model, recording, futures.value()));
+  }
+  if (scores.empty()) return Error{"every drawn future leaves the model's domain"};
+  return SummarizeFutures("", scored, scores, draws, failed);
+}
+
+}  // namespace pushid

@@ -1,0 +1,188 @@
+// ident: rounds of building and solving by a likelihood.
+#include "ident/solver/likelihood_solve.h"
+
+#include <ceres/manifold.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "ident/parameters/presets.h"
+#include "ident/problem/pooling_spread.h"
+#include "models/parameter_facts.h"
+#include "residuals/cost_functions/likelihood_residual.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kMostRounds = 30;
+constexpr double kSameCost = 1e-3;   // of a log likelihood, absolute
+constexpr double kSameNoise = 0.01;  // the same, where only the noise is wanted
+constexpr double kSettled = 0.01;    // relative change of a spread
+// Noise starts too low rather than too high: rows end where it has fallen far, and never where it
+// rises. Of what transitions leave, measured velocities err too.
+constexpr double kShareOfNoise = 0.1;
+constexpr double kLowMeasurementError = 3e-4;  // m
+
+// Root mean squares of what the model leaves of the transitions, as sigmas.
+Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& point) {
+  ParameterSet<double> p = problem.Parameters(point, "");
+  for (int i = 0; i < 4; ++i) p[kSigmaX + i] = 1.0;
+  Vector4<double> sum = Vector4<double>::Zero();
+  int count = 0;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    ModelOptions model = problem.options().model;
+    model.process_noise = {};
+    const LikelihoodProblem one =
+        MakeLikelihoodProblem(Likelihood::kTransition, recording, model, problem.map(), 1.0, 1);
+    std::vector<GaussianDensity<double>> densities;
+    Densities<double>(one, std::vector<ParameterSet<double>>(recording.num_people(), p),
+                      &densities);
+    for (const GaussianDensity<double>& density : densities) {
+      if (!density.measured) continue;
+      sum += density.v.cwiseQuotient(density.lower.diagonal()).cwiseAbs2();
+      ++count;
+    }
+  }
+  return (sum / std::max(1, count)).cwiseSqrt();
+}
+
+// Where the user has given no other start.
+void StartNoise(const FitProblem& problem, const FitPoint& point, FitOptions* options) {
+  const Vector4<double> spread = SpreadOfTransitions(problem, point);
+  for (int i = 0; i < 4; ++i) {
+    ParameterSpec& spec = options->table.specs[kSigmaX + i];
+    if (!spec.free || spec.nominal != AllParameterFacts()[spec.id].nominal) continue;
+    spec.nominal = std::clamp(kShareOfNoise * spread[i], 2.0 * spec.lower, 0.5 * spec.upper);
+  }
+  for (Parameter id : {kMeasuredCart, kMeasuredHip}) {
+    ParameterSpec& spec = options->table[id];
+    if (spec.free && spec.nominal == AllParameterFacts()[id].nominal) {
+      spec.nominal = kLowMeasurementError;
+    }
+  }
+}
+
+// The noise's starts, at a point of the other parameters.
+void TakeNoise(const FitProblem& problem, FitPoint* point) {
+  const FitPoint nominal = problem.NominalPoint();
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    if (IsNoiseParameter(fitted[i].parameter)) point->shared[i] = nominal.shared[i];
+  }
+}
+
+// Whether the likelihood stays.
+bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+             SolveStart* start) {
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double spread =
+        UpdatePoolingSpread(FitProblem(recordings, *options), start->to, &options->table);
+    const FitProblem problem(recordings, *options);
+    SolveStart again = Refit(problem, start->to, false, options->num_threads);
+    const double before = start->cost;
+    start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
+    start->iterations += again.iterations;
+    start->to = std::move(again.to);
+    start->cost = again.cost;
+    start->converged = again.converged;
+    start->failed = std::move(again.failed);
+    start->message = std::move(again.message);
+    const bool stays = std::abs(before - start->cost) < kSameCost && spread < kSettled;
+    if (stays && start->converged) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recordings,
+                                     FitOptions* options, const SolveProgress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  LikelihoodSolution solved;
+  std::vector<SolveStart>& starts = solved.solution.starts;
+  for (int s = 0; s < options->num_starts; ++s) {
+    FitOptions own = *options;
+    const FitProblem problem(recordings, own);
+    const bool first = s == 0, by_equation = own.start == FitStart::kEquationError;
+    FitPoint from = !first        ? RandomStart(problem, own.start_spread, own.seed + s)
+                    : by_equation ? EquationErrorStart(problem)
+                                  : problem.NominalPoint();
+    StartNoise(problem, from, &own);
+    const FitProblem with_noise(recordings, own);
+    TakeNoise(with_noise, &from);
+    const std::string label =
+        options->num_starts > 1
+            ? "start " + std::to_string(s + 1) + "/" + std::to_string(options->num_starts) + ", "
+            : "";
+    own.horizons = {0};
+    const FitProblem whole(recordings, own);
+    SolveStart start = SolveFrom(whole, from,
+                                 !first        ? "random"
+                                 : by_equation ? "equation_error"
+                                               : "nominal",
+                                 label, progress);
+    const bool stays = SolveOn(recordings, &own, &start);
+    start.usable = std::isfinite(start.cost) && start.failed.empty();
+    const SolveStart* best = solved.solution.best < 0 ? nullptr : &solved.solution.Best();
+    if (start.usable && (best == nullptr || start.cost < best->cost)) {
+      solved.solution.best = s;
+      solved.stays = stays;
+      own.horizons = options->horizons;
+      *options = own;
+    }
+    starts.push_back(std::move(start));
+  }
+  solved.solution.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solved;
+}
+
+void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
+                   FitOptions* options) {
+  if (!options->model.process_noise.Any() || options->likelihood != Likelihood::kTrajectory) {
+    return;
+  }
+  FitOptions own = *options;
+  SetLikelihood(Likelihood::kInnovation, &own);
+  FreeNoise(&own);
+  StartNoise(FitProblem(recordings, *options), point, &own);
+  const FitProblem problem(recordings, own);
+  FitPoint noise = problem.NominalPoint();
+  noise.unit = point.unit;
+  std::vector<int> held;
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    if (IsNoiseParameter(fitted[i].parameter)) continue;
+    held.push_back(static_cast<int>(i));
+    noise.shared[i] = point.shared[held.size() - 1];  // in table order, with the noise at its end
+  }
+  double cost = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds; ++round) {
+    FitProblem::Built built = problem.Build(&noise, 0, false, options->num_threads);
+    if (!built.shortened.empty()) return;
+    built.problem->SetManifold(
+        noise.shared.data(),
+        new ceres::SubsetManifold(static_cast<int>(noise.shared.size()), held));
+    for (auto& [unit, deviations] : noise.unit) {
+      built.problem->SetParameterBlockConstant(deviations.data());
+    }
+    std::string message;
+    const SolveStage stage = SolveBuilt(&built, SolverOptions(own, *built.problem), 0, &message);
+    if (std::abs(cost - stage.final_cost) < kSameNoise) break;
+    cost = stage.final_cost;
+  }
+  const ParameterSet<double> found = problem.Parameters(noise, "");
+  for (const FittedParameter& f : fitted) {
+    if (!IsNoiseParameter(f.parameter)) continue;
+    options->table[f.parameter].nominal = found[f.parameter];
+  }
+}
+
+LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point) {
+  const Deviance deviance = problem.DevianceAt(point);
+  return {deviance.value, deviance.measured, problem.map().num_shared()};
+}
+
+}  // namespace pushid

@@ -1,0 +1,192 @@
+// models: the extended Kalman filter of a scene: what is known of everybody's state after each
+// measurement of q, where forces are disturbed and measurements err (process_noise.h).
+//   predict: s <- step(s),  P <- A P A' + Q,  A = d step / ds,  Q = dt B M^-1 L L' M^-1 B'
+//   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
+// B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout, over
+// any scalar, so that derivatives by parameters pass through it. Sources: Jazwinski, Stochastic
+// Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and ctsmTMB.
+//
+// Of several people each has a covariance of their own: what people do to each other is taken at
+// the filtered states, whose errors (millimetres) are small against the distances at which contact
+// changes. Rejected: one covariance of all 8 N states, 25 times the work of five people.
+#pragma once
+
+#include <vector>
+
+#include "models/dual.h"
+#include "models/process_noise.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+// Velocities at frame 0 are known so well; m/s and rad/s.
+inline constexpr double kStartRate = 0.05;
+
+// L of covariance = L L'.
+template <typename T, int N>
+Eigen::Matrix<T, N, N> CholeskyFactor(const Eigen::Matrix<T, N, N>& covariance) {
+  using std::sqrt;
+  Eigen::Matrix<T, N, N> lower = Eigen::Matrix<T, N, N>::Zero();
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      T sum = covariance(i, j);
+      for (int k = 0; k < j; ++k) sum -= lower(i, k) * lower(j, k);
+      lower(i, j) = i == j ? sqrt(sum) : T(sum / lower(j, j));
+    }
+  }
+  return lower;
+}
+
+// L^-1 columns, by substitution.
+template <typename T, int N, int kColumns>
+Eigen::Matrix<T, N, kColumns> SolveLower(const Eigen::Matrix<T, N, N>& lower,
+                                         Eigen::Matrix<T, N, kColumns> columns) {
+  for (int i = 0; i < N; ++i) {
+    for (int k = 0; k < i; ++k) columns.row(i) -= lower(i, k) * columns.row(k);
+    columns.row(i) /= lower(i, i);
+  }
+  return columns;
+}
+
+template <typename T>
+class PendulumFilter {
+ public:
+  using Covariance = Eigen::Matrix<T, 8, 8>;
+  // What was expected of a measurement and what came: v ~ N(0, lower lower').
+  struct Innovation {
+    Vector4<T> v;
+    Matrix4<T> lower;
+  };
+
+  // parameters: one entry per person. Starts at the scene's own start, whose place is a measurement
+  // as well. Scene and options must outlive the filter.
+  PendulumFilter(const Scene& scene, const ModelOptions& options,
+                 const std::vector<ParameterSet<T>>& parameters)
+      : scene_(scene), options_(options), parameters_(parameters) {
+    for (const ParameterSet<T>& p : parameters) {
+      ParameterSet<D> constant;
+      for (int i = 0; i < kNumParameters; ++i) constant[i] = D::Constant(p[i]);
+      duals_.push_back(constant);
+    }
+    forces_.emplace_back(scene, options, duals_);
+    for (int n = 0; n < scene.num_people(); ++n) {
+      PendulumState<T> state;
+      state.q = scene.people[n].start.q.template cast<T>();
+      state.qd = scene.people[n].start.qd.template cast<T>();
+      states_.push_back(state);
+      before_.push_back(constant_.emplace_back(Constant(state)).qd);
+      Covariance start = Covariance::Zero();
+      start.template topLeftCorner<4, 4>() =
+          MeasurementCovariance<T>(scene.people[n].body, parameters[n]);
+      for (int i = 4; i < 8; ++i) start(i, i) = T(kStartRate * kStartRate);
+      covariances_.push_back(start);
+    }
+  }
+
+  // From `frame` to the next.
+  RolloutStatus Predict(int frame) {
+    std::vector<PendulumState<T>> next(states_.size());
+    for (int n = 0; n < scene_.num_people(); ++n) next[n] = PredictOne(frame, n);
+    for (int n = 0; n < scene_.num_people(); ++n) {
+      before_[n] = constant_[n].qd;
+      states_[n] = next[n];
+      constant_[n] = Constant(next[n]);
+      const std::string_view outside = OutsideDomain(scene_.people[n].body, states_[n]);
+      if (!outside.empty()) return {false, frame + 1, n, outside};
+    }
+    return {};
+  }
+
+  // weight: of the measurement, in (0, 1]; its errors are as much larger as that is less.
+  Innovation Update(int person, const Vector4<double>& q, double weight) {
+    Covariance& P = covariances_[person];
+    PendulumState<T>& state = states_[person];
+    const Matrix4<T> expected =
+        P.template topLeftCorner<4, 4>() +
+        MeasurementCovariance<T>(scene_.people[person].body, parameters_[person]) /
+            T(weight * weight);
+    const Innovation innovation{q.template cast<T>() - state.q, CholeskyFactor<T, 4>(expected)};
+    const Eigen::Matrix<T, 4, 8> rows =
+        SolveLower<T, 4, 8>(innovation.lower, P.template topRows<4>());
+    const Vector4<T> white = SolveLower<T, 4, 1>(innovation.lower, innovation.v);
+    const Eigen::Matrix<T, 8, 1> moved = rows.transpose() * white;
+    state.q += moved.template head<4>();
+    state.qd += moved.template tail<4>();
+    P -= rows.transpose() * rows;
+    constant_[person] = Constant(state);
+    return innovation;
+  }
+
+  const PendulumState<T>& state(int person) const { return states_[person]; }
+  const Covariance& covariance(int person) const { return covariances_[person]; }
+
+ private:
+  using D = Dual<T, 8>;
+
+  static PendulumState<D> Constant(const PendulumState<T>& state) {
+    PendulumState<D> constant;
+    for (int i = 0; i < 4; ++i) {
+      constant.q[i] = D::Constant(state.q[i]);
+      constant.qd[i] = D::Constant(state.qd[i]);
+    }
+    return constant;
+  }
+
+  // The person's state and covariance one step on; everybody else as they are.
+  PendulumState<T> PredictOne(int frame, int n) {
+    const PendulumState<D> kept = constant_[n];
+    for (int i = 0; i < 4; ++i) {
+      constant_[n].q[i].v[i] = T(1.0);
+      constant_[n].qd[i].v[4 + i] = T(1.0);
+    }
+    SceneForces<D>& forces = forces_[0];
+    forces.Update(constant_.data());
+    forces.Prepare(n, &scratch_);
+    const NetForce<D> force = forces.On(n, frame, before_[n]);
+    const Vector4<D> qd = constant_[n].qd + D(scene_.dt) * forces.AccelerationOf(n, force);
+    constant_[n] = kept;
+    Eigen::Matrix<T, 4, 8> by_state;
+    PendulumState<T> next;
+    for (int i = 0; i < 4; ++i) {
+      next.qd[i] = qd[i].a;
+      by_state.row(i) = qd[i].v.transpose();
+    }
+    next.q = states_[n].q + scene_.dt * next.qd;
+    Spread(frame, n, by_state);
+    return next;
+  }
+
+  // P one step on. With V = d qd' / ds and q' = q + dt qd', the new blocks follow from V P and Q.
+  void Spread(int frame, int n, const Eigen::Matrix<T, 4, 8>& by_state) {
+    const Body& body = scene_.people[n].body;
+    const PendulumState<T>& state = states_[n];
+    const T dt = T(scene_.dt);
+    const Matrix4<T> gain = InverseMassMatrix<T>(body, Angles<T>(state.q), body.mass) *
+                            NoiseFactor<T>(options_.process_noise, body, parameters_[n], state.qd,
+                                           Pushed(scene_, n, frame));
+    Covariance& P = covariances_[n];
+    const Eigen::Matrix<T, 4, 8> moved = by_state * P;
+    const Matrix4<T> rates = moved * by_state.transpose() + dt * (gain * gain.transpose());
+    const Matrix4<T> places_rates = moved.template leftCols<4>().transpose();  // cov(q, qd')
+    const Matrix4<T> mixed = places_rates + dt * rates;
+    const Matrix4<T> places = P.template topLeftCorner<4, 4>() +
+                              dt * (places_rates + places_rates.transpose()) + (dt * dt) * rates;
+    P.template topLeftCorner<4, 4>() = places;
+    P.template topRightCorner<4, 4>() = mixed;
+    P.template bottomLeftCorner<4, 4>() = mixed.transpose();
+    P.template bottomRightCorner<4, 4>() = rates;
+  }
+
+  const Scene& scene_;
+  const ModelOptions& options_;
+  std::vector<ParameterSet<T>> parameters_;
+  std::vector<ParameterSet<D>> duals_;
+  std::vector<SceneForces<D>> forces_;  // one
+  std::vector<PendulumState<T>> states_;
+  std::vector<PendulumState<D>> constant_;  // the same, without derivatives
+  std::vector<Vector4<D>> before_;          // velocities one frame earlier
+  std::vector<Covariance> covariances_;
+  std::vector<int> scratch_;
+};
+
+}  // namespace pushid

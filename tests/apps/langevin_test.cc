@@ -1,0 +1,142 @@
+// Process noise through the programs: fits by single steps, drawn futures, most probable paths.
+#include <gtest/gtest.h>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class LangevinAppTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    noisy_ = FitModel("noisy.json", {"--process_noise=diagonal"});
+    plain_ = FitModel("plain.json");
+  }
+  std::vector<std::string> Predict(const std::string& model) const {
+    return {"--model=" + model, Recordings(), "--id=" + id_, "--out=" + Path("out.csv")};
+  }
+  static size_t CountLines(const std::string& text) {
+    return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
+  }
+
+  std::string noisy_, plain_;
+};
+
+TEST_F(LangevinAppTest, AFitBySingleStepsSaysHowLikely) {
+  const std::string model = FitModel("steps.json", {"--likelihood=innovation"});
+  EXPECT_TRUE(Contains(fit_.out, "-2 log L"));
+  EXPECT_TRUE(Contains(fit_.out, "AIC"));
+  EXPECT_TRUE(Contains(fit_.out, "measured_hip"));
+  const nlohmann::ordered_json json = Json(model);
+  EXPECT_EQ(json.at("model").at("likelihood"), "innovation");
+  const auto& score = json.at("likelihood");
+  EXPECT_NEAR(score.at("aic").get<double>(),
+              score.at("deviance").get<double>() + 2.0 * score.at("parameters").get<int>(), 1e-6);
+  const AppRun report = RunApp("pushid-report", {"--model=" + model});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
+  EXPECT_TRUE(Contains(report.out, "-2 log L"));
+}
+
+// Rollouts of a fit are the same with noise and without.
+TEST_F(LangevinAppTest, NoiseChangesNoRollout) {
+  const auto mean = [&](const std::string& model) {
+    const std::string out = Path("scores.json");
+    EXPECT_EQ(RunApp("pushid-evaluate", {"--model=" + model, Recordings(), "--json_out=" + out})
+                  .exit_code,
+              0);
+    return Json(out).at("mean").at("hipADE_m").get<double>();
+  };
+  EXPECT_EQ(mean(noisy_), mean(plain_));
+}
+
+TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
+  std::vector<std::string> predict = Predict(noisy_);
+  predict.insert(predict.end(), {"--samples=20", "--samples_out=" + Path("futures.csv")});
+  const AppRun drawn = RunApp("pushid-predict", predict);
+  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(Contains(drawn.out, "20 drawn futures"));
+  EXPECT_EQ(CountLines(ReadText(Path("futures.csv"))), 1u + 20u * 45u);
+  const std::string first = ReadText(Path("futures.csv"));
+  ASSERT_EQ(RunApp("pushid-predict", predict).exit_code, 0);
+  EXPECT_EQ(ReadText(Path("futures.csv")), first) << "the same seed, the same futures";
+
+  const std::string scores = Path("scores.json");
+  const AppRun evaluated = RunApp("pushid-evaluate", {"--model=" + noisy_, Recordings(),
+                                                      "--samples=20", "--json_out=" + scores});
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const auto& mean = Json(scores).at("futures").at("mean");
+  for (const char* key :
+       {"inside90_x_1", "crps_x_m", "energy_m", "deviance_nats", "energy_standard_error_m"}) {
+    EXPECT_TRUE(mean.contains(key)) << key;
+  }
+
+  const AppRun held_out =
+      RunApp("pushid-crossvalidate",
+             {Recordings(), "--process_noise=diagonal", "--folds=2", "--repeats=1", "--samples=10",
+              "--compare=full: --process_noise=full", "--json_out=" + scores, "--quiet"});
+  ASSERT_EQ(held_out.exit_code, 0) << held_out.err;
+  EXPECT_EQ(Json(scores).at("futures").size(), 2u);
+  EXPECT_TRUE(Contains(held_out.out, "full less tail"));
+
+  const AppRun line = RunApp(
+      "pushid-simulate", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"});
+  EXPECT_EQ(line.exit_code, 0) << line.err;
+  EXPECT_TRUE(Contains(line.out, "10 drawn futures"));
+}
+
+TEST_F(LangevinAppTest, TheMostProbablePathAndItsEnds) {
+  const std::string model = "--model=" + noisy_;
+  const AppRun run =
+      RunApp("pushid-path", {model, "--from=xd=0.4", "--to=x=0.2,xd=0; x=3,xd=0", "--frames=60",
+                             "--out=" + Path("path.csv"), "--json_out=" + Path("path.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "most probable: x=0.2,xd=0"));
+  EXPECT_EQ(CountLines(ReadText(Path("path.csv"))), 61u);
+  const nlohmann::ordered_json json = Json(Path("path.json"));
+  EXPECT_LT(json.at("paths")[0].at("action").get<double>(),
+            json.at("paths")[1].at("action").get<double>());
+
+  const AppRun smoothed =
+      RunApp("pushid-path", {model, Recordings(), "--id=" + id_, "--out=" + Path("states.csv")});
+  ASSERT_EQ(smoothed.exit_code, 0) << smoothed.err;
+  EXPECT_EQ(CountLines(ReadText(Path("states.csv"))), 46u);
+}
+
+TEST_F(LangevinAppTest, BadUse) {
+  std::vector<std::string> predict = Predict(plain_);
+  predict.push_back("--samples=10");
+  EXPECT_EQ(RunApp("pushid-predict", predict).exit_code, 1);
+  EXPECT_TRUE(Contains(RunApp("pushid-predict", predict).err, "process noise"));
+  const std::string model = "--model=" + noisy_;
+  const std::vector<std::pair<std::vector<std::string>, std::string>> paths = {
+      {{"--model=" + plain_, "--to=x=1"}, "no process noise"},
+      {{model}, "--to"},
+      {{model, "--to=x=1", "--from=z=1"}, "'z'"},
+      {{model, "--to=theta=2"}, "theta"},
+      {{model, "--to=x=1", "--frames=3"}, "--frames"},
+      {{model, "--to=x=1", "--id=" + id_, Recordings()}, "--to"},
+      {{model, "--to=x=1", "--set=sigma_x=0"}, "sigma_x"},
+  };
+  for (const auto& [flags, says] : paths) {
+    EXPECT_TRUE(Refused(RunApp("pushid-path", flags), {says})) << says;
+  }
+  const std::vector<std::pair<std::vector<std::string>, std::string>> fits = {
+      {{"--process_noise=speed"}, "diagonal or full"},
+      {{"--process_noise=diagonal,full"}, "diagonal or full"},
+      {{"--process_noise=white"}, "'white'"},
+      {{"--likelihood=posterior"}, "--likelihood"},
+      {{"--likelihood=innovation", "--stance=threshold"}, "--stance=threshold"},
+      {{"--likelihood=innovation", "--horizon_check"}, "--horizon_check"},
+  };
+  for (const auto& [flags, says] : fits) {
+    std::vector<std::string> all = flags;
+    all.push_back(Recordings());
+    EXPECT_TRUE(Refused(RunApp("pushid-fit", all), {says})) << says;
+  }
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-crossvalidate", {Recordings(), "--samples=10"}), {"process noise"}));
+}
+
+}  // namespace
+}  // namespace pushid

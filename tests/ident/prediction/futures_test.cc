@@ -1,0 +1,101 @@
+// Drawn futures: proper scores against their closed forms, and draws that are as wide as they say.
+#include "ident/prediction/futures.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/results/fit_setup.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+TEST(Crps, OfAUniformDistributionIsItsClosedForm) {
+  Random random(3);
+  std::vector<double> draws;
+  for (int i = 0; i < 20000; ++i) draws.push_back(random.Unit());
+  // Of U(0, 1): the integral of (F - 1{x >= y})^2.
+  for (double y : {-0.5, 0.3, 0.5, 1.2}) {
+    const double inside = (y * y * y + (1.0 - y) * (1.0 - y) * (1.0 - y)) / 3.0;
+    const double expected = y < 0.0 ? 1.0 / 3.0 - y : y > 1.0 ? y - 1.0 + 1.0 / 3.0 : inside;
+    EXPECT_NEAR(Crps(draws, y), expected, 5e-3) << y;
+  }
+}
+
+// Twenty draws are scored as a thousand are, on average.
+TEST(Crps, FewDrawsAreNotBiased) {
+  Random random(4);
+  double few = 0.0, many = 0.0;
+  constexpr int kTrials = 400;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<double> draws;
+    for (int i = 0; i < 1000; ++i) draws.push_back(random.Normal());
+    const double y = random.Normal();
+    many += Crps(draws, y) / kTrials;
+    draws.resize(20);
+    few += Crps(draws, y) / kTrials;
+  }
+  EXPECT_NEAR(few, many, 0.03);
+  EXPECT_NEAR(many, 1.0 / std::sqrt(M_PI), 0.04);  // of N(0, 1) against itself
+}
+
+SyntheticOptions NoisyStudy() {
+  SyntheticOptions study = TinyStudy();
+  study.subjects = 6;
+  study.recordings_per_subject = 6;
+  study.joint_noise_m = 0.0;
+  study.model.process_noise.diagonal = true;
+  study.parameters[kSigmaX] = 15.0, study.parameters[kSigmaY] = 12.0;
+  study.parameters[kSigmaTheta] = 8.0, study.parameters[kSigmaPhi] = 6.0;
+  study.parameters[kMeasuredCart] = study.parameters[kMeasuredHip] = 1e-4;
+  return study;
+}
+
+IdentifiedModel TruthOf(const SyntheticOptions& study) {
+  IdentifiedModel model;
+  model.options = study.model;
+  model.table = BaseTable();
+  model.parameters = study.parameters;
+  return model;
+}
+
+// Under the truth the bands hold what they say, in x, y and both angles.
+TEST(Futures, OfTheTruthHoldWhatTheySay) {
+  const SyntheticOptions study = NoisyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto summary = EvaluateFutures(TruthOf(study), recordings, 99, 1);
+  ASSERT_TRUE(summary.ok()) << summary.error().ToString();
+  for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
+    const std::string name = kFuturesMetrics[i].name;
+    if (name.find("inside90") == 0) EXPECT_NEAR(summary.value().mean[i], 0.9, 0.07) << name;
+    if (name.find("inside50") == 0) EXPECT_NEAR(summary.value().mean[i], 0.5, 0.12) << name;
+  }
+}
+
+// Proper scores: other widths than the truth's score worse.
+TEST(Futures, TheTruthScoresBest) {
+  const SyntheticOptions study = NoisyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto scored = [&](double factor) {
+    IdentifiedModel model = TruthOf(study);
+    for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] *= factor;
+    return EvaluateFutures(model, recordings, 60, 1).value();
+  };
+  const FuturesSummary truth = scored(1.0), narrow = scored(0.2), wide = scored(4.0);
+  for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
+    const std::string name = kFuturesMetrics[i].name;
+    if (name != "energy" && name != "crps_x" && name != "deviance") continue;
+    EXPECT_LT(truth.mean[i], narrow.mean[i]) << name;
+    EXPECT_LT(truth.mean[i], wide.mean[i]) << name;
+  }
+}
+
+TEST(Futures, WithoutProcessNoiseThereAreNone) {
+  SyntheticOptions study = TinyStudy();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto drawn = DrawFutures(TruthOf(study), recordings[0], 10, 1);
+  ASSERT_FALSE(drawn.ok());
+  EXPECT_NE(drawn.error().ToString().find("process noise"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,126 @@
+"""People who are no clockwork: process noise, likelihoods of single steps, drawn futures (ident/uncertainty and ident/prediction).
+
+known      planted noise and gains, 50 studies: how often 95 % intervals of the innovation fit cover; 3 minutes
+likelihood the 32 recordings of single people by each likelihood, with the time it took; seconds
+horizons   the same parameters wanted by one step, by 8 to 64 frames, and by all; a minute
+noise      diagonal against full noise, constant or growing, on held-out recordings; 10 minutes
+futures    drawn futures of single people and groups, held out, beside the bands; 20 minutes
+
+Times are those of one core.
+"""
+import os
+import tempfile
+import time
+
+import studies
+from studies import number, with_error
+
+TRUTH = {"sigma_x": 12, "sigma_y": 9, "sigma_theta": 6, "sigma_phi": 5}
+NOISE = 0.002  # m, of every joint
+
+
+def known():
+    set_truth = ",".join(f"{name}={value}" for name, value in TRUTH.items())
+    covered, apart = {}, {}
+    for seed in range(1, 51):
+        with tempfile.TemporaryDirectory() as folder:
+            made = os.path.join(folder, "made")
+            text = studies.run("pushid-simulate", f"--out={made}", "--people=4", f"--seed={seed}", f"--noise={NOISE}",
+                               "--truth_noise=diagonal", f"--set={set_truth}", out=None, keep=False).text
+            truth = {}
+            for line in text.splitlines()[1:]:
+                words = line.split()
+                if len(words) >= 2 and words[0].replace("_", "").isalpha():
+                    try:
+                        truth[words[0]] = float(words[1])
+                    except ValueError:
+                        pass
+            truth["measured_cart"], truth["measured_hip"] = NOISE / 2 ** 0.5, NOISE
+            fit = studies.run("pushid-fit", f"--recordings={made}/manifest.json", "--likelihood=innovation", "--quiet",
+                              out="model_out", keep=False).json
+            for p in fit["parameters"]:
+                if p["status"] == "fixed" or p["name"] not in truth:
+                    continue
+                lower, upper = p["interval_95"]
+                covered.setdefault(p["name"], []).append(lower <= truth[p["name"]] <= upper)
+                apart.setdefault(p["name"], []).append(p["value"] / truth[p["name"]] - 1.0)
+    rows = []
+    for name, hits in covered.items():
+        mean = sum(apart[name]) / len(apart[name])
+        rows.append([f"`{name}`", f"{sum(hits)} of {len(hits)}", f"{100 * mean:+.1f} %"])
+    every = [hit for hits in covered.values() for hit in hits]
+    rows.append(["all", f"{sum(every)} of {len(every)} ({100 * sum(every) / len(every):.1f} %)", None])
+    return studies.table(["planted", "95 % interval covers", "mean error"], rows)
+
+
+SHOWN = ["mu", "Kp_theta", "a_x", "tail_gain", "tail_torque", "tail_time", "sigma_x", "sigma_theta", "measured_cart",
+         "measured_hip"]
+
+
+def likelihood():
+    rows = []
+    for name in ("trajectory", "transition", "transition_as_printed", "innovation"):
+        begin = time.time()
+        model = studies.on_recordings("pushid-fit", "single", f"--likelihood={name}", "--num_threads=1", "--quiet",
+                                      out="model_out", keep=False)
+        seconds = time.time() - begin
+        found = {p["name"]: p for p in model.json["parameters"]}
+        cells = []
+        for parameter in SHOWN:
+            p = found.get(parameter)
+            cells.append(None if p is None or p["status"] == "fixed" else with_error(p["value"], p["standard_error"]))
+        score = model.json.get("likelihood")
+        rows.append([f"`{name}`", *cells, None if score is None else f"{score['deviance']:.0f}", f"{seconds:.1f}"])
+    return studies.table(["32 recordings of single people", *(f"`{p}`" for p in SHOWN), "-2 log L", "whole program, s"],
+                         rows)
+
+
+def horizons():
+    check = studies.fit("single", "--horizon_check").json["horizon_check"]
+    rows = []
+    for row in check["rows"]:
+        if row.get("failure"):
+            continue
+        rows.append([row["name"], *(with_error(v, e) for v, e in zip(row["value"], row["standard_error"]))])
+    rows.append(["all", *(with_error(v, e) for v, e in zip(check["value"], check["standard_error"]))])
+    return studies.table(["fitted to", *(f"`{name}`" for name in check["parameters"])], rows)
+
+
+CANDIDATES = [("diagonal", "diagonal"), ("full", "full"), ("diagonal, speed", "diagonal,speed"),
+              ("diagonal, push", "diagonal,push"), ("full, speed, push", "full,speed,push")]
+METRICS = [("deviance_nats", "-2 log L a number"), ("inside50_x_1", "inside 50 %, x"), ("inside90_x_1", "inside 90 %, x"),
+           ("inside90_y_1", "90 %, y"), ("inside90_theta_1", "90 %, theta"), ("crps_x_m", "CRPS x, m"),
+           ("energy_m", "energy score, m")]
+
+
+def drawn(setting, likelihoods, noises, *arguments):
+    compare = "; ".join(f"{like} {title}: --likelihood={like} --process_noise={noise}"
+                        for like in likelihoods for title, noise in noises)
+    out = studies.on_recordings("pushid-crossvalidate", setting, "--yardsticks=false", "--samples=100", *arguments,
+                                f"--compare={compare}").json
+    errors = {p["name"]: p["mean"] for p in out["predictors"]}
+    rows = []
+    for one in out["futures"]:
+        mean = one["mean"]
+        cells = []
+        for key, _ in METRICS:
+            name, unit = key.rsplit("_", 1)
+            cells.append(with_error(mean[key], mean[f"{name}_standard_error_{unit}"]))
+        rows.append([f"{setting}, {one['name']}", *cells, number(errors[one["name"]]["hipADE_m"])])
+    return rows
+
+
+def noise():
+    rows = drawn("single", ["innovation"], CANDIDATES, "--folds=4", "--repeats=1")
+    return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
+
+
+def futures():
+    rows = drawn("single", ["trajectory", "innovation"], [("diagonal", "diagonal")], "--folds=4", "--repeats=5")
+    rows += drawn("groups", ["trajectory"], [("diagonal", "diagonal")], "--folds=5", "--repeats=1")
+    return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"known": known, "likelihood": likelihood, "horizons": horizons, "noise": noise,
+                            "futures": futures})
