@@ -81,6 +81,11 @@ class FitProblem {
   static constexpr int kSettlingCluster = -3;  // demands on the person: settling, modes, stability
   static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero
 
+  // By how much the logarithm of the noise may fall in a solve before its rows end
+  // (residuals/gaussian_rows.h): kFisherShift, where J'J is the Fisher information, or more far from
+  // the optimum.
+  void set_fall_of_noise(double logarithm) { fall_of_noise_ = logarithm; }
+
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
   struct Built {
@@ -122,6 +127,7 @@ class FitProblem {
   const FitOptions& options_;
   std::vector<int> counts_;
   ParameterMap map_;
+  double fall_of_noise_ = kFisherShift;
 };
 
 }  // namespace pushid

@@ -191,7 +191,8 @@ void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
     const std::vector<double*> blocks = RecordingBlocks(point, i);
     auto residual =
         std::make_unique<LikelihoodResidual>(LikelihoodOf(i, Weight(i, 0)), blocks.data(),
-                                             options_.jacobian == JacobianMethod::kAutodiff);
+                                             options_.jacobian == JacobianMethod::kAutodiff,
+                                             fall_of_noise_);
     if (!residual->status().ok) {
       built->shortened.push_back({i, residual->status()});
       continue;

@@ -25,6 +25,9 @@ constexpr double kSettled = 0.01;    // relative change of a spread
 constexpr double kShareOfNoise = 0.1;
 constexpr double kLowMeasurementError = 3e-4;  // m
 
+// Far at first, then as little as makes the curvature right.
+double FallOfNoise(int round) { return round == 0 ? 6.0 : round == 1 ? 2.0 : kFisherShift; }
+
 // Root mean squares of what the model leaves of the transitions, as sigmas.
 Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& point) {
   ParameterSet<double> p = problem.Parameters(point, "");
@@ -79,7 +82,8 @@ bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* optio
   for (int round = 0; round < kMostRounds; ++round) {
     const double spread =
         UpdatePoolingSpread(FitProblem(recordings, *options), start->to, &options->table);
-    const FitProblem problem(recordings, *options);
+    FitProblem problem(recordings, *options);
+    problem.set_fall_of_noise(FallOfNoise(round + 1));
     SolveStart again = Refit(problem, start->to, false, options->num_threads);
     const double before = start->cost;
     start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
@@ -89,7 +93,8 @@ bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* optio
     start->converged = again.converged;
     start->failed = std::move(again.failed);
     start->message = std::move(again.message);
-    const bool stays = std::abs(before - start->cost) < kSameCost && spread < kSettled;
+    const bool exact = FallOfNoise(round + 1) == kFisherShift;
+    const bool stays = exact && std::abs(before - start->cost) < kSameCost && spread < kSettled;
     if (stays && start->converged) return true;
   }
   return false;
@@ -117,7 +122,8 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
             ? "start " + std::to_string(s + 1) + "/" + std::to_string(options->num_starts) + ", "
             : "";
     own.horizons = {0};
-    const FitProblem whole(recordings, own);
+    FitProblem whole(recordings, own);
+    whole.set_fall_of_noise(FallOfNoise(0));
     SolveStart start = SolveFrom(whole, from,
                                  !first        ? "random"
                                  : by_equation ? "equation_error"
@@ -148,7 +154,7 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
   SetLikelihood(Likelihood::kInnovation, &own);
   FreeNoise(&own);
   StartNoise(FitProblem(recordings, *options), point, &own);
-  const FitProblem problem(recordings, own);
+  FitProblem problem(recordings, own);
   FitPoint noise = problem.NominalPoint();
   noise.unit = point.unit;
   std::vector<int> held;
@@ -160,6 +166,7 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
   }
   double cost = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
+    problem.set_fall_of_noise(FallOfNoise(round));
     FitProblem::Built built = problem.Build(&noise, 0, false, options->num_threads);
     if (!built.shortened.empty()) return;
     built.problem->SetManifold(

@@ -153,7 +153,7 @@ Deviance DevianceOf(const LikelihoodProblem& problem,
 }
 
 LikelihoodResidual::LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks,
-                                       bool jets)
+                                       bool jets, double fall)
     : problem_(std::move(problem)), jets_(jets) {
   for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
   set_num_residuals(kGaussianRows * problem_.num_densities());
@@ -161,7 +161,7 @@ LikelihoodResidual::LikelihoodResidual(LikelihoodProblem problem, double const* 
   status_ =
       Densities(problem_, problem_.layout.Parameters<double>(problem_.map, blocks), &densities);
   for (const GaussianDensity<double>& d : densities) {
-    for (int i = 0; i < 4; ++i) shift_.push_back(kFisherShift - std::log(d.lower(i, i)));
+    for (int i = 0; i < 4; ++i) shift_.push_back(fall - std::log(d.lower(i, i)));
     if (d.measured) offset_ += GaussianOffset<4>(&shift_[shift_.size() - 4]);
   }
 }

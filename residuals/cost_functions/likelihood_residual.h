@@ -78,8 +78,9 @@ Deviance DevianceOf(const LikelihoodProblem& problem,
 class LikelihoodResidual : public ceres::CostFunction {
  public:
   // blocks: where the problem is built (gaussian_rows.h). status(): whether it can be, there. jets:
-  // exact derivatives of a filter.
-  LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks, bool jets = false);
+  // exact derivatives of a filter. fall: by how much log L may fall from there.
+  LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks, bool jets = false,
+                     double fall = kFisherShift);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
   const RolloutStatus& status() const { return status_; }
