@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -20,7 +19,6 @@ constexpr double kFirstSpread = 0.5;
 constexpr double kLeastSpread = 1e-3;  // less than this is none: all weight is on b = 0
 constexpr int kMostRounds = 500;
 constexpr double kSettledRound = 1e-7;
-constexpr double kNoPrior = std::numeric_limits<double>::infinity();
 
 // Of one recording, all of whose frames were seen.
 struct Misfits {
@@ -102,6 +100,19 @@ std::vector<int> ClustersOfPeople(const std::vector<std::string>& people, int* c
   return clusters;
 }
 
+// Of the recording alone: the node of least misfit, and from there to the bottom of the parabola
+// through its neighbours.
+double LikeliestEffect(const std::vector<double>& misfit) {
+  const int node =
+      static_cast<int>(std::min_element(misfit.begin(), misfit.end()) - misfit.begin());
+  if (node == 0 || node + 1 == kEffectNodes) return EffectNode(node);
+  const double left = misfit[node - 1], here = misfit[node], right = misfit[node + 1];
+  const double bend = left - 2.0 * here + right;
+  const double spacing = EffectNode(1) - EffectNode(0);
+  const bool known = std::isfinite(bend) && bend > 0.0;
+  return EffectNode(node) + (known ? 0.5 * spacing * (left - right) / bend : 0.0);
+}
+
 }  // namespace
 
 double RecordingEffect::Blend(double seconds) const { return std::min(1.0, blend_rate * seconds); }
@@ -178,9 +189,8 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
     if (!misfits[i].acts) continue;
     const PendulumRecording& r = *kept[i];
     const EffectEstimate b = MeanEffect(EffectWeights(misfits[i].of_node, p.spread, p.scale));
-    const EffectEstimate alone = MeanEffect(EffectWeights(misfits[i].of_node, kNoPrior, p.scale));
-    effect.recordings.push_back(
-        {r.id, r.subject_ids[r.pushed_person], r.condition, b.mean, b.error, alone.mean});
+    effect.recordings.push_back({r.id, r.subject_ids[r.pushed_person], r.condition, b.mean, b.error,
+                                 LikeliestEffect(misfits[i].of_node)});
   }
   LearnForecasts(model, kept, num_threads, &effect);
   return effect;

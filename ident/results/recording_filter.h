@@ -4,7 +4,7 @@
 //   RecordingFilter filter(model, recording, recording.num_frames());
 //   for (int t = 1; t < k; ++t) filter.Observe(HipsAt(recording, t));
 //   const EffectEstimate b = filter.Effect(*model.recording_effect);
-//   filter.Forecast(rollout with b.mean, *model.recording_effect);
+//   filter.ForecastOf(hips of a rollout with b.mean).Blended(model.recording_effect->Blend(s));
 //
 // All nodes are rolled out once; a frame then costs two multiplications a node and axis, and its
 // sums are never looked at again.
