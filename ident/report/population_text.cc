@@ -42,7 +42,8 @@ std::string PopulationSentence(const RecordingEffect& effect) {
          " clusters, one left out after the other). Each recording's own b takes away " +
          Rounded(100.0 * effect.explained, 2) +
          " % of the mean squared error of the hip over the push's speed; otherwise " + scale +
-         ". Effects are shrunk towards 0 as far as their recording says little; alone: without.";
+         ". Effects are shrunk towards 0 as far as their recording says little; alone: the "
+         "likeliest without.";
 }
 
 std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect) {
