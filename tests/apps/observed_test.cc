@@ -6,7 +6,22 @@
 namespace pushid {
 namespace {
 
-using ObservedTest = AppTest;
+// Recordings that differ, or first frames would have nothing to tell.
+class ObservedTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    SyntheticOptions options;
+    options.subjects = 2;
+    options.recordings_per_subject = 6;
+    options.frames = 45;
+    options.joint_noise_m = 0.0005;
+    options.recording_spread = 0.4;
+    const auto made = MakeSyntheticRecordings(options);
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    ASSERT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made.value()));
+  }
+};
 
 TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
   const std::string model = "--model=" + FitModel();
