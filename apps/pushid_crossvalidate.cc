@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/crossvalidate_flags.h"
 #include "apps/flags/fit_option_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -24,21 +25,39 @@ using Predictors = std::vector<std::unique_ptr<Predictor>>;
 // recordings: as in FitOptionsFromFlags.
 MaybeError AddCandidates(const CrossvalidateFlags& flags, const FitOptions& options,
                          const std::vector<PendulumRecording>* recordings, Predictors* predictors) {
-  predictors->push_back(std::make_unique<ModelPredictor>(options.preset, options));
+  const int observed = ObservedFrames();
+  const auto add = [&](const std::string& name, const FitOptions& fit) -> MaybeError {
+    if (observed > 0 && fit.model.push_tail == PushTail::kNone) {
+      return Error{"--observed: '" + name +
+                   "' has no push tail, by which first frames are read; give it "
+                   "--push_tail=exponential (the presets tail and group have it)"};
+    }
+    predictors->push_back(std::make_unique<ModelPredictor>(name, fit, observed));
+    return std::nullopt;
+  };
+  if (MaybeError error = add(options.preset, options)) return error;
   for (const auto& [name, more] : flags.candidates) {
     const Result<FitOptions> candidate =
         MakeFitOptions(Merged(GivenFitFlags(), more), recordings, more);
     if (!candidate.ok()) return Error{"--compare, '" + name + "': " + candidate.error().message};
-    predictors->push_back(std::make_unique<ModelPredictor>(name, candidate.value()));
+    if (MaybeError error = add(name, candidate.value())) return error;
   }
   return std::nullopt;
 }
 
-void AddBaselines(Predictors* predictors) {
-  predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
-  predictors->push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline));
+// Where first frames are seen, the model started anew takes the place of ridge regression, which
+// could not use them.
+void AddBaselines(const FitOptions& options, Predictors* predictors) {
+  const int observed = ObservedFrames();
+  if (observed > 0) {
+    predictors->push_back(std::make_unique<ModelPredictor>("re-anchored", options, observed,
+                                                           FirstFrames::kReanchored));
+  } else {
+    predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
+  }
+  predictors->push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline, observed));
   predictors->push_back(
-      std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
+      std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline, observed));
 }
 
 // Two of one name could not be told apart in the tables.
@@ -57,7 +76,7 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
                                   const std::vector<PendulumRecording>* recordings) {
   Predictors predictors;
   if (MaybeError error = AddCandidates(flags, options, recordings, &predictors)) return *error;
-  if (flags.baselines) AddBaselines(&predictors);
+  if (flags.baselines) AddBaselines(options, &predictors);
   // What the preset auto is called is known with the recordings.
   if (recordings == nullptr) return predictors;
   if (MaybeError error = CheckNames(predictors)) return *error;
@@ -70,6 +89,7 @@ MaybeError CheckFlags(const CrossvalidateFlags& flags) {
   if (!options.ok()) return options.error();
   const Result<Predictors> predictors = MakePredictors(flags, options.value(), nullptr);
   if (!predictors.ok()) return predictors.error();
+  if (MaybeError error = CheckObservedFlag()) return error;
   for (const std::string& file : {flags.json_out, flags.frontier_out}) {
     if (file.empty()) continue;
     if (MaybeError error = CheckWritable(file)) return error;
@@ -98,6 +118,7 @@ int Run() {
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), FitOptionsFromFlags().value().mapping);
+  if (MaybeError error = CheckObservedFlag(pendulums)) return Fail(*error);
   const Result<FitOptions> options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);

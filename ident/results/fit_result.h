@@ -12,6 +12,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/results/ensemble.h"
 #include "ident/results/push_range.h"
+#include "ident/results/recording_effect.h"
 #include "ident/results/step_probability.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
@@ -48,6 +49,8 @@ struct FitResult {
   std::optional<PushRange> push_range;  // none in files that are older than it
   // None where nobody stepped or everybody did, and in older files.
   std::optional<StepProbability> step_probability;
+  // None without a push tail, and in older files.
+  std::optional<RecordingEffect> recording_effect;
   Uncertainty uncertainty;
   Diagnostics diagnostics;
   Behaviour behaviour;

@@ -7,6 +7,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/recording_effect_json.h"
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 #include "ident/results/step_probability_json.h"
@@ -184,6 +185,7 @@ class ModelReader {
     ReadEstimates();
     ReadPooled();
     ReadStepProbability();
+    ReadRecordingEffect();
     ReadPushRange();
     ReadValues();
     ReadJudgement();
@@ -265,6 +267,11 @@ class ModelReader {
   void ReadStepProbability() {
     if (!json_.contains("step_probability")) return;
     result_.step_probability = StepProbabilityFromJson(At("step_probability"));
+  }
+
+  void ReadRecordingEffect() {
+    if (!json_.contains("recording_effect")) return;
+    result_.recording_effect = RecordingEffectFromJson(At("recording_effect"));
   }
 
   void ReadPushRange() {
