@@ -37,8 +37,10 @@ Json LayoutJson(const ParticleLayout& layout) {
     }
     particles.push_back(particle);
   }
-  return {
-      {"joints", layout.joints}, {"mirrored_axis", layout.mirrored_axis}, {"particles", particles}};
+  return {{"joints", layout.joints},
+          {"up_axis", layout.up_axis},
+          {"mirrored_axis", layout.mirrored_axis},
+          {"particles", particles}};
 }
 
 // The readers below throw nlohmann's exceptions and Error's text where something does not fit.
