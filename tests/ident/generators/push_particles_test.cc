@@ -15,7 +15,6 @@ BodyRecording Pushed(int frames) {
   BodyRecording recording;
   recording.pendulum.id = "push";
   recording.pendulum.subject_ids = {"A", "B"};
-  recording.pendulum.states.resize(2);
   Scene& scene = recording.pendulum.scene;
   for (int n = 0; n < 2; ++n) {
     ScenePerson person;
@@ -26,7 +25,7 @@ BodyRecording Pushed(int frames) {
       body.push_back(Placed(StandingPose(), 0.0, {2.0 + 0.01 * t, n - 1.0, 0.0}));
     }
     recording.bodies.push_back(body);
-    recording.pendulum.states[n].resize(frames);
+    recording.pendulum.hip.emplace_back(frames);
   }
   scene.pushes.push_back(MakeScenePush(0, 1, PushKind::kNet, {{160, 8, 40, -4}, {80, 0, 0, 0}}));
   recording.joint_names.assign(kBodyJoints, "joint");
