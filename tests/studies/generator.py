@@ -24,7 +24,6 @@ ALONE = ["--seeds=1", "--ridge_share=0"]
 ABLATIONS = [("as it is", []),
              ("without displacements, `--particles=false`", ["--particles=false"]),
              ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),
-             ("without the linear skip, `--skip=false`", ["--skip=false"]),
              ("`--cell=lstm`", ["--cell=lstm"]),
              ("`--bone_weight=1`", ["--bone_weight=1"]),
              ("`--critic_weight=0.001`", ["--critic_weight=0.001"]),
@@ -93,7 +92,7 @@ def pushes():
     rows = []
     for observed, name in ((20, "20 frames observed"), (1, "1 frame and the push")):
         json = studies.on_recordings("pushid-train-generator", "single", "--dataset=pushes", "--crossvalidate=4",
-                                     "--seeds=1", "--steps=300", "--noise_steps=0", "--batch=16",
+                                     "--seeds=1", "--steps=200", "--noise_steps=0", "--batch=16",
                                      f"--observed={observed}").json
         rows.append(cells(f"particles, {name}", json))
         if observed > 1:

@@ -80,7 +80,7 @@ TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
 
 // Killed at a checkpoint, it goes on and ends with the bits of a training that was not disturbed.
 TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
-  const std::vector<std::string> longer = {"--steps=200", "--seeds=1", "--checkpoint_seconds=0"};
+  const std::vector<std::string> longer = {"--steps=100", "--seeds=1", "--checkpoint_seconds=0"};
   ASSERT_EQ(Train("whole", longer).exit_code, 0);
   bool killed = false;
   for (double seconds = 1.0; !killed && seconds < 60.0; seconds *= 2.0) {
