@@ -10,15 +10,15 @@ namespace pushid {
 using Json = nlohmann::ordered_json;
 
 Json ToJson(const RecordingEffect& effect) {
-  Json json = {
-      {"spread", NumberJson(effect.spread)},
-      {"spread_standard_error", NumberJson(effect.spread_error)},
-      {"error_scale_m", NumberJson(effect.error_scale)},
-      {"explained", NumberJson(effect.explained)},
-      {"blend_rate_per_s", NumberJson(effect.blend_rate)},
-      {"widening_per_s2", NumbersJson({effect.widening[0], effect.widening[1], effect.widening[2]})},
-      {"clusters", effect.clusters},
-      {"recordings", Json::array()}};
+  Json json = {{"spread", NumberJson(effect.spread)},
+               {"spread_standard_error", NumberJson(effect.spread_error)},
+               {"error_scale_m", NumberJson(effect.error_scale)},
+               {"explained", NumberJson(effect.explained)},
+               {"blend_rate_per_s", NumberJson(effect.blend_rate)},
+               {"widening_per_s2",
+                NumbersJson({effect.widening[0], effect.widening[1], effect.widening[2]})},
+               {"clusters", effect.clusters},
+               {"recordings", Json::array()}};
   for (const EffectOfRecording& r : effect.recordings) {
     json["recordings"].push_back({{"id", r.id},
                                   {"person", r.person},
