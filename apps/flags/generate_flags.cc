@@ -76,12 +76,16 @@ MaybeError CheckRanges() {
 
 MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.data == GeneratorData::kCmu) {
+    for (const char* flag : {"id", "person", "recordings", "setting"}) {
+      if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+    }
     if (flags.target_window >= 0 && flags.samples == 0) {
       return Error{"--target_window searches among sampled futures; give --samples"};
     }
     return Require("folder", FLAGS_folder, "name the folder of the clips");
   }
-  for (const char* flag : {"action", "window", "protocol", "stride", "target_window"}) {
+  for (const char* flag :
+       {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
     if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
   }
   if (flags.samples > 0 && !flags.Shows()) {
