@@ -30,6 +30,10 @@ DEFINE_uint64(seed, kFlags.seed, "of the sampled futures");
 DEFINE_double(ridge_share, -1.0, "of the linear forecast in the blend; -1: as trained");
 DEFINE_bool(project_bones, kFlags.changes.project_bones,
             "give all bones the lengths of the last observed frame");
+DEFINE_double(noise_memory, kFlags.changes.noise_memory,
+              "of sampled futures: correlation of the noise of one frame with the next");
+DEFINE_double(noise_scale, kFlags.changes.noise_scale,
+              "of sampled futures: multiplies the noise that was learned");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
@@ -58,7 +62,9 @@ MaybeError CheckRanges() {
     if (MaybeError error = CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0)) return error;
   }
   for (const MaybeError& error :
-       {CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
+       {CheckRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99),
+        CheckRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0),
+        CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
         CheckRange("person", FLAGS_person, 0, 1e6), CheckRange("poses", FLAGS_poses, 2, 40),
         CheckRange("target_window", FLAGS_target_window, -1, 1e9),
         CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
@@ -70,12 +76,16 @@ MaybeError CheckRanges() {
 
 MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.data == GeneratorData::kCmu) {
+    for (const char* flag : {"id", "person", "recordings", "setting"}) {
+      if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+    }
     if (flags.target_window >= 0 && flags.samples == 0) {
       return Error{"--target_window searches among sampled futures; give --samples"};
     }
     return Require("folder", FLAGS_folder, "name the folder of the clips");
   }
-  for (const char* flag : {"action", "window", "protocol", "stride", "target_window"}) {
+  for (const char* flag :
+       {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
     if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
   }
   if (flags.samples > 0 && !flags.Shows()) {
@@ -103,6 +113,8 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.folder = FLAGS_folder;
   if (FLAGS_ridge_share >= 0.0) flags.changes.ridge_share = FLAGS_ridge_share;
   flags.changes.project_bones = FLAGS_project_bones;
+  flags.changes.noise_memory = FLAGS_noise_memory;
+  flags.changes.noise_scale = FLAGS_noise_scale;
   flags.stride = FLAGS_stride;
   flags.samples = FLAGS_samples;
   flags.seed = FLAGS_seed;

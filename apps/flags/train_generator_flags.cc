@@ -85,7 +85,21 @@ MaybeError CheckRanges() {
   return std::nullopt;
 }
 
+// Flags of the other data would do nothing.
+MaybeError CheckForeign(GeneratorData data) {
+  const bool is_cmu = data == GeneratorData::kCmu;
+  for (const char* flag : {"recordings", "setting", "observed", "held_out"}) {
+    if (is_cmu && Given(flag))
+      return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+  }
+  for (const char* flag : {"folder", "with_validation", "ridge_share", "ridge_penalty"}) {
+    if (!is_cmu && Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
+  }
+  return std::nullopt;
+}
+
 MaybeError CheckData(GeneratorData data) {
+  if (MaybeError error = CheckForeign(data)) return error;
   if (data == GeneratorData::kCmu) {
     if (FLAGS_crossvalidate != 0) {
       return Error{

@@ -89,6 +89,7 @@ Json SettingsJson(const TrainedParticles& trained) {
           {"pose_operator", structure.pose_operator},
           {"particles", structure.particles},
           {"controls", structure.controls},
+          {"jitter", trained.jitter},
           {"ridge_share", trained.ridge_share}};
 }
 
@@ -113,12 +114,14 @@ TrainedParticles Read(const TensorFolder& folder, TensorReader* reader) {
   structure.particles = json.at("particles");
   structure.controls = json.at("controls");
   const int members = json.at("members");
+  trained.jitter = json.at("jitter");
   trained.ridge_share = json.at("ridge_share");
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
          "observed, predicted and rate_hz must be positive");
   Demand(members >= 1 && members <= kMostMembers && structure.controls >= 0 &&
              structure.controls <= kMostParticles,
          "members must be 1 to 100, and controls not negative");
+  Demand(trained.jitter >= 0.0, "jitter must not be negative");
   Demand(trained.ridge_share >= 0.0 && trained.ridge_share <= 1.0,
          "ridge_share must lie between 0 and 1");
   const int size = settings.layout.num_coordinates();
@@ -153,6 +156,9 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedParticles& trained,
                                                const GeneratorChanges& changes) {
   ParticleGeneratorOptions options;
   options.project_bones = changes.project_bones;
+  options.jitter = trained.jitter;
+  options.noise_memory = changes.noise_memory;
+  options.noise_scale = changes.noise_scale;
   options.ridge_share =
       trained.ridge_share > 0.0 ? changes.ridge_share.value_or(trained.ridge_share) : 0.0;
   return std::make_unique<ParticleGenerator>(trained.settings.layout, trained.members,

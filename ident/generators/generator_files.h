@@ -35,6 +35,7 @@ struct TrainedParticles {
   std::vector<ParticleNetwork> members;  // of one structure
   RidgeForecast ridge;                   // empty where ridge_share is 0
   double ridge_share = 0.0;
+  double jitter = 0.0;  // of the pose in training, and in sampled futures
 };
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedParticles& trained);
@@ -48,6 +49,8 @@ struct LoadedGenerator {
 struct GeneratorChanges {
   std::optional<double> ridge_share;
   bool project_bones = ParticleGeneratorOptions{}.project_bones;
+  double noise_memory = ParticleGeneratorOptions{}.noise_memory;
+  double noise_scale = ParticleGeneratorOptions{}.noise_scale;
 };
 
 // Errors: no such folder, settings or tensors that are missing or do not fit.

@@ -97,6 +97,7 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
   }
   TrainedGenerator trained;
   trained.particles.settings = samples.settings;
+  trained.particles.jitter = options.particles.jitter;
   for (int index = 0; index < options.seeds; ++index) {
     Result<ParticleNetwork> network = TrainSeed(samples, options, index, progress, &trained);
     if (!network.ok()) return network.error();

@@ -1,6 +1,7 @@
 // models: particles averaged and blended.
 #include "models/generators/particle_generator.h"
 
+#include <cmath>
 #include <utility>
 
 namespace pushid {
@@ -10,6 +11,34 @@ std::vector<Trajectories> Empty(const std::vector<ObservedMotion>& people, int c
   return std::vector<Trajectories>(people.size() * static_cast<size_t>(count),
                                    Trajectories::Zero(people.front().frames.rows(), frames));
 }
+
+// Noise with a memory; what it adds to the likelihood that white noise of these values would have.
+class ColouredNoise {
+ public:
+  ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
+      : memory_(static_cast<float>(options.noise_memory)),
+        scale_(static_cast<float>(options.noise_scale)),
+        noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
+
+  const Eigen::MatrixXf& Next(const NormalSource& normal) {
+    Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
+    for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
+    const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
+    noise_ = memory_ * noise_ + scale_ * share * fresh;
+    is_first_ = false;
+    const float constant = static_cast<float>(noise_.rows()) * std::log(scale_ * share);
+    change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
+    change_.array() -= constant;
+    return noise_;
+  }
+  const Eigen::VectorXf& log_likelihood_change() const { return change_; }
+
+ private:
+  float memory_, scale_;
+  bool is_first_ = true;
+  Eigen::MatrixXf noise_;
+  Eigen::VectorXf change_;
+};
 
 }  // namespace
 
@@ -73,15 +102,15 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
   for (int m = 0; m < members; ++m) {
     const int share = count / members + (m < count % members ? 1 : 0);
     if (share == 0) continue;
-    ParticleRollout rollout(members_[m], people);
-    rollout.Repeat(share);
     std::vector<Trajectories> motions = Empty(people, share, frames);
+    Eigen::MatrixXf jitter(layout_.num_coordinates(), static_cast<Eigen::Index>(motions.size()));
+    for (float& value : jitter.reshaped()) value = static_cast<float>(options_.jitter * normal());
+    ParticleRollout rollout(members_[m], people, share, &jitter);
     Eigen::VectorXf log_likelihood = Eigen::VectorXf::Zero(static_cast<int>(motions.size()));
-    Eigen::MatrixXf noise(layout_.num_coordinates(), log_likelihood.size());
+    ColouredNoise noise(layout_.num_coordinates(), log_likelihood.size(), options_);
     for (int t = 0; t < frames; ++t) {
-      for (float& value : noise.reshaped()) value = static_cast<float>(normal());
-      const Eigen::MatrixXf& poses = rollout.Step(&noise);
-      log_likelihood += rollout.log_likelihood();
+      const Eigen::MatrixXf& poses = rollout.Step(&noise.Next(normal));
+      log_likelihood += rollout.log_likelihood() + noise.log_likelihood_change();
       for (size_t i = 0; i < motions.size(); ++i) {
         motions[i].col(t) = poses.col(static_cast<Eigen::Index>(i));
       }

@@ -17,28 +17,20 @@ Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
 }  // namespace
 
 ParticleRollout::ParticleRollout(const ParticleNetwork& network,
-                                 const std::vector<ObservedMotion>& people)
-    : network_(network), people_(people) {
-  const Eigen::Index count = static_cast<Eigen::Index>(people.size());
+                                 const std::vector<ObservedMotion>& people, int copies,
+                                 const Eigen::MatrixXf* jitter)
+    : network_(network), people_(people), copies_(copies), jitter_(jitter) {
+  const Eigen::Index count = static_cast<Eigen::Index>(people.size()) * copies;
   const int size = network.num_coordinates();
   hidden_ = memory_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
   history_ = Eigen::MatrixXf::Zero(kSkipSteps * size, count);
   log_likelihood_ = Eigen::VectorXf::Zero(count);
   for (Eigen::Index t = 0; t < people.front().frames.cols(); ++t) {
     Eigen::MatrixXf pose(size, count);
-    for (Eigen::Index n = 0; n < count; ++n) pose.col(n) = people[n].frames.col(t);
+    for (Eigen::Index n = 0; n < count; ++n) pose.col(n) = people[n / copies].frames.col(t);
     if (t == 0) pose_ = pose;
     Observe(pose);
   }
-}
-
-void ParticleRollout::Repeat(int count) {
-  for (Eigen::MatrixXf* state : {&pose_, &hidden_, &memory_, &history_}) {
-    Eigen::MatrixXf repeated(state->rows(), state->cols() * count);
-    for (Eigen::Index i = 0; i < repeated.cols(); ++i) repeated.col(i) = state->col(i / count);
-    *state = std::move(repeated);
-  }
-  copies_ *= count;
 }
 
 void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
@@ -54,8 +46,9 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
   pose_ = pose;
   Eigen::MatrixXf inputs(structure.NumInputs(size), count);
   if (structure.particles) inputs.topRows(size) = step;
-  inputs.middleRows(structure.particles ? size : 0, size) =
-      (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
+  auto seen = inputs.middleRows(structure.particles ? size : 0, size);
+  seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
+  if (jitter_ != nullptr) seen += *jitter_;
   for (Eigen::Index n = 0; structure.controls > 0 && n < count; ++n) {
     const Eigen::MatrixXf& controls = people_[n / copies_].controls;
     inputs.col(n).tail(structure.controls).setZero();

@@ -59,11 +59,10 @@ struct ParticleNetwork {
 // Where many people, or many futures of one, stand after the same number of frames.
 class ParticleRollout {
  public:
-  // All people must have the same number of frames.
-  ParticleRollout(const ParticleNetwork& network, const std::vector<ObservedMotion>& people);
-
-  // Every person `count` times from now on, side by side.
-  void Repeat(int count);
+  // All people must have the same number of frames. Each stands `copies` times side by side.
+  // jitter: what is added to the scaled pose that goes in, a column for every copy of every person.
+  ParticleRollout(const ParticleNetwork& network, const std::vector<ObservedMotion>& people,
+                  int copies = 1, const Eigen::MatrixXf* jitter = nullptr);
 
   // The next frame: a column per person. With `noise` (coordinates x people, standard normal) a
   // sampled one.
@@ -77,8 +76,9 @@ class ParticleRollout {
 
   const ParticleNetwork& network_;
   const std::vector<ObservedMotion>& people_;
-  int frame_ = 0;   // the next to be observed
-  int copies_ = 1;  // of every person
+  int copies_;
+  const Eigen::MatrixXf* jitter_;
+  int frame_ = 0;  // the next to be observed
   Eigen::MatrixXf pose_, hidden_, memory_, history_;
   Eigen::VectorXf log_likelihood_;
 };

@@ -112,12 +112,14 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train("g", {"--kind=waves"}), {"--kind is 'waves'"}));
   EXPECT_TRUE(
       Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate takes folds of pushes"}));
+  EXPECT_TRUE(Refused(Train("g", {"--observed=1"}), {"--observed goes with --dataset=pushes"}));
   EXPECT_TRUE(Refused(Train("g", {"--jitter=-1"}), {"--jitter is -1"}));
   WriteText("clips/train/sway/sway_2.txt", "1,2\n");
   EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
   EXPECT_TRUE(Refused(Generate({"--target_window=3"}), {"give --samples"}));
+  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
   EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
 }
 

@@ -21,6 +21,7 @@ class GeneratorFilesTest : public TempDirTest {
     fit.Add(SwayingMotion(100, 0.0f), 12, 6);
     trained_.ridge = fit.Solve(1e-3);
     trained_.ridge_share = 0.3;
+    trained_.jitter = 0.7;
   }
   std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
     const auto loaded = LoadGenerator(folder, changes);

@@ -69,8 +69,7 @@ TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
     const ParticleNetwork network = RandomParticles(2, structure);
     const std::vector<ObservedMotion> people = {
         {SwayingMotion(12, 0.0f), Eigen::MatrixXf::Random(1, 20)}, {SwayingMotion(12, 1.0f)}};
-    ParticleRollout together(network, people);
-    together.Repeat(2);
+    ParticleRollout together(network, people, 2);
     for (int t = 0; t < 5; ++t) together.Step();
     for (int n = 0; n < 4; ++n) {
       const Eigen::VectorXf alone = Moved(network, people[n / 2], 5).col(4);
@@ -103,7 +102,7 @@ class ParticleGeneratorTest : public ::testing::Test {
     return {FourParticles(),
             {RandomParticles(1), RandomParticles(2)},
             ridge_,
-            {ridge_share, project_bones}};
+            {ridge_share, project_bones, 0.0}};
   }
   RidgeForecast ridge_;
   std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
@@ -150,11 +149,66 @@ TEST_F(ParticleGeneratorTest, SamplesSpreadAroundTheForecastAndRepeatThemselves)
   EXPECT_NE(futures[0].log_likelihood, futures[1].log_likelihood);
 }
 
+// Jitter alone spreads the futures too, and the forecast knows nothing of it.
+TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
+  const auto ends = [&](double jitter) {
+    const ParticleGenerator generator(FourParticles(), {RandomParticles(1)}, ridge_,
+                                      {0.0, false, jitter});
+    Random random(1);
+    const auto futures = generator.Sample(people_, 6, 2, [&] { return random.Normal(); });
+    const Trajectories forecast = generator.Forecast(people_, 6)[0];
+    return std::make_pair(forecast, Trajectories(futures[0][0].motion - forecast));
+  };
+  EXPECT_EQ(ends(0.0).first, ends(0.7).first);
+  EXPECT_NE(ends(0.0).second, ends(0.7).second);
+  const Eigen::MatrixXf jitter = Eigen::MatrixXf::Constant(12, 1, 0.5f);
+  const ParticleNetwork network = RandomParticles(1);
+  ParticleRollout moved(network, people_, 1, &jitter);
+  Trajectories shifted = people_[0].frames;
+  shifted.array() += 0.5f * 0.1f;  // half a spread
+  const std::vector<ObservedMotion> other = {{shifted}};
+  ParticleRollout as_if(network, other);
+  const Eigen::VectorXf a = moved.Step() - people_[0].frames.col(11);
+  const Eigen::VectorXf b = as_if.Step() - shifted.col(11);
+  EXPECT_LT((a - b).norm(), 1e-5f);
+}
+
 // Noise of nothing: a future is its member's forecast, moved as the blend is.
 TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
   const auto futures = Generator(0.0, false).Sample(people_, 6, 2, [] { return 0.0; })[0];
   EXPECT_LT((futures[0].motion - Moved(RandomParticles(1), people_[0], 6)).norm(), 1e-5f);
   EXPECT_LT((futures[1].motion - Moved(RandomParticles(2), people_[0], 6)).norm(), 1e-5f);
+}
+
+// Noise that remembers: after two frames, of steps g e_1 and g e_2 with a correlation of 0.5, the
+// spread is sqrt(3) g scale, against sqrt(2) g of white noise; the likelihood is that of the fresh
+// draws.
+TEST_F(ParticleGeneratorTest, NoiseMayLast) {
+  ParticleNetwork network = RandomParticles(1);
+  for (DenseLayer* layer : {&network.input, &network.recurrent, &network.drift, &network.noise}) {
+    layer->weights.setZero(), layer->bias.setZero();
+  }
+  network.skip.setZero();
+  const auto spread = [&](double memory, double scale) {
+    const ParticleGenerator generator(FourParticles(), {network}, ridge_,
+                                      {0.0, false, 0.0, memory, scale});
+    Random random(1);
+    const auto futures = generator.Sample(people_, 2, 2000, [&] { return random.Normal(); });
+    double square = 0.0;
+    for (const SampledFuture& future : futures[0]) {
+      square += (future.motion.col(1) - people_[0].frames.col(11)).squaredNorm() / (12 * 2000);
+    }
+    return std::sqrt(square) / 0.01;
+  };
+  EXPECT_NEAR(spread(0.0, 1.0), std::sqrt(2.0), 0.03);
+  EXPECT_NEAR(spread(0.5, 1.0), std::sqrt(3.0), 0.04);
+  EXPECT_NEAR(spread(0.5, 2.0), 2.0 * std::sqrt(3.0), 0.08);
+  const ParticleGenerator generator(FourParticles(), {network}, ridge_,
+                                    {0.0, false, 0.0, 0.5, 2.0});
+  const auto still = generator.Sample(people_, 2, 1, [] { return 1.0; });
+  // g is 1: -log(share scale) - 1/2 - log(2 pi) / 2 for each coordinate and frame.
+  const double constant = -0.5 - 0.5 * std::log(2.0 * M_PI) - std::log(2.0);
+  EXPECT_NEAR(still[0][0].log_likelihood, 12 * (2 * constant - 0.5 * std::log(0.75)), 1e-3);
 }
 
 TEST_F(ParticleGeneratorTest, NobodyHasNoFuture) {
