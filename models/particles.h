@@ -18,7 +18,7 @@ inline constexpr int kFixedPoint = -1, kNoBone = -2;  // a hip in the world has 
 struct ParticleLayout {
   std::vector<std::string> names;
   std::vector<int> mirrored;   // the particle on the other side of the body
-  int up_axis = 2;                // 0 x, 1 y, 2 z
+  int up_axis = 2;             // 0 x, 1 y, 2 z
   int mirrored_axis = 0;       // whose sign a mirror changes: 0 x, 1 y, 2 z
   std::vector<int> parents;    // the other end of its bone, before it; or one of those below
   Eigen::Matrix3Xf fixed;      // the other end where it is kFixedPoint; m
