@@ -7,6 +7,7 @@
 #include "apps/flags/crossvalidate_flags.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/futures_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
@@ -55,11 +56,19 @@ Result<Candidates> NoisyModels(const CrossvalidateFlags& flags, const FitOptions
   return noisy;
 }
 
-void AddBaselines(Predictors* predictors) {
-  predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
-  predictors->push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline));
+// Where first frames are seen, the model started anew takes the place of ridge regression, which
+// could not use them.
+void AddBaselines(const FitOptions& options, Predictors* predictors) {
+  const int observed = ObservedFrames();
+  if (observed > 0) {
+    predictors->push_back(std::make_unique<ModelPredictor>("re-anchored", options, observed,
+                                                           FirstFrames::kReanchored));
+  } else {
+    predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
+  }
+  predictors->push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline, observed));
   predictors->push_back(
-      std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline));
+      std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline, observed));
 }
 
 // Two of one name could not be told apart in the tables.
@@ -77,12 +86,18 @@ MaybeError CheckNames(const Predictors& predictors) {
 Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOptions& options,
                                   const std::vector<PendulumRecording>* recordings) {
   Predictors predictors;
+  const int observed = ObservedFrames();
   const Result<Candidates> candidates = ModelCandidates(flags, options, recordings);
   if (!candidates.ok()) return candidates.error();
   for (const auto& [name, candidate] : candidates.value()) {
-    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate));
+    if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
+      return Error{"--observed: '" + name +
+                   "' has no push tail, by which first frames are read; give it "
+                   "--push_tail=exponential (the presets tail and group have it)"};
+    }
+    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed));
   }
-  if (flags.baselines) AddBaselines(&predictors);
+  if (flags.baselines) AddBaselines(options, &predictors);
   // What the preset auto is called is known with the recordings.
   if (recordings == nullptr) return predictors;
   if (MaybeError error = CheckNames(predictors)) return *error;
@@ -95,6 +110,7 @@ MaybeError CheckFlags(const CrossvalidateFlags& flags) {
   if (!options.ok()) return options.error();
   const Result<Predictors> predictors = MakePredictors(flags, options.value(), nullptr);
   if (!predictors.ok()) return predictors.error();
+  if (MaybeError error = CheckObservedFlag()) return error;
   for (const std::string& file : {flags.json_out, flags.frontier_out}) {
     if (file.empty()) continue;
     if (MaybeError error = CheckWritable(file)) return error;
@@ -125,6 +141,7 @@ int Run() {
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), FitOptionsFromFlags().value().mapping);
+  if (MaybeError error = CheckObservedFlag(pendulums)) return Fail(*error);
   const Result<FitOptions> options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);

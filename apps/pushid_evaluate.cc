@@ -6,6 +6,7 @@
 #include "apps/flags/evaluate_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
@@ -32,7 +33,8 @@ Result<std::optional<BodyEvaluation>> Bodies(const EvaluateFlags& flags,
   if (!bodies.ok()) return bodies.error();
   BodyScores scores;
   for (const BodyRecording& body : bodies.value()) {
-    ScoreRestoration(model, *restoration.value(), flags.restoration.postprocess, body, &scores);
+    ScoreRestoration(model, *restoration.value(), flags.restoration.postprocess, body, &scores,
+                     ObservedFrames());
   }
   if (!flags.peer.empty()) {
     const Result<SimlpeWeights> simlpe = LoadSimlpe(flags.peer);
@@ -48,18 +50,20 @@ int Run() {
   const EvaluateFlags& flags = read.value();
   const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
   if (!drawn.ok()) return Fail(drawn.error());
+  if (MaybeError error = CheckObservedFlag()) return Fail(*error);
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({}, flags.restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());
+  const std::vector<PendulumRecording> pendulums =
+      MakePendulumRecordings(recordings.value(), model.value().mapping);
+  if (MaybeError error = CheckObservedFlag(pendulums, model.value())) return Fail(*error);
   const Result<std::optional<BodyEvaluation>> bodies =
       Bodies(flags, model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
-  const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings.value(), model.value().mapping);
   for (const std::string& warning : ExtrapolationWarnings(model.value(), pendulums)) Warn(warning);
-  const Evaluation evaluation = Evaluate(model.value(), pendulums);
+  const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames());
   std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, flags.per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);

@@ -127,7 +127,8 @@ int Run() {
   const Result<std::string> design = FlaggedDesign(pendulums, result);
   if (!design.ok()) return Fail(design.error());
 
-  std::printf("%s%s", ReportText(model).c_str(), design.value().c_str());
+  std::printf("%s%s%s", ReportText(model).c_str(), FlaggedPopulation(result).c_str(),
+              design.value().c_str());
   if (!model_out.empty()) {
     if (MaybeError error = WriteModel(model_out, model, begin)) return Fail(*error);
     std::printf("model written to %s\n", model_out.c_str());

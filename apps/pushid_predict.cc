@@ -4,12 +4,15 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/predict_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/predict_bodies.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
+#include "ident/results/model_rollout.h"
 
 namespace {
 
@@ -23,8 +26,8 @@ int WritePendulums(const PredictFlags& flags, const PendulumRecording& recording
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
               prediction.path.num_frames(), flags.out.c_str());
   if (flags.whole_recording()) {
-    const RecordingScore score = ScoreHip(recording, prediction.hip);
-    std::printf("against the recording: %s\n", MetricsText(score, 3).c_str());
+    const RecordingScore score = ScoreHip(recording, prediction.hip, prediction.observed);
+    std::printf("against the recording: %s\n", MetricsText(score, 3, prediction.observed).c_str());
   }
   return kDone;
 }
@@ -46,20 +49,26 @@ int Run() {
   for (const std::string& warning : ExtrapolationWarnings(model.value(), {recording})) {
     Warn(warning);
   }
-  const Prediction prediction = Predict(model.value(), recording, flags.frames);
+  if (MaybeError error = CheckObservedFlag({recording}, model.value())) return Fail(*error);
+  if (!flags.whole_recording() && flags.frames <= ObservedFrames()) {
+    return Fail("--frames=" + std::to_string(flags.frames) + " leaves none to predict after " +
+                "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
+  }
+  const Result<Prediction> predicted =
+      PredictFrom(model.value(), recording, ObservedFrames(), flags.frames);
+  if (!predicted.ok()) return Fail(predicted.error());
+  const Prediction& prediction = predicted.value();
   if (!prediction.status.ok) {
-    std::fprintf(stderr,
-                 "pushid-predict: recording %s: %s of person %d leaves the model's domain at "
-                 "frame %d\n",
-                 recording.id.c_str(), std::string(prediction.status.quantity).c_str(),
-                 prediction.status.person, prediction.status.frame);
+    std::fprintf(stderr, "pushid-predict: recording %s: %s\n", recording.id.c_str(),
+                 OutsideText(prediction.status).c_str());
     return kFitFailed;
   }
   const int code = flags.restoration.given() ? WriteBodies(flags, recordings.value().front(),
                                                            model.value().mapping, prediction)
                                              : WritePendulums(flags, recording, prediction);
   if (code != kDone) return code;
-  std::printf("%s", PredictedStepsText(recording, prediction).c_str());
+  std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
+              EffectText(prediction).c_str());
   return PrintFutures(futures.value(), model.value(), recording, flags.frames);
 }
 

@@ -1,49 +1,22 @@
 // apps: pushid-train-restoration: networks that turn pendulums into bodies.
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
+#include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
+#include "ident/training/curve_json.h"
 #include "ident/training/curve_svg.h"
 #include "ident/training/restoration_training_run.h"
 
 namespace {
 
 using namespace pushid;
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-// "window, epoch 12: 43 %, 12 s left"; the time left from the share done so far.
-class TrainingLine {
- public:
-  void Show(const std::string& step, double done) {
-    const std::string name = step.substr(0, step.rfind(' '));
-    if (name != step_) step_ = name, start_ = Now(), done_at_start_ = done;
-    std::string text =
-        step + ": " + std::to_string(static_cast<int>(std::lround(100.0 * done))) + " %";
-    const double gained = done - done_at_start_;
-    if (gained > 0.0) {
-      const double left = (Now() - start_) / gained * (1.0 - done);
-      text += ", " + std::to_string(static_cast<int>(std::lround(left))) + " s left";
-    }
-    line_.Show(text);
-  }
-  void Finish() { line_.Finish(); }
-
- private:
-  ProgressLine line_;
-  std::string step_;
-  double start_ = 0.0, done_at_start_ = 0.0;
-};
 
 int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
                   const RestorationRunOptions& options) {
@@ -70,14 +43,7 @@ nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
     json["recordings"].push_back(
         {{"id", recording.pendulum.id}, {"content_hash", recording.pendulum.content_hash}});
   }
-  json["curve"] = nlohmann::ordered_json::array();
-  for (const TrainingPoint& p : trained.curve) {
-    nlohmann::ordered_json point = {{"epoch", p.epoch},
-                                    {"training_loss", p.training_loss},
-                                    {"held_out_loss", p.validation_loss}};
-    if (!p.stage.empty()) point["stage"] = p.stage;
-    json["curve"].push_back(point);
-  }
+  json["curve"] = CurveJson(trained.curve);
   return json;
 }
 
@@ -94,7 +60,6 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   std::vector<int> all(recordings.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   TrainingLine line;
-  const double before = Now();
   Result<TrainedRestoration> trained =
       TrainFromRecordings(recordings, all, options,
                           [&](const std::string& step, double done) { line.Show(step, done); });
@@ -113,7 +78,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   const TrainingPoint& last = trained.value().curve.back();
   std::printf("%s: %zu points of the curve, held-out loss %s at the end, %s s%s; %s\n",
               title.c_str(), trained.value().curve.size(), Rounded(last.validation_loss, 3).c_str(),
-              Rounded(Now() - before, 3).c_str(),
+              Rounded(line.Seconds(), 3).c_str(),
               trained.value().resumed ? " (resumed from a checkpoint)" : "",
               in_out("restoration.json").c_str());
   return kDone;

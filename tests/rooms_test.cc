@@ -31,8 +31,8 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"residuals", {"kernels", "", "sensitivities", "cost_functions", "adjoint"}},
     {"ident",
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
-      "prediction", "validation", "push", "bodies", "training", "formations", "report",
-      "report/page", ""}},
+      "prediction", "validation", "push", "bodies", "generators", "training", "formations",
+      "report", "report/page", ""}},
     {"apps", {"support", "flags", "batch", ""}},
 };
 

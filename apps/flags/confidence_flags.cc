@@ -15,6 +15,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
 #include "ident/report/design_text.h"
+#include "ident/report/population_text.h"
 #include "ident/report/studies_text.h"
 #include "ident/results/confidence.h"
 
@@ -32,6 +33,9 @@ DEFINE_string(design, "",
               "which further push would lower the standard error of this parameter most (all: of "
               "all together), and what a force sensor and more people would");
 
+DEFINE_bool(population, false,
+            "print how recordings differ from the mean one: the spread of a factor on tail_gain, "
+            "and the effect of each");
 DEFINE_bool(push_check, false,
             "fit again with pushes that might as well have been recorded: other windows and "
             "smoothing of inverse dynamics, sensor noise and a frame's shift of measured ones");
@@ -119,6 +123,11 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
         "--horizon_check compares rollouts of many lengths, single steps among them; leave "
         "--likelihood out"};
   }
+  if (FLAGS_population && options.model.push_tail == PushTail::kNone) {
+    return Error{
+        "--population: the model has no push tail, by whose factor recordings differ; give "
+        "it --push_tail=exponential (the presets tail and group have it)"};
+  }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";
   for (Parameter id : options.table.Free()) {
@@ -163,6 +172,11 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
     AddHorizonCheck(recordings, NumThreads(), Show(&line, "horizon"), model);
   }
   return std::nullopt;
+}
+
+std::string FlaggedPopulation(const FitResult& result) {
+  const bool asked = FLAGS_population && result.recording_effect;
+  return asked ? "\n" + PopulationText(*result.recording_effect) : "";
 }
 
 Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,

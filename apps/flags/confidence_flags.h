@@ -23,6 +23,9 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings);
 // Adds what the flags ask for.
 MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, FittedModel* model);
 
+// What --population prints, or nothing.
+std::string FlaggedPopulation(const FitResult& result);
+
 // The table of --design, or nothing.
 Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
                                   const FitResult& result);

@@ -30,7 +30,7 @@ install(FILES ${PROJECT_BINARY_DIR}/pushidConfig.cmake ${PROJECT_BINARY_DIR}/pus
 
 get_property(programs GLOBAL PROPERTY PUSHID_PROGRAMS)
 foreach(program ${programs})
-  if(program STREQUAL "pushid-train-restoration")
+  if(program MATCHES "^pushid-train-")
     install(TARGETS ${program} COMPONENT training)
   else()
     install(TARGETS ${program} COMPONENT programs)

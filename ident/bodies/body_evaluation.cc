@@ -3,17 +3,17 @@
 
 #include <algorithm>
 
-#include "ident/prediction/prediction.h"
+#include "ident/prediction/online_predictor.h"
+#include "ident/results/model_rollout.h"
 
 namespace pushid {
 namespace {
 
-BodyScore Failed(const BodyRecording& recording, const RolloutStatus& status) {
+BodyScore Failed(const BodyRecording& recording, const std::string& failure) {
   BodyScore score;
   score.id = recording.pendulum.id;
   score.frames = recording.num_frames();
-  score.failure = std::string(status.quantity) + " of person " + std::to_string(status.person) +
-                  " leaves the model's domain at frame " + std::to_string(status.frame);
+  score.failure = failure;
   return score;
 }
 
@@ -27,14 +27,19 @@ std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
   return motions;
 }
 
-std::vector<BodyMotion> StaticBodies(const BodyRecording& recording) {
+std::vector<BodyMotion> StaticBodies(const BodyRecording& recording, int observed) {
   std::vector<BodyMotion> motions;
-  for (const BodyMotion& body : recording.bodies) motions.emplace_back(body.size(), body.front());
+  for (const BodyMotion& body : recording.bodies) {
+    BodyMotion motion(body.begin(), body.begin() + std::max(1, observed));
+    motion.resize(body.size(), Pose(motion.back()));
+    motions.push_back(std::move(motion));
+  }
   return motions;
 }
 
-std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording) {
-  const int last = std::min(recording.pendulum.scene.LastPushEnd(), recording.num_frames() - 1);
+std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, int observed) {
+  const int known = observed > 0 ? observed - 1 : recording.pendulum.scene.LastPushEnd();
+  const int last = std::min(known, recording.num_frames() - 1);
   std::vector<BodyMotion> motions;
   for (const BodyMotion& body : recording.bodies) {
     BodyMotion motion(body.begin(), body.begin() + last + 1);
@@ -51,22 +56,25 @@ std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording) {
 
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
-                      BodyScores* scores) {
+                      BodyScores* scores, int observed) {
   const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies) {
     (*scores)[name].push_back(ScoreBodies(recording, bodies));
   };
-  const std::vector<RestorationInput> recorded = RecordedPeople(recording);
+  const std::vector<RestorationInput> recorded = RecordedPeople(recording, observed);
   add("true_pendulum", RestoreBodies(restoration, options, recorded));
-  add("static", StaticBodies(recording));
-  add("constant_velocity", ConstantVelocityBodies(recording));
+  add("static", StaticBodies(recording, observed));
+  add("constant_velocity", ConstantVelocityBodies(recording, observed));
   add("recorded", recording.bodies);
-  const Prediction prediction = Predict(model, recording.pendulum);
-  if (!prediction.status.ok) {
+  const Result<Prediction> predicted = PredictFrom(model, recording.pendulum, observed);
+  if (!predicted.ok() || !predicted.value().status.ok) {
+    const std::string failure =
+        predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;
     for (const char* name : {"restoration", "rigid"}) {
-      (*scores)[name].push_back(Failed(recording, prediction.status));
+      (*scores)[name].push_back(Failed(recording, failure));
     }
     return;
   }
+  const Prediction& prediction = predicted.value();
   const std::vector<RestorationInput> people = PredictedPeople(recording, prediction);
   add("restoration", RestoreBodies(restoration, options, people));
   add("rigid", RigidRestoration().Restore(people));

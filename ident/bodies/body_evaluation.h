@@ -7,6 +7,9 @@
 //   constant_velocity  the recording until the last push ends, then the pose carried on with the
 //                      hip's last velocity
 //   recorded           the recording against itself: its own FSE
+//
+// observed: frames that were seen first (prediction/online_predictor.h), 0 where nobody asked; the
+// baselines then go on from the last of them, and restorations begin with them.
 #pragma once
 
 #include <map>
@@ -26,14 +29,14 @@ std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
                                       const PostprocessOptions& options,
                                       const std::vector<RestorationInput>& people);
 
-std::vector<BodyMotion> StaticBodies(const BodyRecording& recording);
-std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording);
+std::vector<BodyMotion> StaticBodies(const BodyRecording& recording, int observed = 0);
+std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, int observed = 0);
 
 // By the names above; the scores in the order of the calls.
 using BodyScores = std::map<std::string, std::vector<BodyScore>>;
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
-                      BodyScores* scores);
+                      BodyScores* scores, int observed = 0);
 
 using BodyEvaluation = std::map<std::string, BodySummary>;
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores);

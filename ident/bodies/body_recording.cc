@@ -37,6 +37,15 @@ std::vector<RestorationInput> People(const BodyRecording& recording) {
   return people;
 }
 
+// One pose is the first one, which everybody has.
+void AddSeen(const BodyRecording& recording, int observed, std::vector<RestorationInput>* people) {
+  if (observed < 2) return;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const BodyMotion& body = recording.bodies[n];
+    (*people)[n].seen.assign(body.begin(), body.begin() + std::min<size_t>(observed, body.size()));
+  }
+}
+
 }  // namespace
 
 Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping) {
@@ -86,11 +95,13 @@ std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
   for (int n = 0; n < recording.num_people(); ++n) {
     people[n].stands = StandingFrames(prediction, n);
   }
+  AddSeen(recording, prediction.observed, &people);
   return people;
 }
 
-std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording) {
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, int observed) {
   std::vector<RestorationInput> people = People(recording);
+  AddSeen(recording, observed, &people);
   for (int n = 0; n < recording.num_people(); ++n) {
     for (const auto& state : recording.pendulum.states[n]) people[n].q.push_back(state.q);
   }

@@ -28,12 +28,12 @@ Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recordin
                                                       SkeletonMapping mapping);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
-// People with predicted pendulums (and whether their feet stand, where a prediction says so), or
-// with those seen in the recording.
+// People with predicted pendulums (and whether their feet stand, where a prediction says so, and
+// the first poses that it has seen), or with those seen in the recording, after `observed` poses.
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction);
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const RolloutPath<double>& path);
-std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording);
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, int observed = 0);
 
 }  // namespace pushid

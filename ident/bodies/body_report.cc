@@ -102,7 +102,7 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
 void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
   static const std::set<std::string> kAtTop = {"true_pendulum", "recorded"};
   for (const auto& [name, summary] : evaluation) {
-    if (name == "restoration") {
+    if (name == "restoration" || name == "generator") {
       Merge(ToJson(summary, true), json);
     } else if (kAtTop.count(name) == 1) {
       Merge(ToJson(summary, false), &(*json)[name]);

@@ -9,8 +9,9 @@
 namespace pushid {
 
 // Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (result_json.h): to the
-// means, groups and recordings at the top, to baselines.static and baselines.constant_velocity, and
-// as new entries baselines.rigid (and siMLPe's), true_pendulum and recorded.
+// means, groups and recordings at the top (of the restoration, or of the generator), to
+// baselines.static and baselines.constant_velocity, and as new entries baselines.rigid (and
+// siMLPe's), true_pendulum and recorded.
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);

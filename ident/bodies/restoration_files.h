@@ -1,11 +1,6 @@
 // ident: a restoration in a folder: restoration.json (what it is, how it was trained) and
 // weights.npy (its numbers, float32). Both load without the training code and without LibTorch.
-//
-//   {"format": 1, "kind": "window", "weights": "weights.npy", "weights_hash": "...",
-//    "tensors": [{"name": "network.0.weights", "rows": 256, "columns": 107}, ...],
-//    "training": {...}}
-//
-// The tensors stand in weights.npy one after the other, each column by column.
+// tensor_folder.h has the layout.
 #pragma once
 
 #include <memory>

@@ -25,7 +25,7 @@ MeanScore Mean(const std::vector<const RecordingScore*>& scores, bool by_frames)
   const ScoreClusters clusters = ClustersOf(pushed);
   mean.clustered_by = clusters.by;
   mean.clusters = clusters.count;
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : AllHipMetrics()) {
     const auto value = metric.value;
     for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
     mean.*value /= total;
@@ -40,52 +40,46 @@ MeanScore Mean(const std::vector<const RecordingScore*>& scores, bool by_frames)
 
 }  // namespace
 
-std::string MetricsText(const HipMetrics& metrics, int digits) {
+std::string MetricsText(const HipMetrics& metrics, int digits, int observed) {
   std::string text;
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : MetricsOf(observed, false)) {
     text += (text.empty() ? "" : ", ") + metric.Text(metrics.*metric.value, digits);
   }
   return text;
 }
 
-RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted) {
+std::vector<HipMetric> MetricsOf(int observed, bool bands) {
+  std::vector<HipMetric> metrics(std::begin(kHipMetrics), std::end(kHipMetrics));
+  if (observed > 0) metrics.push_back(kAfterMetric);
+  if (bands) metrics.insert(metrics.end(), std::begin(kBandMetrics), std::end(kBandMetrics));
+  return metrics;
+}
+
+RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
+                        int observed) {
   RecordingScore score;
   score.id = recording.id;
   score.frames = recording.num_frames();
   const int people = recording.num_people();
   for (int n = 0; n < people; ++n) {
     double sum = 0.0, total = 0.0, final = 0.0;  // frames that were not seen do not count
+    double after = 0.0, total_after = 0.0;
     for (int t = 1; t < score.frames; ++t) {
       const double weight = recording.Weight(n, t);
       const double error = (predicted[n][t] - recording.hip[n][t]).norm();
       sum += weight * error;
       total += weight;
       if (weight > 0.0) final = error;
+      if (t < observed) continue;
+      after += weight * error;
+      total_after += weight;
     }
     score.hip_ade += total > 0.0 ? sum / total / people : 0.0;
     score.hip_fde += final / people;
+    score.after_hip_ade += total_after > 0.0 ? after / total_after / people : 0.0;
   }
   score.propagation = ScorePropagation(recording, predicted);
   return score;
-}
-
-HipPaths StaticBaseline(const PendulumRecording& recording) {
-  HipPaths paths;
-  for (const auto& hip : recording.hip) paths.emplace_back(hip.size(), hip[0]);
-  return paths;
-}
-
-HipPaths ConstantVelocityBaseline(const PendulumRecording& recording) {
-  HipPaths paths;
-  const int last = std::min(recording.scene.LastPushEnd(), recording.num_frames() - 1);
-  for (const auto& hip : recording.hip) {
-    std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
-    const Vector3<double> step =
-        last > 0 ? Vector3<double>(hip[last] - hip[last - 1]) : Vector3<double>::Zero();
-    while (path.size() < hip.size()) path.push_back(path.back() + step);
-    paths.push_back(std::move(path));
-  }
-  return paths;
 }
 
 namespace {
@@ -128,24 +122,82 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
   return steps;
 }
 
-RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording) {
-  const Prediction prediction = Predict(model, recording);
-  if (!prediction.status.ok) {
-    RecordingScore score;
-    score.id = recording.id;
-    score.frames = recording.num_frames();
-    score.fell = true;
-    score.failure = std::string(prediction.status.quantity) + " of person " +
-                    std::to_string(prediction.status.person) +
-                    " leaves the model's domain at frame " +
-                    std::to_string(prediction.status.frame);
-    return score;
+MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int observed) {
+  if (observed < 1) {
+    return Error{"--observed is " + std::to_string(observed) +
+                 "; it must be at least 1: frame 0 is always seen"};
   }
-  RecordingScore score = ScoreHip(recording, prediction.hip);
+  for (const PendulumRecording& recording : recordings) {
+    if (observed < recording.num_frames()) continue;
+    return Error{"recording " + recording.id + " has " + std::to_string(recording.num_frames()) +
+                 " frames: --observed=" + std::to_string(observed) +
+                 " leaves none to predict; it must be at most " +
+                 std::to_string(recording.num_frames() - 1) +
+                 ", or leave the recording out (--leave_out)"};
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+RecordingScore FailedScore(const PendulumRecording& recording, const std::string& failure) {
+  RecordingScore score;
+  score.id = recording.id;
+  score.frames = recording.num_frames();
+  score.fell = true;
+  score.failure = failure;
+  return score;
+}
+
+RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& recording,
+                       const Prediction& prediction, int observed) {
+  if (!prediction.status.ok) return FailedScore(recording, OutsideText(prediction.status));
+  RecordingScore score = ScoreHip(recording, prediction.hip, observed);
   AddContactFigures(model, recording, prediction, &score.propagation);
   score.fell = AnybodyFalls(prediction);
   score.steps = StepPredictions(recording, prediction);
   return score;
+}
+
+// Of frames that were seen by us but not by the predictor.
+void AddInside(const PendulumRecording& recording, const HipDistribution& hips, int observed,
+               RecordingScore* score) {
+  const int person = recording.pushed_person;
+  double inside[2] = {0.0, 0.0}, frames = 0.0;
+  for (int t = observed; t < recording.num_frames(); ++t) {
+    if (recording.Weight(person, t) == 0.0) continue;
+    frames += 1.0;
+    for (int axis : {0, 1}) {
+      const double below = hips.Cdf(person, t - observed, axis, recording.hip[person][t][axis]);
+      inside[axis] += 0.05 <= below && below <= 0.95 ? 1.0 : 0.0;
+    }
+  }
+  if (frames == 0.0) return;
+  score->inside90_x = inside[0] / frames;
+  score->inside90_y = inside[1] / frames;
+}
+
+}  // namespace
+
+RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
+                          int observed) {
+  if (observed == 0) return ScoreOf(model, recording, Predict(model, recording), 0);
+  Result<OnlinePredictor> made = OnlinePredictor::Make(model, recording, recording.num_frames());
+  if (!made.ok()) return FailedScore(recording, made.error().message);
+  OnlinePredictor& predictor = made.value();
+  for (int t = 1; t < observed; ++t) predictor.Observe(FrameAt(recording, t));
+  const Prediction prediction = predictor.Predict();
+  RecordingScore score = ScoreOf(model, recording, prediction, observed);
+  if (!score.failure.empty()) return score;
+  score.effect = prediction.effect;
+  AddInside(recording, predictor.Distribution(prediction), observed, &score);
+  return score;
+}
+
+RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                               int observed) {
+  const Prediction prediction = PredictReanchored(model, recording, observed);
+  return ScoreOf(model, recording, prediction, observed);
 }
 
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording) {
@@ -156,8 +208,10 @@ bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording
 }
 
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
-                       std::vector<RecordingScore> scores) {
+                       std::vector<RecordingScore> scores, int observed, bool bands) {
   ScoreSummary summary;
+  summary.observed = observed;
+  summary.bands = bands;
   summary.recordings = std::move(scores);
   using Group = std::vector<const RecordingScore*>;
   Group all;
@@ -195,16 +249,21 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
   return summary;
 }
 
-Evaluation Evaluate(const IdentifiedModel& model,
-                    const std::vector<PendulumRecording>& recordings) {
-  std::vector<RecordingScore> of_model, of_static, of_velocity;
+Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
+                    int observed) {
+  std::vector<RecordingScore> of_model, of_static, of_velocity, reanchored;
   for (const PendulumRecording& recording : recordings) {
-    of_model.push_back(ScoreModel(model, recording));
-    of_static.push_back(ScoreHip(recording, StaticBaseline(recording)));
-    of_velocity.push_back(ScoreHip(recording, ConstantVelocityBaseline(recording)));
+    of_model.push_back(ScoreModel(model, recording, observed));
+    of_static.push_back(ScoreHip(recording, StaticBaseline(recording, observed), observed));
+    of_velocity.push_back(
+        ScoreHip(recording, ConstantVelocityBaseline(recording, observed), observed));
+    if (observed > 0) reanchored.push_back(ScoreReanchored(model, recording, observed));
   }
-  return {Summarize(recordings, std::move(of_model)), Summarize(recordings, std::move(of_static)),
-          Summarize(recordings, std::move(of_velocity))};
+  Evaluation evaluation{Summarize(recordings, std::move(of_model), observed, observed > 0),
+                        Summarize(recordings, std::move(of_static), observed),
+                        Summarize(recordings, std::move(of_velocity), observed)};
+  if (observed > 0) evaluation.reanchored = Summarize(recordings, std::move(reanchored), observed);
+  return evaluation;
 }
 
 }  // namespace pushid

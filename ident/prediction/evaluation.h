@@ -4,13 +4,20 @@
 // the last frame. Means over recordings and, beside them, weighted by frames. Baselines: static
 // (no person moves) and constant velocity (the recording until the last push ends, then on with the
 // last hip velocity).
+//
+// Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
+// prediction as they were. after_hipADE is the mean over the frames behind them; inside90_x and
+// inside90_y are the share of these in which the pushed person's hip lies in the 90 % band. The
+// baselines then go on from frame k - 1, and there is a third one: the model, started there anew.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/figures/metric.h"
+#include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
 #include "ident/prediction/score_clusters.h"
@@ -22,6 +29,8 @@ namespace pushid {
 // tables, cross-validation and batches take it from there.
 struct HipMetrics {
   double hip_ade = 0.0, hip_fde = 0.0;
+  // Where first frames were seen.
+  double after_hip_ade = 0.0, inside90_x = 0.0, inside90_y = 0.0;
 };
 
 struct HipMetric : Metric {
@@ -34,8 +43,20 @@ inline constexpr HipMetric kHipMetrics[] = {
     {{"hipFDE", "m"}, &HipMetrics::hip_fde},
 };
 
+// Those of predictions that have seen first frames, and of their bands.
+inline constexpr HipMetric kAfterMetric = {{"after_hipADE", "m"}, &HipMetrics::after_hip_ade};
+inline constexpr HipMetric kBandMetrics[] = {
+    {{"inside90_x", "share"}, &HipMetrics::inside90_x},
+    {{"inside90_y", "share"}, &HipMetrics::inside90_y},
+};
+
+// What there is to show: observed: frames that were seen, 0 where nobody asked; bands: of models,
+// not of baselines.
+std::vector<HipMetric> MetricsOf(int observed, bool bands);
+inline std::vector<HipMetric> AllHipMetrics() { return MetricsOf(1, true); }
+
 // "hipADE 0.1 m, hipFDE 0.2 m"
-std::string MetricsText(const HipMetrics& metrics, int digits);
+std::string MetricsText(const HipMetrics& metrics, int digits, int observed = 0);
 
 struct RecordingScore : HipMetrics {
   std::string id;
@@ -47,6 +68,7 @@ struct RecordingScore : HipMetrics {
   std::string pushed = {};            // who was (PersonKey); Summarize fills it in
   // One per person; empty where the model says nothing of steps, and after a failure.
   std::vector<StepPrediction> steps = {};
+  EffectEstimate effect = {};  // of the recording, where first frames were seen
 };
 
 struct MeanScore : HipMetrics {
@@ -62,33 +84,48 @@ struct ScoreSummary {
   std::map<std::string, MeanScore> by_magnitude, by_subject, by_setting;
   PropagationSummary propagation;  // over recordings of more than one person
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
-  StepScore steps;  // unknown where the model says nothing of them
+  StepScore steps;     // unknown where the model says nothing of them
+  int observed = 0;    // frames that were seen, where it was asked for
+  bool bands = false;  // whether they were scored
 };
 
-// Hip positions over time: [person][frame].
-using HipPaths = std::vector<std::vector<Vector3<double>>>;
-RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted);
+RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
+                        int observed = 0);
 
-HipPaths StaticBaseline(const PendulumRecording& recording);
-HipPaths ConstantVelocityBaseline(const PendulumRecording& recording);
+// observed: frames seen first; 0: until the last push ends for constant velocity, frame 0 for the
+// static one.
+HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
+// The model on from the state of the last frame seen.
+Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                             int observed);
+
+// Errors: --observed below 1, or no frame left to predict in a recording, which is named.
+MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int observed);
 
 // Who was predicted to step, and who did; empty where either is not known.
 std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
                                             const Prediction& prediction);
 
 // Scores in the order of recordings; a failed rollout is a named failure.
-RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording);
+// observed: frames seen first, 0 where nobody asked; the model must say how recordings differ.
+RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
+                          int observed = 0);
+RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                               int observed);
 
 // Whether anybody falls with every push times 1.4, until 40 frames past the recording's end.
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
 
 // `by subject` uses the pushed person.
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
-                       std::vector<RecordingScore> scores);
+                       std::vector<RecordingScore> scores, int observed = 0, bool bands = false);
 
 struct Evaluation {
   ScoreSummary model, static_baseline, constant_velocity;
+  std::optional<ScoreSummary> reanchored = {};  // where first frames were seen
 };
-Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings);
+Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
+                    int observed = 0);
 
 }  // namespace pushid

@@ -10,6 +10,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
+#include "ident/results/model_rollout.h"
 #include "ident/uncertainty/clusters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 

@@ -1,25 +1,15 @@
 // ident: rollouts of an identified model.
 #include "ident/prediction/prediction.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "datasets/files/atomic_file.h"
 #include "ident/prediction/median_prediction.h"
+#include "ident/results/model_rollout.h"
 #include "models/self_network.h"
-#include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
-
-std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
-                                                    const PendulumRecording& recording) {
-  std::vector<ParameterSet<double>> sets;
-  for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
-    sets.push_back(model.For(unit));
-  }
-  return sets;
-}
-
-namespace {
 
 Prediction PredictOne(const ModelOptions& options,
                       const std::vector<ParameterSet<double>>& parameters,
@@ -58,18 +48,20 @@ void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
 
 }  // namespace
 
-Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
-                   int num_frames) {
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
+                   double effect) {
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
   std::vector<Prediction> stayed, left;  // in the model's domain, or not
   const auto add = [&](Prediction prediction) {
     (prediction.status.ok ? stayed : left).push_back(std::move(prediction));
   };
-  add(PredictOne(model.options, PeoplesParameters(model, recording), recording, frames));
+  add(PredictOne(model.options, PeoplesParameters(model, recording, effect), recording, frames));
   for (const EnsembleMember& member : model.others) {
     ModelOptions options = model.options;
     options.self_network = member.network;
-    add(PredictOne(options, {member.parameters}, recording, frames));
+    ParameterSet<double> parameters = member.parameters;
+    parameters[kTailGain] *= std::exp(effect);
+    add(PredictOne(options, {parameters}, recording, frames));
   }
   if (left.size() >= stayed.size()) return left.front();
   Prediction prediction = stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
@@ -90,6 +82,11 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
   if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
   if (prediction.feet_step) text += ",step_state";
   if (!prediction.steps.empty()) text += ",step_probability";
+  if (!prediction.bands.empty()) {
+    for (const char* axis : {"x", "y", "z"}) {
+      text += std::string(",hip_") + axis + "_lower90_m,hip_" + axis + "_upper90_m";
+    }
+  }
   text += "\n";
   char number[32];
   auto add = [&text, &number](double value) {
@@ -106,7 +103,8 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       for (int i = 0; i < 4; ++i) add(state.q[i]);
       for (int i = 0; i < 4; ++i) add(state.qd[i]);
       const Body body = prediction.BodyAt(recording.scene, t, n);
-      const Vector3<double> hip = HipPosition(body, state.q);
+      const Vector3<double> hip =
+          prediction.observed > 0 ? prediction.hip[n][t] : HipPosition(body, state.q);
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double>& force = prediction.forces.At(t, n);
       for (ForcePart part : prediction.parts) {
@@ -115,6 +113,13 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
       if (prediction.feet_step) add(state.step);
       if (!prediction.steps.empty()) add(prediction.steps[n].probability);
+      for (int i = 0; i < 3 && !prediction.bands.empty(); ++i) {
+        // A frame that was seen is known.
+        const HipBand& band = prediction.bands[n];
+        const int ahead = t - prediction.observed;
+        add(ahead < 0 ? hip[i] : band.lower90[ahead][i]);
+        add(ahead < 0 ? hip[i] : band.upper90[ahead][i]);
+      }
       text += "\n";
     }
   }

@@ -7,6 +7,7 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/results/fit_result.h"
 #include "ident/results/identified_model.h"
+#include "ident/results/recording_effect.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -15,6 +16,11 @@ namespace pushid {
 struct PredictedStep {
   double margin = 0.0;  // m
   double probability = 0.0, error = 0.0;
+};
+
+// Of one person's hip, from the first unseen frame on, m.
+struct HipBand {
+  std::vector<Vector3<double>> lower90, upper90;
 };
 
 struct Prediction {
@@ -28,6 +34,11 @@ struct Prediction {
   bool feet_step = false;        // the path has step states
   // One per person; empty after a failure and where the model says nothing of steps.
   std::vector<PredictedStep> steps;
+  // Where first frames were seen (online_predictor.h): how many, with frame 0, what they say of the
+  // recording, and a band for each person. 0 and none otherwise.
+  int observed = 0;
+  EffectEstimate effect;
+  std::vector<HipBand> bands;
 
   double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
   // A person with the rod and the cart's height of one frame.
@@ -37,13 +48,10 @@ struct Prediction {
   }
 };
 
-// Of each person in a recording, by their units.
-std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
-                                                    const PendulumRecording& recording);
-
-// From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
+// From frame 0 and the push alone. num_frames: 0 means as many as the recording has. effect: the
+// recording's own (results/recording_effect.h).
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
-                   int num_frames = 0);
+                   int num_frames = 0, double effect = 0.0);
 
 // Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV, and the
 // rod's length and the cart's height where the model has a law for them;

@@ -13,16 +13,6 @@ namespace {
 
 constexpr double kShares[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 
-// Velocity that the recorded push gives the pushed person, m/s.
-double PushSpeed(const PendulumRecording& recording) {
-  double impulse = 0.0;
-  for (const ScenePush& push : recording.scene.pushes) {
-    impulse += push.mean.head<2>().norm() * static_cast<double>(push.force.size()) *
-               recording.scene.dt / recording.scene.people[push.person].body.mass;
-  }
-  return impulse;
-}
-
 std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
                                                  const BandOptions& options) {
   const std::vector<Parameter> free = result.options.table.Free();

@@ -16,16 +16,6 @@ using Vector2d = Eigen::Vector2d;
 constexpr int kMinMovers = 3;     // for a speed
 constexpr int kHalfVelocity = 3;  // frames on either side of a velocity: 2 mm of noise are 0.03 m/s
 
-// Horizontal direction of what the pushes on the pushed person add up to; +x where they cancel.
-Vector2d PushDirection(const PendulumRecording& recording) {
-  Vector2d sum = Vector2d::Zero();
-  for (const ScenePush& push : recording.scene.pushes) {
-    if (push.person != recording.pushed_person) continue;
-    sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
-  }
-  return sum.norm() > 0.0 ? Vector2d(sum.normalized()) : Vector2d(1.0, 0.0);
-}
-
 // People without onsets and momenta: rank and distance.
 std::vector<PersonPropagation> RankedPeople(const PendulumRecording& recording) {
   const int people = recording.num_people();

@@ -282,6 +282,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
     result.step_probability = steps;
   }
+  result.recording_effect = FitRecordingEffect(ModelOf(result), recordings, options.num_threads);
   result.diagnostics = Diagnose(problem, best, result.uncertainty);
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);

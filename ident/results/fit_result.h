@@ -12,6 +12,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/results/ensemble.h"
 #include "ident/results/push_range.h"
+#include "ident/results/recording_effect.h"
 #include "ident/results/step_probability.h"
 #include "ident/solver/likelihood_score.h"
 #include "ident/solver/solution.h"
@@ -50,6 +51,8 @@ struct FitResult {
   // None where nobody stepped or everybody did, and in older files.
   std::optional<StepProbability> step_probability;
   std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
+  // None without a push tail, and in older files.
+  std::optional<RecordingEffect> recording_effect;
   Uncertainty uncertainty;
   Diagnostics diagnostics;
   Behaviour behaviour;

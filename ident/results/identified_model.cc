@@ -13,6 +13,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.pool_by = result.options.pool_by;
   model.push_range = result.push_range;
   model.step_probability = result.step_probability;
+  model.recording_effect = result.recording_effect;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
     ParameterSet<double>& own = model.by_unit[unit] = result.parameters;

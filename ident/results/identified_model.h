@@ -21,6 +21,7 @@ struct IdentifiedModel {
   std::map<std::string, ParameterSet<double>> by_unit;  // options' pool_by; only where pooled
   std::optional<PushRange> push_range;                  // that it was fitted to
   std::optional<StepProbability> step_probability;      // of the people it was fitted to
+  std::optional<RecordingEffect> recording_effect;      // for what first frames tell
 
   // A unit the model does not know gets the shared values.
   const ParameterSet<double>& For(const std::string& unit) const {

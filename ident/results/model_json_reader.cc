@@ -7,6 +7,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/recording_effect_json.h"
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 #include "ident/results/step_probability_json.h"
@@ -185,6 +186,7 @@ class ModelReader {
     ReadPooled();
     ReadStepProbability();
     ReadLikelihood();
+    ReadRecordingEffect();
     ReadPushRange();
     ReadValues();
     ReadJudgement();
@@ -274,6 +276,11 @@ class ModelReader {
     result_.likelihood =
         LikelihoodScore{NumberFrom(json.at("deviance")), json.at("measured").get<int>(),
                         json.at("parameters").get<int>()};
+  }
+
+  void ReadRecordingEffect() {
+    if (!json_.contains("recording_effect")) return;
+    result_.recording_effect = RecordingEffectFromJson(At("recording_effect"));
   }
 
   void ReadPushRange() {

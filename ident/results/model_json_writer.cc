@@ -5,6 +5,7 @@
 #include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
+#include "ident/results/recording_effect_json.h"
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 #include "ident/results/step_probability_json.h"
@@ -260,6 +261,7 @@ nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
                           {"aic", NumberJson(score.Aic())},
                           {"bic", NumberJson(score.Bic())}};
   }
+  if (result.recording_effect) json["recording_effect"] = ToJson(*result.recording_effect);
   AddLearned(result, &json);
   if (!model.profiles.empty()) json["profiles"] = ToJson(model.profiles);
   if (model.bootstrap) json["bootstrap"] = ToJson(*model.bootstrap);

@@ -5,6 +5,7 @@
 // compares among pushes of one kind only: the rows of a net push cover its beginning.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <limits>
 #include <string>
@@ -50,6 +51,11 @@ inline constexpr PushRangeRow kPushRangeRows[] = {
     {"net_duration_s", &PushRange::net_s},
     {"impulse_per_mass_m_s", &PushRange::impulse_per_mass},
 };
+
+// What the recorded rows alone give people, m/s; tails not counted.
+double PushSpeed(const PendulumRecording& recording);
+// Horizontal direction of what the pushes on the pushed person add up to; +x where they cancel.
+Eigen::Vector2d PushDirection(const PendulumRecording& recording);
 
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings);

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "ident/results/identified_model.h"
+#include "ident/results/model_rollout.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/stance.h"
-#include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -74,10 +73,7 @@ double StepMargin(const ModelOptions& options, const ParameterSet<double>& param
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
                                       const PendulumRecording& recording) {
   if (!recording.StepsKnown()) return {};
-  std::vector<ParameterSet<double>> parameters;
-  for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
-    parameters.push_back(model.For(unit));
-  }
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   RolloutPath<double> path;
   const RolloutStatus status =
       Rollout(recording.scene, model.options, parameters, InitialVelocities(recording.scene),

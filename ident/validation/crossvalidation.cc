@@ -74,7 +74,7 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
     }
     ++scored;
     ++sums->counts[fold.held_out[k]];
-    for (const HipMetric& metric : kHipMetrics) {
+    for (const HipMetric& metric : AllHipMetrics()) {
       sum.*metric.value += score.*metric.value;
       result.*metric.value += score.*metric.value;
     }
@@ -82,7 +82,7 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
     AddMargins(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
   }
-  for (const HipMetric& metric : kHipMetrics) result.*metric.value /= std::max(1, scored);
+  for (const HipMetric& metric : AllHipMetrics()) result.*metric.value /= std::max(1, scored);
   result.propagation = SummarizePropagation(propagation);
   return result;
 }
@@ -103,14 +103,15 @@ void AddFold(const FoldScore& fold, CrossValidation* result) {
 }
 
 // Of the recordings that were held out, each averaged over its folds.
-ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, Sums sums) {
+ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
+                       Sums sums) {
   std::vector<PendulumRecording> held;
   std::vector<RecordingScore> means;
   for (size_t i = 0; i < recordings.size(); ++i) {
     RecordingScore& mean = sums.scores[i];
     if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
     if (sums.counts[i] > 0) {
-      for (const HipMetric& metric : kHipMetrics) mean.*metric.value /= sums.counts[i];
+      for (const HipMetric& metric : AllHipMetrics()) mean.*metric.value /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
       for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }
@@ -118,7 +119,7 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, Sums su
     means.push_back(mean);
   }
   PredictStepsWithoutThePerson(&means);
-  return Summarize(held, means);
+  return Summarize(held, means, predictor.observed, predictor.bands);
 }
 
 }  // namespace
@@ -141,12 +142,13 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
   for (size_t f = 0; f < folds.size(); ++f) {
     AddFold(ScoreOf(folds[f], predictions[f], &sums), &result);
   }
-  result.summary = SummaryOf(recordings, std::move(sums));
+  result.summary = SummaryOf(recordings, predictor, std::move(sums));
   return result;
 }
 
 PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   PairedDifference difference;
+  difference.observed = std::min(a.summary.observed, b.summary.observed);
   difference.a = a.predictor;
   difference.b = b.predictor;
   std::map<std::string, const RecordingScore*> of_a;
@@ -157,7 +159,7 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
     const auto found = of_a.find(score.id);
     if (found == of_a.end() || !score.failure.empty() || !found->second->failure.empty()) continue;
     HipMetrics pair;
-    for (const HipMetric& metric : kHipMetrics) {
+    for (const HipMetric& metric : AllHipMetrics()) {
       pair.*metric.value = score.*metric.value - found->second->*metric.value;
     }
     pairs.push_back(pair);
@@ -168,7 +170,7 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   difference.clusters = clusters.count;
   difference.recordings = static_cast<int>(pairs.size());
   const double n = static_cast<double>(pairs.size());
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : AllHipMetrics()) {
     double mean = 0.0;
     for (const HipMetrics& pair : pairs) mean += pair.*metric.value / n;
     std::vector<double> deviations;

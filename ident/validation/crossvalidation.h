@@ -31,6 +31,8 @@ class Predictor {
                                      const std::vector<int>& train,
                                      const std::vector<int>& test) const = 0;
   std::string name;
+  int observed = 0;    // frames that predictions see first; 0: nobody asked
+  bool bands = false;  // whether they come with bands
 };
 
 struct FoldScore : HipMetrics {  // means over the fold's recordings
@@ -62,7 +64,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
 // b minus a, recording by recording, with the standard error of its mean.
 struct PairedDifference : HipMetrics {
   std::string a, b;
-  int recordings = 0;
+  int recordings = 0, observed = 0;
   HipMetrics error;  // clustered as those of means
   ClusterBy clustered_by = ClusterBy::kRecording;
   int clusters = 0;

@@ -9,9 +9,11 @@
 
 namespace pushid {
 
-ModelPredictor::ModelPredictor(std::string label, FitOptions options)
-    : options_(std::move(options)) {
+ModelPredictor::ModelPredictor(std::string label, FitOptions options, int seen, FirstFrames use)
+    : options_(std::move(options)), use_(use) {
   name = std::move(label);
+  observed = seen;
+  bands = seen > 0 && use == FirstFrames::kForecast;
   options_.num_threads = 1;  // the folds run in parallel
 }
 
@@ -20,7 +22,12 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
                                            const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
-  const Result<SolvedModel> solved = SolveModel(training, options_);
+  Result<SolvedModel> solved = SolveModel(training, options_);
+  if (solved.ok() && bands) {
+    IdentifiedModel& model = solved.value().model;
+    model.recording_effect = FitRecordingEffect(model, training);
+    if (!model.recording_effect) solved = Error{"no recording stays in the model's domain"};
+  }
   FoldPrediction prediction;
   if (solved.ok()) prediction.behaviour = solved.value().behaviour;
   for (int i : test) {
@@ -33,21 +40,28 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
       continue;
     }
     const IdentifiedModel& model = solved.value().model;
-    prediction.scores.push_back(ScoreModel(model, recordings[i]));
+    prediction.scores.push_back(use_ == FirstFrames::kReanchored
+                                    ? ScoreReanchored(model, recordings[i], observed)
+                                    : ScoreModel(model, recordings[i], observed));
     prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
   }
   return prediction;
 }
 
-BaselinePredictor::BaselinePredictor(std::string label, Baseline baseline) : baseline_(baseline) {
+BaselinePredictor::BaselinePredictor(std::string label, Baseline baseline, int seen)
+    : baseline_(baseline) {
   name = std::move(label);
+  observed = seen;
 }
 
 FoldPrediction BaselinePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
                                               const std::vector<int>&,
                                               const std::vector<int>& test) const {
   FoldPrediction prediction;
-  for (int i : test) prediction.scores.push_back(ScoreHip(recordings[i], baseline_(recordings[i])));
+  for (int i : test) {
+    prediction.scores.push_back(
+        ScoreHip(recordings[i], baseline_(recordings[i], observed), observed));
+  }
   return prediction;
 }
 

@@ -6,23 +6,29 @@
 
 namespace pushid {
 
-// Fits the pendulum model to the training recordings.
+// How first frames are used.
+enum class FirstFrames { kForecast, kReanchored };
+
+// Fits the pendulum model to the training recordings, and to them what first frames tell. observed:
+// as in ScoreModel.
 class ModelPredictor : public Predictor {
  public:
-  ModelPredictor(std::string label, FitOptions options);
+  ModelPredictor(std::string label, FitOptions options, int observed = 0,
+                 FirstFrames use = FirstFrames::kForecast);
   FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& train,
                              const std::vector<int>& test) const override;
 
  private:
   FitOptions options_;
+  FirstFrames use_;
 };
 
 // StaticBaseline or ConstantVelocityBaseline; nothing is fitted.
 class BaselinePredictor : public Predictor {
  public:
-  using Baseline = HipPaths (*)(const PendulumRecording&);
-  BaselinePredictor(std::string label, Baseline baseline);
+  using Baseline = HipPaths (*)(const PendulumRecording&, int observed);
+  BaselinePredictor(std::string label, Baseline baseline, int observed = 0);
   FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& train,
                              const std::vector<int>& test) const override;

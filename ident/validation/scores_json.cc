@@ -10,23 +10,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void AddMetrics(const HipMetrics& metrics, Json* json) {
-  for (const HipMetric& metric : kHipMetrics) (*json)[metric.Key()] = metrics.*metric.value;
+using Shown = std::vector<HipMetric>;
+
+void AddMetrics(const HipMetrics& metrics, const Shown& shown, Json* json) {
+  for (const HipMetric& metric : shown) (*json)[metric.Key()] = metrics.*metric.value;
 }
 
-Json MeanJson(const MeanScore& mean) {
+Json MeanJson(const MeanScore& mean, const Shown& shown) {
   Json json;
-  AddMetrics(mean, &json);
-  for (const HipMetric& metric : kHipMetrics) json[metric.ErrorKey()] = mean.error.*metric.value;
+  AddMetrics(mean, shown, &json);
+  for (const HipMetric& metric : shown) json[metric.ErrorKey()] = mean.error.*metric.value;
   json["recordings"] = mean.recordings;
   json["clustered_by"] = NameOf(mean.clustered_by);
   json["clusters"] = mean.clusters;
   return json;
 }
 
-Json GroupsJson(const std::map<std::string, MeanScore>& groups) {
+Json GroupsJson(const std::map<std::string, MeanScore>& groups, const Shown& shown) {
   Json json = Json::object();
-  for (const auto& [name, mean] : groups) json[name] = MeanJson(mean);
+  for (const auto& [name, mean] : groups) json[name] = MeanJson(mean, shown);
   return json;
 }
 
@@ -54,12 +56,18 @@ Json StepsJson(const std::vector<StepPrediction>& steps) {
 
 Json ToJson(const ScoreSummary& summary, bool with_recordings) {
   Json json;
+  const Shown shown = MetricsOf(summary.observed, summary.bands);
+  if (summary.observed > 0) json["observed"] = summary.observed;
   if (with_recordings) {
     json["recordings"] = Json::array();
     for (const RecordingScore& r : summary.recordings) {
       Json row = {{"id", r.id}, {"frames", r.frames}};
       if (r.failure.empty()) {
-        AddMetrics(r, &row);
+        AddMetrics(r, shown, &row);
+        if (summary.bands) {
+          row["effect"] = r.effect.mean;
+          row["effect_error"] = r.effect.error;
+        }
       } else {
         row["failure"] = r.failure;
       }
@@ -69,11 +77,11 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
       json["recordings"].push_back(row);
     }
   }
-  json["mean"] = MeanJson(summary.mean);
-  json["frame_weighted"] = MeanJson(summary.frame_weighted);
-  json["by_magnitude"] = GroupsJson(summary.by_magnitude);
-  json["by_subject"] = GroupsJson(summary.by_subject);
-  json["by_setting"] = GroupsJson(summary.by_setting);
+  json["mean"] = MeanJson(summary.mean, shown);
+  json["frame_weighted"] = MeanJson(summary.frame_weighted, shown);
+  json["by_magnitude"] = GroupsJson(summary.by_magnitude, shown);
+  json["by_subject"] = GroupsJson(summary.by_subject, shown);
+  json["by_setting"] = GroupsJson(summary.by_setting, shown);
   if (summary.propagation.recordings > 0) {
     json["propagation"] = ToJson(summary.propagation);
     for (const auto& [name, setting] : summary.propagation_by_setting) {
@@ -88,6 +96,9 @@ Json ToJson(const Evaluation& evaluation) {
   Json json = ToJson(evaluation.model, true);
   json["baselines"] = {{"static", ToJson(evaluation.static_baseline, false)},
                        {"constant_velocity", ToJson(evaluation.constant_velocity, false)}};
+  if (evaluation.reanchored) {
+    json["baselines"]["reanchored"] = ToJson(*evaluation.reanchored, false);
+  }
   return json;
 }
 
@@ -106,7 +117,7 @@ Json ToJson(const CrossValidation& validation) {
   json["folds"] = Json::array();
   for (const FoldScore& fold : validation.folds) {
     Json row = {{"name", fold.name}, {"held_out", fold.held_out}};
-    AddMetrics(fold, &row);
+    AddMetrics(fold, MetricsOf(validation.summary.observed, validation.summary.bands), &row);
     row["failures"] = fold.failures;
     row["falls"] = fold.falls;
     if (fold.behaviour) row["behaviour"] = ToJson(*fold.behaviour);
@@ -118,7 +129,7 @@ Json ToJson(const CrossValidation& validation) {
 
 Json ToJson(const PairedDifference& difference) {
   Json json = {{"from", difference.a}, {"to", difference.b}, {"recordings", difference.recordings}};
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : MetricsOf(difference.observed, false)) {
     json[metric.Key()] = difference.*metric.value;
     json[metric.ErrorKey()] = difference.error.*metric.value;
   }

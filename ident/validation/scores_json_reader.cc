@@ -11,6 +11,9 @@ using Json = nlohmann::ordered_json;
 
 void ReadMetrics(const Json& json, HipMetrics* metrics) {
   for (const HipMetric& metric : kHipMetrics) metrics->*metric.value = json.at(metric.Key());
+  for (const HipMetric& metric : AllHipMetrics()) {
+    if (json.contains(metric.Key())) metrics->*metric.value = json.at(metric.Key());
+  }
 }
 
 MeanScore MeanFrom(const Json& json) {
@@ -18,6 +21,9 @@ MeanScore MeanFrom(const Json& json) {
   ReadMetrics(json, &mean);
   for (const HipMetric& metric : kHipMetrics) {
     mean.error.*metric.value = json.at(metric.ErrorKey());
+  }
+  for (const HipMetric& metric : AllHipMetrics()) {
+    if (json.contains(metric.Key())) mean.error.*metric.value = json.at(metric.ErrorKey());
   }
   mean.recordings = json.at("recordings");
   mean.clusters = mean.recordings;
@@ -42,6 +48,7 @@ RecordingScore RecordingFrom(const Json& json) {
     score.failure = json.at("failure");
   } else {
     ReadMetrics(json, &score);
+    score.effect = {json.value("effect", 0.0), json.value("effect_error", 0.0)};
   }
   score.fell = json.at("fell");
   return score;
@@ -67,6 +74,8 @@ PropagationSummary PropagationFrom(const Json& json) {
 Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
   try {
     ScoreSummary summary;
+    summary.observed = json.value("observed", 0);
+    summary.bands = json.at("mean").contains(kBandMetrics[0].Key());
     for (const Json& row : json.at("recordings")) summary.recordings.push_back(RecordingFrom(row));
     summary.mean = MeanFrom(json.at("mean"));
     summary.frame_weighted = MeanFrom(json.at("frame_weighted"));

@@ -17,33 +17,36 @@ std::string WithError(double value, double error, const MeanScore& mean) {
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
+using Shown = std::vector<HipMetric>;
+
 // A cell for each metric.
-std::vector<std::string> MeanCells(const MeanScore& mean) {
+std::vector<std::string> MeanCells(const MeanScore& mean, const Shown& shown) {
   std::vector<std::string> cells;
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : shown) {
     cells.push_back(WithError(mean.*metric.value, mean.error.*metric.value, mean));
   }
   return cells;
 }
 
 // The same without errors; "-" where there is no score.
-std::vector<std::string> PlainCells(const HipMetrics& metrics, bool known = true) {
+std::vector<std::string> PlainCells(const HipMetrics& metrics, const Shown& shown,
+                                    bool known = true) {
   std::vector<std::string> cells;
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const HipMetric& metric : shown) {
     cells.push_back(known ? Rounded(metrics.*metric.value, 3) : "-");
   }
   return cells;
 }
 
-std::vector<std::string> Titles() {
+std::vector<std::string> Titles(const Shown& shown) {
   std::vector<std::string> titles;
-  for (const HipMetric& metric : kHipMetrics) titles.push_back(metric.Title());
+  for (const HipMetric& metric : shown) titles.push_back(metric.Title());
   return titles;
 }
 
-std::vector<std::string> Names() {
+std::vector<std::string> Names(const Shown& shown) {
   std::vector<std::string> names;
-  for (const HipMetric& metric : kHipMetrics) names.push_back(metric.name);
+  for (const HipMetric& metric : shown) names.push_back(metric.name);
   return names;
 }
 
@@ -54,7 +57,9 @@ std::string Together(const std::vector<std::string>& cells) {
   return text;
 }
 
-std::string MeanText(const MeanScore& mean) { return Together(MeanCells(mean)); }
+std::string MeanText(const MeanScore& mean, const Shown& shown) {
+  return Together(MeanCells(mean, shown));
+}
 
 void Append(const std::vector<std::string>& cells, std::vector<std::string>* row) {
   row->insert(row->end(), cells.begin(), cells.end());
@@ -77,22 +82,58 @@ TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
   return TextTable(header, left);
 }
 
+// "the first 12 frames were seen; 90 % bands hold 0.93 +- 0.03 (x) and 0.91 +- 0.05 (y) of ..."
+std::string ObservedText(const ScoreSummary& summary) {
+  if (summary.observed == 0) return "";
+  std::string text = "the first " + std::to_string(summary.observed) +
+                     (summary.observed == 1 ? " frame was" : " frames were") +
+                     " seen, in which nothing errs; after_hipADE: mean over the others";
+  if (!summary.bands) return text + "\n";
+  const char* const axes[] = {" (x)", " (y)"};
+  text += "\n90 % bands hold ";
+  for (int i : {0, 1}) {
+    const auto value = kBandMetrics[i].value;
+    text += (i > 0 ? " and " : "") +
+            WithError(summary.mean.*value, summary.mean.error.*value, summary.mean) + axes[i];
+  }
+  return text + " of these frames of the pushed person\n";
+}
+
+}  // namespace
+
+namespace {
+
+std::vector<const ScoreSummary*> Baselines(const Evaluation& evaluation) {
+  std::vector<const ScoreSummary*> baselines = {&evaluation.static_baseline,
+                                                &evaluation.constant_velocity};
+  if (evaluation.reanchored) baselines.push_back(&*evaluation.reanchored);
+  return baselines;
+}
+
+// None where a baseline failed in all of a group.
+MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name) {
+  const auto found = groups.find(name);
+  return found == groups.end() ? MeanScore() : found->second;
+}
+
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
+  const Shown shown = MetricsOf(evaluation.model.observed, false);
   if (per_recording) {
     std::vector<std::string> header = {"recording", "frames"};
-    Append(Titles(), &header);
-    Append({"static", "const velocity", ""}, &header);
+    Append(Titles(shown), &header);
+    Append({"static", "const velocity"}, &header);
+    if (evaluation.reanchored) header.push_back("re-anchored");
+    header.push_back("");
     TextTable table = TableOf(header, header.size() - 1);
     for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
       const RecordingScore& r = evaluation.model.recordings[i];
       std::vector<std::string> row = {r.id, std::to_string(r.frames)};
-      Append(PlainCells(r, r.failure.empty()), &row);
-      for (const ScoreSummary* baseline :
-           {&evaluation.static_baseline, &evaluation.constant_velocity}) {
-        row.push_back(PlainCells(baseline->recordings[i])[0]);
+      Append(PlainCells(r, shown, r.failure.empty()), &row);
+      for (const ScoreSummary* baseline : Baselines(evaluation)) {
+        row.push_back(PlainCells(baseline->recordings[i], shown)[0]);
       }
       row.push_back(r.failure);
       table.Add(row);
@@ -102,29 +143,36 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
       text += OnsetsText(evaluation.model.recordings) + "\n";
     }
   }
-  TextTable table({Together(Names()) + " in " + kHipMetrics[0].unit, "recordings", "model",
-                   "static", "constant velocity"},
-                  {true, false, true, true, true});
-  auto add = [&table](const std::string& name, const MeanScore& model, const MeanScore& still,
-                      const MeanScore& velocity) {
-    table.Add({name, std::to_string(model.recordings), MeanText(model), MeanText(still),
-               MeanText(velocity)});
+  std::vector<std::string> header = {Together(Names(shown)) + " in " + kHipMetrics[0].unit,
+                                     "recordings", "model", "static", "constant velocity"};
+  if (evaluation.reanchored) header.push_back("re-anchored");
+  std::vector<bool> left(header.size(), true);
+  left[1] = false;
+  TextTable table(header, left);
+  const ScoreSummary& m = evaluation.model;
+  const std::vector<const ScoreSummary*> baselines = Baselines(evaluation);
+  // pick: the mean of a summary.
+  const auto add = [&](const std::string& name, const auto& pick) {
+    std::vector<std::string> row = {name, std::to_string(pick(m).recordings),
+                                    MeanText(pick(m), shown)};
+    for (const ScoreSummary* baseline : baselines) row.push_back(MeanText(pick(*baseline), shown));
+    table.Add(row);
   };
-  // Not a structured binding: a lambda below uses them, which C++17 has no words for.
-  const ScoreSummary &m = evaluation.model, &s = evaluation.static_baseline,
-                     &v = evaluation.constant_velocity;
-  add("mean over recordings", m.mean, s.mean, v.mean);
-  add("frame-weighted", m.frame_weighted, s.frame_weighted, v.frame_weighted);
-  auto groups = [&](const char* what, const std::map<std::string, MeanScore> ScoreSummary::*by) {
-    for (const auto& [name, mean] : m.*by) {
-      add(what + name, mean, (s.*by).at(name), (v.*by).at(name));
+  add("mean over recordings", [](const ScoreSummary& of) -> const MeanScore& { return of.mean; });
+  add("frame-weighted",
+      [](const ScoreSummary& of) -> const MeanScore& { return of.frame_weighted; });
+  const auto groups = [&](const char* what,
+                          const std::map<std::string, MeanScore> ScoreSummary::*by) {
+    for (const auto& of_group : m.*by) {
+      const std::string& name = of_group.first;
+      add(what + name, [&](const ScoreSummary& of) { return MeanOfGroup(of.*by, name); });
     }
   };
   if (m.by_magnitude.size() > 1) groups("strength ", &ScoreSummary::by_magnitude);
   const char* subject = m.propagation.recordings > 0 ? "pushed person " : "subject ";
   if (m.by_subject.size() > 1) groups(subject, &ScoreSummary::by_subject);
   if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
-  text += table.ToString() + ErrorsText(m);
+  text += table.ToString() + ErrorsText(m) + ObservedText(m);
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
@@ -132,7 +180,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     for (const auto& [name, setting] : m.propagation_by_setting)
       columns.push_back({name, &setting});
   }
-  columns.push_back({"constant velocity", &v.propagation});
+  columns.push_back({"constant velocity", &evaluation.constant_velocity.propagation});
   return text + "\n" + PropagationText(columns);
 }
 
@@ -164,14 +212,15 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::string text;
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
+  const Shown shown = MetricsOf(candidates[0].summary.observed, false);
   std::vector<std::string> header = {"fold", "held out"};
-  Append(Titles(), &header);
+  Append(Titles(shown), &header);
   Append({"failed", "fell"}, &header);
   if (groups) Append({"onset error", "missed movers", "false movers"}, &header);
   TextTable folds = TableOf(header, header.size());
   for (const FoldScore& fold : candidates[0].folds) {
     std::vector<std::string> row = {fold.name, std::to_string(fold.held_out)};
-    Append(PlainCells(fold), &row);
+    Append(PlainCells(fold, shown), &row);
     Append({std::to_string(fold.failures), std::to_string(fold.falls)}, &row);
     if (groups) Append(FoldPropagationCells(fold.propagation), &row);
     folds.Add(row);
@@ -179,7 +228,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   text += folds.ToString() + "\n";
   const HipMetric& main = kHipMetrics[0];
   header = {"held out"};
-  Append(Titles(), &header);
+  Append(Titles(shown), &header);
   Append({"frame-weighted", std::string(main.name) + " - " + candidates[0].predictor}, &header);
   std::vector<bool> left(header.size(), true);
   Append({"failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""}, &header);
@@ -193,8 +242,8 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     const PairedDifference difference = Compare(candidates[0], candidate);
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
     std::vector<std::string> row = {candidate.predictor};
-    Append(MeanCells(candidate.summary.mean), &row);
-    Append({Together(PlainCells(candidate.summary.frame_weighted)),
+    Append(MeanCells(candidate.summary.mean, shown), &row);
+    Append({Together(PlainCells(candidate.summary.frame_weighted, shown)),
             compared ? Rounded(difference.*main.value, 2) + " +- " +
                            Rounded(difference.error.*main.value, 2)
                      : "",
@@ -206,6 +255,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     table.Add(row);
   }
   text += table.ToString() + ErrorsText(candidates[0].summary) +
+          ObservedText(candidates[0].summary) +
           "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
   for (size_t i = 1; i < candidates.size(); ++i) {
     text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";

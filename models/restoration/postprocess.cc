@@ -13,8 +13,15 @@ namespace {
 // Where one ankle is held, frame by frame.
 class FootLock {
  public:
-  FootLock(const Eigen::Vector3d& first, double dt, const PostprocessOptions& options)
-      : options_(options), floor_(first.z()), dt_(dt), place_(first), before_(first) {}
+  // floor: the ankle's own height at frame 0; place, before: where it is now, and was.
+  FootLock(double floor, const Eigen::Vector3d& place, const Eigen::Vector3d& before, double dt,
+           const PostprocessOptions& options)
+      : options_(options),
+        floor_(floor),
+        dt_(dt),
+        place_(place),
+        before_(place),
+        locked_(Rests(place, before, floor, dt, options)) {}
 
   // The horizontal correction of an ankle that the restoration puts at `ankle`.
   Eigen::Vector3d Correction(const Eigen::Vector3d& ankle) {
@@ -49,7 +56,7 @@ class FootLock {
   const double floor_, dt_;
   Eigen::Vector3d place_, before_;
   Eigen::Vector3d left_over_ = Eigen::Vector3d::Zero();
-  bool locked_ = true;  // people stand at frame 0
+  bool locked_;
   int fading_ = 0;
 };
 
@@ -61,24 +68,30 @@ bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double f
   return ankle.z() < floor + options.contact_height && speed < options.contact_speed;
 }
 
-void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion) {
-  if (motion->empty()) return;
-  const Pose residual = motion->front() - first_pose;
-  for (int t = 0; t < std::min<int>(frames, static_cast<int>(motion->size())); ++t) {
-    (*motion)[t] -= residual * (1.0 - static_cast<double>(t) / frames);
+void FadeResidual(const Pose& pose, int frames, BodyMotion* motion, int now) {
+  const int size = static_cast<int>(motion->size());
+  if (now >= size) return;
+  const Pose residual = (*motion)[now] - pose;
+  for (int t = now; t < std::min(now + frames, size); ++t) {
+    (*motion)[t] -= residual * (1.0 - static_cast<double>(t - now) / frames);
   }
 }
 
-void KeepBones(const Pose& first_pose, BodyMotion* motion) {
-  for (Pose& pose : *motion) pose = FitSkeleton(first_pose, pose).positions;
+void KeepBones(const Pose& first_pose, BodyMotion* motion, int now) {
+  for (size_t t = now; t < motion->size(); ++t) {
+    (*motion)[t] = FitSkeleton(first_pose, (*motion)[t]).positions;
+  }
 }
 
 void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,
-              BodyMotion* motion) {
+              BodyMotion* motion, int now) {
   for (const bool left : {false, true}) {
     const int ankle = left ? kLeftAnkle : kRightAnkle;
-    FootLock lock(first_pose.col(ankle), dt, options);
-    for (size_t t = 1; t < motion->size(); ++t) {
+    const Eigen::Vector3d first = first_pose.col(ankle);
+    const Eigen::Vector3d place = now > 0 ? Eigen::Vector3d((*motion)[now].col(ankle)) : first;
+    const Eigen::Vector3d before = now > 0 ? Eigen::Vector3d((*motion)[now - 1].col(ankle)) : first;
+    FootLock lock(first.z(), place, before, dt, options);
+    for (size_t t = now + 1; t < motion->size(); ++t) {
       Pose& pose = (*motion)[t];
       const Eigen::Vector3d at = pose.col(ankle);
       const Eigen::Vector3d correction = lock.Correction(at);
@@ -94,11 +107,15 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 }
 
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion) {
-  if (options.fade_residual) FadeResidual(person.first_pose, options.fade_frames, motion);
-  if (options.keep_bones) KeepBones(person.first_pose, motion);
+  if (motion->empty()) return;
+  const int now = std::min(person.Now(), static_cast<int>(motion->size()) - 1);
+  const Pose& pose = now > 0 ? person.seen[now] : person.first_pose;
+  if (options.fade_residual) FadeResidual(pose, options.fade_frames, motion, now);
+  if (options.keep_bones) KeepBones(person.first_pose, motion, now);
+  if (now > 0) std::copy(person.seen.begin(), person.seen.begin() + now + 1, motion->begin());
   if (!options.lock_feet) return;
-  if (person.stands.empty()) {
-    LockFeet(person.first_pose, person.dt, options, motion);
+  if (person.stands.empty() || now > 0) {
+    LockFeet(person.first_pose, person.dt, options, motion, now);
   } else {
     PlantFeet(person, options, motion);
   }

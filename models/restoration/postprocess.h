@@ -1,11 +1,13 @@
 // models: what makes a restored motion fit the person and the floor, for every kind of restoration.
 //
 //   1. The residual at frame 0 (restored pose - first pose) is taken off, fading over 8 frames: the
-//      motion begins where the person stands.
+//      motion begins where the person stands. Where more frames were seen, they are in the motion
+//      as they were, and all that follows begins with the last of them.
 //   2. The person's own skeleton carries it out (skeleton_fit.h): bones keep their length.
 //   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
 //      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model says
-//      when feet stand (RestorationInput::stands), they stand then (planted_feet.h).
+//      when feet stand (RestorationInput::stands), they stand then (planted_feet.h), unless more
+//      than one frame was seen: these know better.
 #pragma once
 
 #include "models/restoration/restoration.h"
@@ -28,10 +30,12 @@ struct PostprocessOptions {
 bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
            const PostprocessOptions& options);
 
-void FadeResidual(const Pose& first_pose, int frames, BodyMotion* motion);
-void KeepBones(const Pose& first_pose, BodyMotion* motion);
+// now: the frame from which on; `pose` is what was seen there. Feet that move or are off the ground
+// then are not locked; at frame 0 people stand.
+void FadeResidual(const Pose& pose, int frames, BodyMotion* motion, int now = 0);
+void KeepBones(const Pose& first_pose, BodyMotion* motion, int now = 0);
 void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& options,
-              BodyMotion* motion);
+              BodyMotion* motion, int now = 0);
 
 // All that the options ask for, in this order.
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);

@@ -22,6 +22,7 @@ Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle) {
 RestorationInput Mirrored(const RestorationInput& person) {
   RestorationInput mirrored = person;
   mirrored.first_pose = Mirrored(person.first_pose);
+  for (Pose& pose : mirrored.seen) pose = Mirrored(pose);
   for (Vector4<double>& q : mirrored.q) q[1] = -q[1], q[3] = -q[3];
   return mirrored;
 }

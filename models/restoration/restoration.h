@@ -25,6 +25,11 @@ struct RestorationInput {
   double push_start = 0.0;         // s, of the first push on anybody
   // Frame by frame, whether the feet stand; empty: the model says nothing of them.
   std::vector<bool> stands = {};
+  // Poses of the first frames, first_pose among them, where more than that was seen.
+  std::vector<Pose> seen = {};
+
+  // The last frame that was seen.
+  int Now() const { return seen.empty() ? 0 : static_cast<int>(seen.size()) - 1; }
 };
 
 class Restoration {

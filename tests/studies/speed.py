@@ -33,6 +33,8 @@ ROWS = [
      ["NetworkJacobian/mlp:4", "NetworkJacobian/gru:4"]),
     ("one second of a crowd of 1,000 / 10,000 people who touch",
      [f"CrowdSecond/people:{n}/threads:1/real_time" for n in (1000, 10000)]),
+    ("learning from first frames: one frame / a prediction after 30 / a whole recording",
+     ["OnlineObserve", "OnlinePredict", "OnlineRecording"]),
     ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
 ]
 

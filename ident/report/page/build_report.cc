@@ -47,15 +47,26 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
       model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);
-  report.sections = {SummarySection(model),      ParameterSection(model),
-                     UnitSection(model),         IdentifiabilitySection(model),
-                     ProfileSection(model),      BootstrapSection(model),
-                     PriorCheckSection(model),   PushCheckSection(model),
-                     HorizonCheckSection(model), BehaviourSection(model),
-                     StepSection(model, views),  FigureSection(views),
-                     MotionSection(views),       RecordingSection(model),
-                     LeverageSection(model),     ResidualSection(model),
-                     SolveSection(model),        DesignSection(DesignOf(result, views)),
+  report.sections = {SummarySection(model),
+                     ParameterSection(model),
+                     UnitSection(model),
+                     IdentifiabilitySection(model),
+                     ProfileSection(model),
+                     BootstrapSection(model),
+                     PriorCheckSection(model),
+                     PushCheckSection(model),
+                     HorizonCheckSection(model),
+                     BehaviourSection(model),
+                     PopulationSection(model),
+                     StepSection(model, views),
+                     FigureSection(views),
+                     MotionSection(views),
+                     VisualCheckSection(model, views),
+                     RecordingSection(model),
+                     LeverageSection(model),
+                     ResidualSection(model),
+                     SolveSection(model),
+                     DesignSection(DesignOf(result, views)),
                      ProvenanceSection(model)};
   return report;
 }

@@ -1,4 +1,4 @@
-// ident: recording by recording, what is left over, and how the solver got there.
+// ident: recording by recording, and what is left over.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,7 +9,6 @@
 #include "ident/figures/heat_map.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/sections.h"
-#include "ident/report/starts_text.h"
 
 namespace pushid {
 namespace {
@@ -218,58 +217,6 @@ ReportSection ResidualSection(const FittedModel& model) {
   section.tables.push_back({"", tests});
   section.figures.push_back({"residual_correlations", "Correlations of the residuals.",
                              DrawCharts(own, "residual correlations", 3, 320, 170), numbers});
-  return section;
-}
-
-ReportSection SolveSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"solve", "How the solver got there", {}, {}, {}, {}, {}, ""};
-  std::vector<const SolveStart*> ranked;
-  for (const SolveStart& start : result.starts) ranked.push_back(&start);
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
-    return std::make_tuple(!a->usable, a->failed.size(), a->cost) <
-           std::make_tuple(!b->usable, b->failed.size(), b->cost);
-  });
-  TextTable starts({"rank", "start", "cost", "iterations", "converged", "failed recordings", ""},
-                   {false, true, false, false, true, false, true});
-  for (size_t i = 0; i < ranked.size(); ++i) {
-    const SolveStart& s = *ranked[i];
-    starts.Add({std::to_string(i + 1), s.kind, s.usable ? Rounded(s.cost, 6) : "-",
-                std::to_string(s.iterations), s.converged ? "yes" : "no",
-                std::to_string(s.failed.size()), s.message});
-  }
-  section.tables.push_back({"starts, best first", starts});
-  const std::string across = AcrossStartsNote(result);
-  if (!across.empty()) section.paragraphs.push_back(across);
-  const TextTable spread = AcrossStartsTable(result);
-  if (spread.rows().size() > 1) section.tables.push_back({"where the best starts ended", spread});
-  const std::vector<TracePoint>& trace = result.diagnostics.trace;
-  if (trace.size() < 2) return section;
-  Chart cost, gradient;
-  cost.title = "cost";
-  gradient.title = "largest gradient component";
-  ChartLine c{{}, kPredictedLook, false}, g = c;
-  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"}, Words(5));
-  for (size_t i = 0; i < trace.size(); ++i) {
-    const double step = static_cast<double>(i);
-    c.points.emplace_back(step, std::log10(std::max(1e-300, trace[i].cost)));
-    if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
-    numbers.Add({std::to_string(i), std::to_string(trace[i].horizon),
-                 std::to_string(trace[i].iteration), DoubleText(trace[i].cost),
-                 DoubleText(trace[i].gradient)});
-  }
-  cost.lines = {c};
-  gradient.lines = {g};
-  for (Chart* chart : {&cost, &gradient}) {
-    chart->x_label = "iteration, over all horizons";
-    chart->logarithmic = true;
-    for (size_t i = 1; i < trace.size(); ++i) {
-      if (trace[i].horizon != trace[i - 1].horizon) chart->marks.push_back(static_cast<double>(i));
-    }
-  }
-  section.figures.push_back({"trace",
-                             "The best start. The cost jumps where the horizon grows (lines).",
-                             DrawCharts({cost, gradient}, "trace", 2, 450, 210), numbers});
   return section;
 }
 

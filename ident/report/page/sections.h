@@ -21,6 +21,8 @@ ReportSection PushCheckSection(const FittedModel& model);
 ReportSection HorizonCheckSection(const FittedModel& model);
 ReportSection PriorCheckSection(const FittedModel& model);
 ReportSection BehaviourSection(const FittedModel& model);
+ReportSection PopulationSection(const FittedModel& model);
+ReportSection VisualCheckSection(const FittedModel& model, const std::vector<RecordingView>& views);
 ReportSection RecordingSection(const FittedModel& model);
 ReportSection LeverageSection(const FittedModel& model);
 ReportSection ResidualSection(const FittedModel& model);

@@ -54,6 +54,61 @@ TEST(Evaluation, ConstantVelocityOfAPushBeyondTheEnd) {
   EXPECT_EQ(score.hip_ade, 0.0);
 }
 
+// Frames 0 to 2 are seen: 0, 0.01, 0.04 m, and the last step was 0.03 m.
+TEST(Evaluation, BaselinesAfterFirstFramesByHand) {
+  const PendulumRecording r = Parabola("a", 5);
+  const HipPaths still = StaticBaseline(r, 3), velocity = ConstantVelocityBaseline(r, 3);
+  const double stays[] = {0.0, 0.01, 0.04, 0.04, 0.04}, goes[] = {0.0, 0.01, 0.04, 0.07, 0.10};
+  for (int t = 0; t < 5; ++t) {
+    EXPECT_NEAR(still[0][t][0], stays[t], 1e-15) << t;
+    EXPECT_NEAR(velocity[0][t][0], goes[t], 1e-15) << t;
+  }
+  const RecordingScore score = ScoreHip(r, still, 3);
+  EXPECT_NEAR(score.hip_ade, (0.05 + 0.12) / 4.0, 1e-15);
+  EXPECT_NEAR(score.after_hip_ade, (0.05 + 0.12) / 2.0, 1e-15);
+  EXPECT_NEAR(score.hip_fde, 0.12, 1e-15);
+}
+
+// The model's own motion goes on from any of its frames as it did.
+TEST(Evaluation, ReanchoredMotionIsTheMotion) {
+  for (const Stance stance : {Stance::kSlide, Stance::kThreshold}) {
+    SyntheticOptions study = TinyStudy();
+    if (stance == Stance::kThreshold) study.parameters = PublishedStanceParameters();
+    study.model.stance = stance;
+    IdentifiedModel model;
+    model.options = study.model;
+    model.parameters = study.parameters;
+    for (PendulumRecording& recording : MakePendulums(study)) {
+      const Prediction whole = Predict(model, recording);
+      recording.hip = whole.hip;
+      for (int t = 0; t < recording.num_frames(); ++t) {
+        recording.states[0][t] = whole.path.At(t, 0);
+      }
+      EXPECT_EQ(PredictReanchored(model, recording, 1).hip, whole.hip);
+      const Prediction again = PredictReanchored(model, recording, 12);
+      ASSERT_TRUE(again.status.ok);
+      // How much standing feet have let go is not measured; Predict's own state is taken.
+      for (int t = 0; t < recording.num_frames(); ++t) {
+        EXPECT_LT((again.hip[0][t] - whole.hip[0][t]).norm(), 1e-12) << t;
+      }
+    }
+  }
+}
+
+TEST(Evaluation, TooManyFirstFramesAreRefusedByName) {
+  const std::vector<PendulumRecording> recordings = {Parabola("a", 30), Parabola("b", 11)};
+  EXPECT_FALSE(CheckObserved(recordings, 10));
+  const MaybeError error = CheckObserved(recordings, 11);
+  ASSERT_TRUE(error);
+  EXPECT_NE(error->message.find("recording b has 11 frames"), std::string::npos);
+  EXPECT_NE(error->message.find("at most 10"), std::string::npos);
+  for (int observed : {0, -3}) {
+    const MaybeError low = CheckObserved(recordings, observed);
+    ASSERT_TRUE(low);
+    EXPECT_NE(low->message.find("must be at least 1"), std::string::npos);
+  }
+}
+
 TEST(Evaluation, PeopleCountTheSame) {
   PendulumRecording r = Parabola("a", 4);
   r.hip.push_back(std::vector<Vector3<double>>(4, Vector3<double>(0.0, 1.0, 1.0)));

@@ -86,6 +86,30 @@ TEST(ScoresJsonTest, EveryMetricIsWritten) {
   EXPECT_EQ(MetricsText(SampleScores().recordings[0], 2), "hipADE 0.1 m, hipFDE 0.33 m");
 }
 
+// What first frames bring stands in files where they were asked for, and nowhere else.
+TEST(ScoresJsonTest, FirstFramesComeBack) {
+  EXPECT_FALSE(ToJson(SampleScores(), true)["mean"].contains("after_hipADE_m"));
+  ScoreSummary scores = SampleScores();
+  scores.observed = 12;
+  scores.bands = true;
+  scores.recordings[0].after_hip_ade = 0.12;
+  scores.recordings[0].effect = {0.3, 0.1};
+  scores.mean.after_hip_ade = 0.12;
+  scores.mean.error.inside90_x = 0.04;
+  const nlohmann::ordered_json json = ToJson(scores, true);
+  EXPECT_EQ(json["observed"], 12);
+  EXPECT_EQ(json["mean"]["after_hipADE_m"], 0.12);
+  EXPECT_EQ(json["mean"]["inside90_x_standard_error_share"], 0.04);
+  EXPECT_EQ(json["recordings"][0]["effect"], 0.3);
+  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), false), ToJson(scores, false));
+  EXPECT_EQ(read.value().recordings[0].after_hip_ade, 0.12);
+  EXPECT_EQ(read.value().recordings[0].effect.error, 0.1);
+  EXPECT_EQ(MetricsText(scores.recordings[0], 2, 12),
+            "hipADE 0.1 m, hipFDE 0.33 m, after hipADE 0.12 m");
+}
+
 TEST(ScoresJsonTest, DamageIsNamed) {
   const auto message = [](const char* key, const nlohmann::ordered_json& value) {
     nlohmann::ordered_json json = ToJson(SampleScores(), true);

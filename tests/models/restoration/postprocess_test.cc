@@ -21,6 +21,38 @@ TEST(PostprocessTest, TheResidualFadesOverEightFrames) {
   }
 }
 
+// Poses that were seen stay; what the restoration misses the last of them by fades from there, and
+// a foot that is in the air then is not held.
+TEST(PostprocessTest, BeginsWithTheLastPoseSeen) {
+  RestorationInput person;
+  person.first_pose = StandingPose();
+  person.dt = 1.0 / 60.0;
+  BodyMotion motion;
+  for (int t = 0; t < 40; ++t) {
+    Pose pose = person.first_pose;
+    const double swing = std::min(1.0, t / 19.0);
+    for (int j : {kLeftAnkle, kLeftToe}) {
+      pose(0, j) += 0.25 * swing;
+      pose(2, j) += 0.06 * std::sin(M_PI * swing);
+    }
+    if (t < 10) person.seen.push_back(pose);
+    motion.push_back(pose.array() + 0.01);  // the restoration is off by a centimetre
+  }
+  const BodyMotion restored = motion;
+  PostprocessOptions options;
+  options.keep_bones = false;
+  Finish(person, options, &motion);
+  for (int t = 0; t < 10; ++t) EXPECT_EQ(motion[t], person.seen[t]) << t;
+  for (int t = 10; t < 17; ++t) {
+    EXPECT_NEAR(restored[t](1, kBodyHead) - motion[t](1, kBodyHead), 0.01 * (1.0 - (t - 9) / 8.0),
+                1e-12)
+        << t;
+    EXPECT_GT(motion[t](0, kLeftAnkle), motion[t - 1](0, kLeftAnkle) + 0.005) << t;
+  }
+  EXPECT_NEAR(motion[39](0, kRightAnkle), person.first_pose(0, kRightAnkle), 1e-9);
+  EXPECT_GT(motion[39](0, kLeftAnkle), person.first_pose(0, kLeftAnkle) + 0.2);
+}
+
 TEST(PostprocessTest, AStandingFootStaysAndALiftedOneGoes) {
   const Pose first = StandingPose();
   BodyMotion motion;

@@ -1,0 +1,140 @@
+// apps: pushid-generate by flag.
+#include "apps/flags/generate_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/recording_flags.h"
+#include "ident/generators/forecast_scene.h"
+#include "ident/generators/forecast_spread.h"
+#include "ident/parameters/option_names.h"
+
+namespace {
+const pushid::GenerateFlags kFlags;
+}  // namespace
+
+DEFINE_string(model, "", "folder that pushid-train-generator --out wrote");
+DEFINE_string(dataset, pushid::NameOf(kFlags.data),
+              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings)");
+DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json in it or one higher");
+DEFINE_string(protocol, pushid::NameOf(kFlags.protocol),
+              "cmu: which windows: test (eight drawn per clip, of test/ where there is one), "
+              "validation (of the last clip of every action) or all");
+DEFINE_int32(stride, kFlags.stride,
+             "cmu: every so many starts a window (validation, all); 0: 8 in clips of more than a "
+             "thousand windows, otherwise 2");
+DEFINE_int32(samples, kFlags.samples,
+             "sampled futures of every window: coverage, CRPS, energy score, and the fan in "
+             "pictures; 0: none");
+DEFINE_uint64(seed, kFlags.seed, "of the sampled futures");
+DEFINE_double(ridge_share, -1.0, "of the linear forecast in the blend; -1: as trained");
+DEFINE_bool(project_bones, kFlags.changes.project_bones,
+            "give all bones the lengths of the last observed frame");
+DEFINE_double(noise_memory, kFlags.changes.noise_memory,
+              "of sampled futures: correlation of the noise of one frame with the next");
+DEFINE_double(noise_scale, kFlags.changes.noise_scale,
+              "of sampled futures: multiplies the noise that was learned");
+DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
+DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
+DEFINE_string(id, "", "pushes: the recording to show");
+DEFINE_int32(person, kFlags.person, "pushes: which person of it");
+DEFINE_int32(target_window, kFlags.target_window,
+             "cmu: show the most probable sampled future that ends like this window of the action; "
+             "-1: no search");
+DEFINE_double(target_distance, kFlags.target_distance,
+              "--target_window: what counts as ending there, mean distance of joints, m");
+DEFINE_string(json_out, "", "write the errors here (JSON)");
+DEFINE_string(poses_out, "",
+              "write observed, recorded and forecast poses here (.csv), or observed "
+              "and forecast ones (.bvh)");
+DEFINE_string(strip_out, "", "a strip of poses (SVG)");
+DEFINE_string(page_out, "", "a page with the forecast over the recorded motion (HTML)");
+DEFINE_int32(poses, kFlags.poses, "poses of the strip");
+
+namespace pushid {
+namespace {
+
+MaybeError CheckRanges() {
+  if (FLAGS_samples != 0) {
+    if (MaybeError error = CheckRange("samples", FLAGS_samples, kLeastSamples, 10000)) return error;
+  }
+  if (FLAGS_ridge_share != -1.0) {
+    if (MaybeError error = CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0)) return error;
+  }
+  for (const MaybeError& error :
+       {CheckRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99),
+        CheckRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0),
+        CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
+        CheckRange("person", FLAGS_person, 0, 1e6), CheckRange("poses", FLAGS_poses, 2, 40),
+        CheckRange("target_window", FLAGS_target_window, -1, 1e9),
+        CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
+        CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckData(const GenerateFlags& flags) {
+  if (flags.data == GeneratorData::kCmu) {
+    for (const char* flag : {"id", "person", "recordings", "setting"}) {
+      if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+    }
+    if (flags.target_window >= 0 && flags.samples == 0) {
+      return Error{"--target_window searches among sampled futures; give --samples"};
+    }
+    return Require("folder", FLAGS_folder, "name the folder of the clips");
+  }
+  for (const char* flag :
+       {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
+    if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
+  }
+  if (flags.samples > 0 && !flags.Shows()) {
+    return Error{
+        "with --dataset=pushes --samples only makes a fan for --poses_out, --strip_out or "
+        "--page_out"};
+  }
+  if (flags.Shows()) {
+    if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
+  }
+  return CheckRecordingFlags();
+}
+
+}  // namespace
+
+Result<GenerateFlags> GenerateFlagsFromCommandLine() {
+  GenerateFlags flags;
+  for (const MaybeError& error :
+       {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
+        ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges()}) {
+    if (error) return *error;
+  }
+  flags.model = FLAGS_model;
+  flags.folder = FLAGS_folder;
+  if (FLAGS_ridge_share >= 0.0) flags.changes.ridge_share = FLAGS_ridge_share;
+  flags.changes.project_bones = FLAGS_project_bones;
+  flags.changes.noise_memory = FLAGS_noise_memory;
+  flags.changes.noise_scale = FLAGS_noise_scale;
+  flags.stride = FLAGS_stride;
+  flags.samples = FLAGS_samples;
+  flags.seed = FLAGS_seed;
+  flags.action = FLAGS_action;
+  flags.window = FLAGS_window;
+  flags.id = FLAGS_id;
+  flags.person = FLAGS_person;
+  flags.target_window = FLAGS_target_window;
+  flags.target_distance = FLAGS_target_distance;
+  flags.json_out = FLAGS_json_out;
+  flags.poses_out = FLAGS_poses_out;
+  flags.strip_out = FLAGS_strip_out;
+  flags.page_out = FLAGS_page_out;
+  flags.poses = FLAGS_poses;
+  if (MaybeError error = CheckData(flags)) return *error;
+  if (MaybeError error =
+          CheckOutputFiles({flags.json_out, flags.poses_out, flags.strip_out, flags.page_out})) {
+    return *error;
+  }
+  return flags;
+}
+
+}  // namespace pushid

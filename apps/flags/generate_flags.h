@@ -1,0 +1,34 @@
+// apps: the flags of pushid-generate.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "datasets/loading/forecast_windows.h"
+#include "ident/generators/generator_files.h"
+
+namespace pushid {
+
+struct GenerateFlags {
+  std::string model;   // folder of the generator
+  std::string folder;  // of clips
+  GeneratorData data = GeneratorData::kCmu;
+  GeneratorChanges changes;
+  ForecastProtocol protocol = ForecastProtocol::kValidation;
+  int stride = 0;                 // between windows; 0: the protocol's
+  int samples = 0;                // futures of every window; 0: none
+  uint64_t seed = 1;              // of the samples
+  std::string action;             // of the window to show; empty: the first
+  int window = 0;                 // which of the action's
+  std::string id;                 // of the recording to show
+  int person = 0;                 // of that recording
+  int target_window = -1;         // whose end is the target of the path search; -1: none
+  double target_distance = 0.05;  // m; what counts as near it
+  std::string json_out, poses_out, strip_out, page_out;
+  int poses = 6;  // of the strip
+
+  bool Shows() const { return !poses_out.empty() || !strip_out.empty() || !page_out.empty(); }
+};
+Result<GenerateFlags> GenerateFlagsFromCommandLine();
+
+}  // namespace pushid

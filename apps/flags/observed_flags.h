@@ -1,0 +1,23 @@
+// apps: --observed, of every program that predicts recordings.
+#pragma once
+
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/results/identified_model.h"
+
+namespace pushid {
+
+// How many first frames are seen; 0 where nobody asked.
+int ObservedFrames();
+
+// What is wrong with it, by itself.
+MaybeError CheckObservedFlag();
+// For these recordings.
+MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings);
+// And this model.
+MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
+                             const IdentifiedModel& model);
+
+}  // namespace pushid

@@ -1,0 +1,23 @@
+// apps: the flags of pushid-train-generator.
+#pragma once
+
+#include <string>
+
+#include "ident/training/generator_training.h"
+
+namespace pushid {
+
+struct TrainGeneratorFlags {
+  GeneratorTrainingOptions options;
+  GeneratorData data = GeneratorData::kCmu;
+  std::string folder;            // of clips
+  bool with_validation = false;  // learn from the validation clips too
+  int observed = 20;             // frames of a push that the generator is shown
+  double held_out = 0.15;        // share of the recordings that only show how the training goes
+  std::string out;               // folder of the generator
+  int crossvalidate = 0;         // folds, instead of writing a generator; 0: off
+  std::string json_out;          // scores of the cross-validation; empty: none
+};
+Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine();
+
+}  // namespace pushid

@@ -1,0 +1,124 @@
+// apps: pushid-train-generator: learned generators of motion.
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/recording_flags.h"
+#include "apps/flags/train_generator_flags.h"
+#include "apps/support/training_line.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+#include "ident/bodies/body_report.h"
+#include "ident/training/curve_json.h"
+#include "ident/training/curve_svg.h"
+#include "ident/training/generator_crossvalidation.h"
+#include "ident/training/restoration_data.h"
+
+namespace {
+
+using namespace pushid;
+using Json = nlohmann::ordered_json;
+
+int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
+  TrainingLine line;
+  const Result<ChainValidation> validation =
+      CrossValidateGenerator(recordings, flags.options, flags.observed, flags.crossvalidate,
+                             [&](const std::string& step, double done) { line.Show(step, done); });
+  line.Finish();
+  if (!validation.ok()) return Fail(validation.error());
+  std::printf("%s", BodyText(validation.value().evaluation).c_str());
+  if (flags.json_out.empty()) return kDone;
+  Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  AddBodyJson(validation.value().evaluation, &json);
+  json["run"] = {{"training_seconds", validation.value().training_seconds}};
+  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  return kDone;
+}
+
+// data: which clips or recordings, by name and hash.
+int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
+  std::error_code failed;
+  std::filesystem::create_directories(flags.out, failed);
+  if (failed) return Fail(Error{"cannot make this folder: " + failed.message(), flags.out});
+  const auto in_out = [&flags](const char* name) {
+    return (std::filesystem::path(flags.out) / name).string();
+  };
+  SetForData(samples, &flags.options);
+  flags.options.checkpoint = in_out("checkpoint.bin");
+  if (MaybeError error = CheckWritable(flags.options.checkpoint)) return Fail(*error);
+  TrainingLine line;
+  Result<TrainedGenerator> trained =
+      TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
+        line.Show(point.stage + ", step " + std::to_string(point.epoch), done);
+      });
+  line.Finish();
+  if (!trained.ok()) return Fail(trained.error());
+  GeneratorSettings& settings = trained.value().particles.settings;
+  settings.training = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  settings.training["data"] = data;
+  settings.training["curve"] = CurveJson(trained.value().curve);
+  const std::string title = NameOf(flags.options.kind) + ", " + NameOf(flags.data) + ", " +
+                            std::to_string(data.size()) + " motions";
+  if (MaybeError error = WriteFileAtomically(in_out("curve.svg"),
+                                             TrainingCurveSvg(trained.value().curve, title))) {
+    return Fail(*error);
+  }
+  if (MaybeError error = WriteGenerator(flags.out, trained.value().particles)) return Fail(*error);
+  std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
+              Rounded(line.Seconds(), 3).c_str(),
+              trained.value().resumed ? " (resumed from a checkpoint)" : "",
+              in_out("generator.json").c_str());
+  return kDone;
+}
+
+int FromClips(const TrainGeneratorFlags& flags) {
+  const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
+  if (!mocap.ok()) return Fail(mocap.error());
+  Json data = Json::array();
+  for (const MocapClip& clip : mocap.value().clips) {
+    if (clip.is_test) continue;
+    data.push_back({{"clip", clip.name}, {"content_hash", clip.content_hash}});
+  }
+  return Train(flags, SamplesOf(mocap.value(), flags.with_validation), data);
+}
+
+int FromPushes(const TrainGeneratorFlags& flags) {
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
+  if (!recordings.ok()) return Fail(recordings.error());
+  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  const Result<std::vector<BodyRecording>> bodies =
+      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
+  if (!bodies.ok()) return Fail(bodies.error());
+  if (flags.crossvalidate > 0) return CrossValidate(flags, bodies.value());
+  Json data = Json::array();
+  std::vector<int> all, learnt, held;
+  for (const BodyRecording& body : bodies.value()) {
+    all.push_back(static_cast<int>(all.size()));
+    data.push_back({{"id", body.pendulum.id}, {"content_hash", body.pendulum.content_hash}});
+  }
+  learnt = all;
+  if (flags.held_out > 0.0 && all.size() > 1) {
+    SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.particles.seed,
+                 &learnt, &held);
+  }
+  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed), data);
+}
+
+int Run() {
+  const Result<TrainGeneratorFlags> flags = TrainGeneratorFlagsFromCommandLine();
+  if (!flags.ok()) return Fail(flags.error());
+  return flags.value().data == GeneratorData::kCmu ? FromClips(flags.value())
+                                                   : FromPushes(flags.value());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return pushid::RunApp(argc, argv,
+                        "pushid-train-generator trains networks that continue observed motion, for "
+                        "pushid-generate.\nStarted again with the same --out, it goes on where it "
+                        "was broken off.\n\n  pushid-train-generator --kind=particles "
+                        "--dataset=cmu --folder=cmu_mocap --out=generator",
+                        Run);
+}

@@ -1,0 +1,86 @@
+// datasets: clips found and read.
+#include "datasets/loading/mocap_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "datasets/files/found_files.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/exponential_map_text.h"
+
+namespace pushid {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr char kSkeletonFile[] = "skeleton.json", kTestFolder[] = "test";
+
+Result<std::string> FindSkeleton(const std::string& folder) {
+  const fs::path place = fs::path(folder).lexically_normal();
+  std::error_code ignored;
+  for (const fs::path& path : {place / kSkeletonFile, place / ".." / kSkeletonFile}) {
+    if (fs::exists(path, ignored)) return path.string();
+  }
+  return Error{std::string("there is no ") + kSkeletonFile +
+                   " here or one folder higher; name a folder of clips by --folder",
+               folder};
+}
+
+// walking_2 before walking_10.
+std::pair<std::string, int64_t> OrderOf(const MocapClip& clip) {
+  int64_t number = 0;
+  ParseInteger(clip.name.substr(clip.name.rfind('_') + 1), &number);
+  return {clip.action, number};
+}
+
+Result<MocapClip> ReadClip(const fs::path& folder, const std::string& name,
+                           const MocapSkeleton& skeleton) {
+  const fs::path path = folder / name;
+  const Result<ExponentialMapMotion> read =
+      ReadExponentialMapText(path.string(), skeleton.tree.num_joints());
+  if (!read.ok()) return read.error();
+  const Eigen::MatrixXd& maps = read.value().maps;
+  MocapClip clip;
+  clip.action = path.parent_path().filename().string();
+  clip.name = path.stem().string();
+  clip.content_hash = read.value().content_hash;
+  clip.is_test = fs::path(name).begin()->string() == kTestFolder;
+  clip.motion.resize(skeleton.layout.num_coordinates(), maps.cols());
+  for (Eigen::Index t = 0; t < maps.cols(); ++t) {
+    const Eigen::Matrix3Xd joints = JointPositions(skeleton.tree, maps.col(t));
+    for (size_t i = 0; i < skeleton.used.size(); ++i) {
+      clip.motion.col(t).segment<3>(3 * i) = joints.col(skeleton.used[i]).cast<float>();
+    }
+  }
+  return clip;
+}
+
+}  // namespace
+
+Result<MocapFolder> ReadMocapFolder(const std::string& folder) {
+  const Result<std::string> skeleton_file = FindSkeleton(folder);
+  if (!skeleton_file.ok()) return skeleton_file.error();
+  Result<MocapSkeleton> skeleton = ReadMocapSkeleton(skeleton_file.value());
+  if (!skeleton.ok()) return skeleton.error();
+  MocapFolder mocap;
+  mocap.skeleton = std::move(skeleton.value());
+  const Result<std::vector<std::string>> files = FilesBelow(folder);
+  if (!files.ok()) return files.error();
+  for (const std::string& name : files.value()) {
+    const fs::path path(name);
+    if (path.extension() != ".txt" || !path.has_parent_path()) continue;
+    Result<MocapClip> clip = ReadClip(folder, name, mocap.skeleton);
+    if (!clip.ok()) return clip.error();
+    mocap.clips.push_back(std::move(clip.value()));
+  }
+  if (mocap.clips.empty()) {
+    return Error{
+        "there are no clips below this folder; they are text files in a folder per "
+        "action (train/walking/walking_1.txt)",
+        folder};
+  }
+  std::stable_sort(mocap.clips.begin(), mocap.clips.end(),
+                   [](const auto& a, const auto& b) { return OrderOf(a) < OrderOf(b); });
+  return mocap;
+}
+
+}  // namespace pushid

@@ -1,0 +1,128 @@
+// ident: networks written and read.
+#include "ident/bodies/tensor_folder.h"
+
+#include <filesystem>
+
+#include "datasets/files/content_hash.h"
+#include "datasets/files/json_fields.h"
+#include "datasets/files/npy.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr char kWeightsFile[] = "weights.npy";
+constexpr int kLargestSide = 1 << 20;
+
+std::string InFolder(const std::string& folder, const std::string& name) {
+  return (std::filesystem::path(folder) / name).string();
+}
+
+MaybeError ReadTensors(const JsonDocument& document, const std::vector<float>& numbers,
+                       TensorList* tensors) {
+  size_t at = 0;
+  int index = 0;
+  for (const Json& entry : document.content.at("tensors")) {
+    JsonFields fields(document, entry, "/tensors/" + std::to_string(index++), "tensor");
+    NamedTensor tensor;
+    tensor.name = fields.OptionalText("name", "");
+    const int rows = fields.Whole("rows", "a number of rows", 1, kLargestSide);
+    const int columns = fields.Whole("columns", "a number of columns", 1, kLargestSide);
+    if (fields.error()) return fields.error();
+    const size_t size = static_cast<size_t>(rows) * static_cast<size_t>(columns);
+    if (at + size > numbers.size()) break;
+    tensor.values = Eigen::Map<const Eigen::MatrixXf>(numbers.data() + at, rows, columns);
+    tensors->push_back(std::move(tensor));
+    at += size;
+  }
+  if (at == numbers.size() && tensors->size() == document.content.at("tensors").size()) {
+    return std::nullopt;
+  }
+  return document.ErrorAt("/tensors", "the tensors do not fit the " +
+                                          std::to_string(numbers.size()) +
+                                          " numbers of the weights file");
+}
+
+}  // namespace
+
+std::string JsonFileOf(const TensorFolderKind& kind, const std::string& folder) {
+  return InFolder(folder, std::string(kind.what) + ".json");
+}
+
+MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& folder,
+                             const TensorFolder& content) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
+  std::vector<float> numbers;
+  Json tensors = Json::array();
+  for (const NamedTensor& tensor : content.tensors) {
+    const Eigen::MatrixXf& values = tensor.values;
+    tensors.push_back({{"name", tensor.name}, {"rows", values.rows()}, {"columns", values.cols()}});
+    numbers.insert(numbers.end(), values.data(), values.data() + values.size());
+  }
+  std::filesystem::remove(JsonFileOf(kind, folder), failed);
+  const std::string weights = InFolder(folder, kWeightsFile);
+  if (MaybeError error = WriteNpy(weights, numbers)) return error;
+  const Result<std::string> hash = HashFile(weights);
+  if (!hash.ok()) return hash.error();
+  Json json = {{"format", kind.format}, {"kind", content.kind}};
+  json["settings"] = content.settings;
+  json["weights"] = kWeightsFile;
+  json["weights_hash"] = hash.value();
+  json["tensors"] = tensors;
+  json["training"] = content.training;
+  return WriteJson(JsonFileOf(kind, folder), json);
+}
+
+Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder,
+                                      const std::string& kinds,
+                                      bool (*is_kind)(const std::string& name)) {
+  const std::string path = JsonFileOf(kind, folder);
+  const Result<JsonDocument> read = ReadJsonDocument(path);
+  if (!read.ok()) {
+    Error error = read.error();
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) {
+      error.message +=
+          std::string("; ") + kind.flag + " names the folder that " + kind.writer + " wrote";
+    }
+    return error;
+  }
+  const JsonDocument& document = read.value();
+  JsonFields fields(document, document.content, "", kind.what);
+  const int format = fields.Whole("format", "the format's number", 1, 1 << 20);
+  TensorFolder content;
+  content.kind = fields.Text("kind", kinds);
+  if (fields.Has("kind") && !is_kind(content.kind)) {
+    fields.Fail("kind", "is " + Quoted(content.kind) + "; it must be " + kinds);
+  }
+  const std::string hash = fields.OptionalText("weights_hash", "");
+  fields.Require("weights_hash", "the weights file's hash");
+  fields.Require("tensors", "the list of tensors");
+  fields.List("tensors");
+  if (fields.error()) return *fields.error();
+  if (format > kind.format) {
+    return document.ErrorAt("/format", std::string("this ") + kind.what + " has format " +
+                                           std::to_string(format) + "; this program reads up to " +
+                                           std::to_string(kind.format) +
+                                           ": use a newer one, or train again");
+  }
+  if (fields.Has("settings")) content.settings = document.content.at("settings");
+  if (fields.Has("training")) content.training = document.content.at("training");
+  const std::string weights = InFolder(folder, kWeightsFile);
+  const Result<std::vector<float>> numbers = ReadNpy(weights);
+  if (!numbers.ok()) return numbers.error();
+  const Result<std::string> found = HashFile(weights);
+  if (!found.ok()) return found.error();
+  if (found.value() != hash) {
+    return Error{"these are not the weights that " + path +
+                     " describes (its weights_hash differs): the file is damaged or comes from "
+                     "another training; train again",
+                 weights};
+  }
+  if (MaybeError error = ReadTensors(document, numbers.value(), &content.tensors)) return *error;
+  return content;
+}
+
+}  // namespace pushid

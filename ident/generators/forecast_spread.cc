@@ -1,0 +1,143 @@
+// ident: scores of sampled futures.
+#include "ident/generators/forecast_spread.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/text_table.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+
+struct SpreadRow {
+  const char* key;
+  const char* title;
+  HorizonErrors SpreadScores::*values;
+  double unit;
+};
+
+constexpr SpreadRow kSpreadRows[] = {
+    {"coverage_90", "coverage of 90 %", &SpreadScores::coverage, 1.0},
+    {"CRPS_mm", "CRPS mm", &SpreadScores::crps, kMillimetres},
+    {"energy_score_mm", "energy score mm", &SpreadScores::energy, kMillimetres},
+    {"best_of_n_MPJPE_mm", "best of n, MPJPE mm", &SpreadScores::best, kMillimetres},
+};
+
+// Of one coordinate at one frame; values are sorted by it.
+void ScoreCoordinate(double truth, std::vector<double>* values, double* covered, double* crps) {
+  std::sort(values->begin(), values->end());
+  const double n = static_cast<double>(values->size());
+  const double tail = 0.5 * (1.0 - kSpreadLevel);
+  const bool inside =
+      truth >= SampleQuantile(*values, tail) && truth <= SampleQuantile(*values, 1.0 - tail);
+  *covered += inside ? 1.0 : 0.0;
+  double from_truth = 0.0, among = 0.0;
+  for (size_t i = 0; i < values->size(); ++i) {
+    from_truth += std::abs((*values)[i] - truth);
+    // Sorted, sum_ij |x_i - x_j| / 2 = sum_i x_i (2 i + 1 - n).
+    among += (*values)[i] * (2.0 * static_cast<double>(i) + 1.0 - n);
+  }
+  *crps += from_truth / n - among / (n * (n - 1.0));
+}
+
+// Of one window at one frame, into the k-th horizon.
+void ScoreFrame(const std::vector<SampledFuture>& samples, const ForecastWindow& window,
+                const ParticleLayout& layout, size_t k, SpreadScores* scores) {
+  const int frame = kHorizonFrames[k];
+  const Eigen::VectorXf truth = window.future.col(frame);
+  const double n = static_cast<double>(samples.size());
+  double covered = 0.0, crps = 0.0, from_truth = 0.0, among = 0.0, best = HUGE_VAL;
+  std::vector<double> values(samples.size());
+  for (Eigen::Index c = 0; c < truth.size(); ++c) {
+    for (size_t i = 0; i < samples.size(); ++i) values[i] = samples[i].motion(c, frame);
+    ScoreCoordinate(truth(c), &values, &covered, &crps);
+  }
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const auto pose = samples[i].motion.col(frame);
+    from_truth += (pose - truth).norm();
+    for (size_t j = 0; j < i; ++j) among += (pose - samples[j].motion.col(frame)).norm();
+    best = std::min<double>(best, MeanDistance(pose, truth, layout)(0));
+  }
+  scores->coverage[k] += covered / static_cast<double>(truth.size());
+  scores->crps[k] += crps / static_cast<double>(truth.size());
+  scores->energy[k] += from_truth / n - among / (n * (n - 1.0));
+  scores->best[k] += best;
+}
+
+void AddTo(const SpreadScores& scores, double share, SpreadScores* sum) {
+  for (const SpreadRow& row : kSpreadRows) {
+    for (size_t k = 0; k < kHorizonFrames.size(); ++k) {
+      (sum->*row.values)[k] += share * (scores.*row.values)[k];
+    }
+  }
+}
+
+nlohmann::ordered_json ByHorizon(const HorizonErrors& values, double unit) {
+  nlohmann::ordered_json json;
+  for (size_t k = 0; k < kHorizonFrames.size(); ++k) {
+    json[std::to_string(HorizonMs(kHorizonFrames[k]))] = unit * values[k];
+  }
+  return json;
+}
+
+}  // namespace
+
+double SampleQuantile(const std::vector<double>& sorted, double p) {
+  const double last = static_cast<double>(sorted.size()) - 1.0;
+  const double place = std::clamp(p * (static_cast<double>(sorted.size()) + 1.0) - 1.0, 0.0, last);
+  const size_t below = static_cast<size_t>(place);
+  const size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
+ForecastSpread SpreadOf(const std::vector<ForecastWindow>& windows,
+                        const std::vector<std::vector<SampledFuture>>& samples,
+                        const ParticleLayout& layout) {
+  ForecastSpread spread;
+  std::map<std::string, int> count;
+  for (const ForecastWindow& window : windows) ++count[window.action];
+  for (size_t i = 0; i < windows.size(); ++i) {
+    SpreadScores scores;
+    for (size_t k = 0; k < kHorizonFrames.size(); ++k) {
+      ScoreFrame(samples[i], windows[i], layout, k, &scores);
+    }
+    const std::string& action = windows[i].action;
+    AddTo(scores, 1.0 / count[action], &spread.actions[action]);
+  }
+  for (const auto& [name, scores] : spread.actions) {
+    AddTo(scores, 1.0 / static_cast<double>(spread.actions.size()), &spread.mean);
+  }
+  return spread;
+}
+
+void AddSpreadJson(const ForecastSpread& spread, nlohmann::ordered_json* json) {
+  const auto add = [](const SpreadScores& scores, nlohmann::ordered_json* to) {
+    for (const SpreadRow& row : kSpreadRows) {
+      (*to)[row.key] = ByHorizon(scores.*row.values, row.unit);
+    }
+  };
+  add(spread.mean, &(*json)["mean"]);
+  for (const auto& [name, scores] : spread.actions) add(scores, &(*json)["actions"][name]);
+}
+
+std::string ForecastSpreadText(const ForecastSpread& spread) {
+  std::vector<std::string> head = {"sampled futures", "of"};
+  for (int frame : kHorizonFrames) head.push_back(std::to_string(HorizonMs(frame)) + " ms");
+  std::vector<bool> left(head.size(), false);
+  left[0] = left[1] = true;
+  TextTable table(head, left);
+  const auto add = [&table](const SpreadRow& row, const std::string& name,
+                            const SpreadScores& scores) {
+    std::vector<std::string> cells = {row.title, name};
+    for (double value : scores.*row.values) cells.push_back(Rounded(row.unit * value, 3));
+    table.Add(cells);
+  };
+  for (const auto& [name, scores] : spread.actions) add(kSpreadRows[0], name, scores);
+  for (const SpreadRow& row : kSpreadRows) add(row, "mean of actions", spread.mean);
+  return table.ToString();
+}
+
+}  // namespace pushid

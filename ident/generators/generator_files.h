@@ -1,0 +1,64 @@
+// ident: a generator in a folder: generator.json (what it is, what it was trained on) and
+// weights.npy. Both load without the training code and without LibTorch; tensor_folder.h has the
+// layout. Settings of every kind: which data it is for, frames observed and forecast, the rate, the
+// particles; then its own.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "datasets/files/error.h"
+#include "models/generators/particle_generator.h"
+
+namespace pushid {
+
+// What a generator forecasts: motion-capture clips, or recordings of pushes.
+enum class GeneratorData { kCmu, kPushes };
+constexpr EnumNames<GeneratorData, 2> Names(GeneratorData) {
+  return {{{"cmu", GeneratorData::kCmu}, {"pushes", GeneratorData::kPushes}}};
+}
+
+struct GeneratorSettings {
+  GeneratorData data = GeneratorData::kCmu;
+  int observed = 25;   // frames that it is given
+  int predicted = 25;  // frames that it was trained to forecast
+  double rate = 25.0;  // Hz
+  ParticleLayout layout;
+  nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
+};
+
+// The networks of a generator of particles.
+struct TrainedParticles {
+  GeneratorSettings settings;
+  std::vector<ParticleNetwork> members;  // of one structure
+  RidgeForecast ridge;                   // empty where ridge_share is 0
+  double ridge_share = 0.0;
+  double jitter = 0.0;  // of the pose in training, and in sampled futures
+};
+
+MaybeError WriteGenerator(const std::string& folder, const TrainedParticles& trained);
+
+struct LoadedGenerator {
+  GeneratorSettings settings;
+  std::unique_ptr<MotionGenerator> generator;
+};
+
+// What may differ from the training; unset: as trained.
+struct GeneratorChanges {
+  std::optional<double> ridge_share;
+  bool project_bones = ParticleGeneratorOptions{}.project_bones;
+  double noise_memory = ParticleGeneratorOptions{}.noise_memory;
+  double noise_scale = ParticleGeneratorOptions{}.noise_scale;
+};
+
+// Errors: no such folder, settings or tensors that are missing or do not fit.
+Result<LoadedGenerator> LoadGenerator(const std::string& folder,
+                                      const GeneratorChanges& changes = {});
+
+// The same of what was just trained.
+std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedParticles& trained,
+                                               const GeneratorChanges& changes = {});
+
+}  // namespace pushid

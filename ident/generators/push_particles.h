@@ -1,0 +1,37 @@
+// ident: people who are pushed, as particles: 22 joints whose places count from where the hip
+// stands above the floor at frame 0, and the push as what acts on them.
+//
+// Everybody faces the way of the published pushes, +x, or is to be turned there first: a mirror
+// changes y. A push of a frame is [Fx, Fy, Ftheta, Fphi] over the mass, in N/kg and N m/kg.
+#pragma once
+
+#include <vector>
+
+#include "ident/bodies/body_recording.h"
+#include "ident/generators/generator_files.h"
+
+namespace pushid {
+
+inline constexpr int kPushControls = 4;
+// In the mirror y and phi change their signs.
+inline const std::vector<float> kMirroredPush = {1.0f, -1.0f, 1.0f, -1.0f};
+
+ParticleLayout PushLayout(const std::vector<std::string>& joint_names);
+
+// One person; pushes of others are not seen.
+struct PushedParticles {
+  ObservedMotion motion;                             // all frames of the recording
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // m, world
+};
+PushedParticles ParticlesOf(const BodyRecording& recording, int person);
+
+BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin);
+
+// What a generator makes of a recording whose first `observed` frames it is shown: those, then its
+// forecast to the recording's end. Errors: a recording that is not at the generator's rate, or too
+// short.
+Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
+                                               const MotionGenerator& generator,
+                                               const BodyRecording& recording);
+
+}  // namespace pushid

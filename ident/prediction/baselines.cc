@@ -1,0 +1,88 @@
+// ident: what any prediction has to beat: standing still, going on, and the model started anew.
+#include <algorithm>
+
+#include "ident/prediction/evaluation.h"
+#include "ident/results/model_rollout.h"
+#include "models/scene_forces.h"
+
+namespace pushid {
+
+HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
+  HipPaths paths;
+  for (const auto& hip : recording.hip) {
+    HipPath path(hip.begin(), hip.begin() + std::max(1, observed));
+    path.resize(hip.size(), Vector3<double>(path.back()));
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
+  HipPaths paths;
+  const int known = observed > 0 ? observed - 1 : recording.scene.LastPushEnd();
+  const int last = std::min(known, recording.num_frames() - 1);
+  for (const auto& hip : recording.hip) {
+    std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
+    const Vector3<double> step =
+        last > 0 ? Vector3<double>(hip[last] - hip[last - 1]) : Vector3<double>::Zero();
+    while (path.size() < hip.size()) path.push_back(path.back() + step);
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+namespace {
+
+// The rollout's steps (models/rollout.h) from a state that is none of the scene's start, to which
+// the posture still belongs.
+RolloutStatus GoOn(const IdentifiedModel& model, const PendulumRecording& recording, int from,
+                   RolloutPath<double>* path) {
+  const int people = recording.num_people();
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  SceneForces<double> forces(recording.scene, model.options, parameters);
+  std::vector<int> scratch;
+  for (int t = from; t + 1 < path->num_frames(); ++t) {
+    forces.Update(path->Frame(t));
+    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
+    for (int n = 0; n < people; ++n) {
+      const Vector4<double>& qd_previous = path->At(t - 1, n).qd;
+      const NetForce<double> force = forces.On(n, t, qd_previous);
+      path->At(t + 1, n) = forces.Next(n, forces.AccelerationOf(n, force), force, qd_previous);
+      const std::string_view outside =
+          OutsideDomain(recording.scene.people[n].body, path->At(t + 1, n));
+      if (!outside.empty()) return {false, t + 1, n, outside};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                             int observed) {
+  Prediction prediction = Predict(model, recording);
+  if (!prediction.status.ok || observed <= 1) return prediction;
+  const int people = recording.num_people(), from = observed - 1;
+  for (int n = 0; n < people; ++n) {
+    for (int t = 1; t <= from; ++t) {
+      PendulumState<double>& state = prediction.path.At(t, n);
+      state.q = recording.states[n][t].q;
+      state.qd = recording.states[n][t].qd;
+    }
+  }
+  prediction.status = GoOn(model, recording, from, &prediction.path);
+  if (!prediction.status.ok) return prediction;
+  for (int n = 0; n < people; ++n) {
+    // From where the hip was seen, which the rod of frame 0 puts elsewhere.
+    const auto tip = [&](int t) {
+      return HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q);
+    };
+    const Vector3<double> off = recording.hip[n][from] - tip(from);
+    for (int t = 1; t < recording.num_frames(); ++t) {
+      prediction.hip[n][t] = t <= from ? recording.hip[n][t] : Vector3<double>(tip(t) + off);
+    }
+  }
+  return prediction;
+}
+
+}  // namespace pushid

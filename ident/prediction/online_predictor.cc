@@ -1,0 +1,132 @@
+// ident: rollouts corrected by the frames that were seen.
+#include "ident/prediction/online_predictor.h"
+
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+// The cart under a hip.
+Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Vector4<double>& q) {
+  Vector4<double> at_origin = q;
+  at_origin.head<2>().setZero();
+  return (hip - HipPosition(body, at_origin)).head<2>();
+}
+
+}  // namespace
+
+SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
+  SeenFrame seen{HipsAt(recording, frame), {}};
+  for (const auto& states : recording.states) seen.states.push_back(states[frame]);
+  return seen;
+}
+
+MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
+  if (model.recording_effect) return std::nullopt;
+  const bool tail = model.options.push_tail != PushTail::kNone;
+  return Error{tail ? "the model does not say how recordings differ, which first frames are read "
+                      "by: it is older than --observed; fit it again with pushid-fit"
+                    : "the model has no push tail, by which first frames are read: fit one with "
+                      "--push_tail=exponential (the presets tail and group have it)",
+               model.source};
+}
+
+OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording,
+                                 int num_frames)
+    : model_(&model),
+      recording_(&recording),
+      filter_(std::make_unique<RecordingFilter>(model, recording, num_frames)) {}
+
+Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
+                                              const PendulumRecording& recording, int num_frames) {
+  if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
+  OnlinePredictor predictor(model, recording, num_frames);
+  if (predictor.filter_->ok()) return Result<OnlinePredictor>(std::move(predictor));
+  return Error{"recording " + recording.id +
+               ": people leave the model's domain whatever the push's tail"};
+}
+
+void OnlinePredictor::Observe(SeenFrame frame) {
+  if (observed() >= filter_->frames()) return;
+  filter_->Observe(frame.hips);
+  seen_.push_back(std::move(frame));
+}
+
+EffectEstimate OnlinePredictor::effect() const {
+  return filter_->Effect(*model_->recording_effect);
+}
+
+Prediction OnlinePredictor::Predict() const {
+  const int frames = filter_->frames(), from = observed();
+  Prediction prediction = pushid::Predict(*model_, *recording_, frames, effect().mean);
+  prediction.observed = from;
+  prediction.effect = effect();
+  if (!prediction.status.ok || from == 1) return prediction;
+  const HipPaths hips = filter_->ForecastOf(prediction.hip)
+                            .Blended(model_->recording_effect->Blend(filter_->seconds()));
+  const double dt = recording_->scene.dt;
+  for (size_t n = 0; n < hips.size(); ++n) {
+    const int person = static_cast<int>(n);
+    const Vector4<double> off = seen_.back().states[n].q - prediction.path.At(from - 1, person).q;
+    for (int t = 1; t < frames; ++t) {
+      PendulumState<double>& state = prediction.path.At(t, person);
+      Vector3<double>& hip = prediction.hip[n][t];
+      if (t < from) {
+        state.q = seen_[t - 1].states[n].q;
+        state.qd = seen_[t - 1].states[n].qd;
+        hip = seen_[t - 1].hips.hip[n];
+        continue;
+      }
+      hip = hips[n][t - from];
+      state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off.tail<2>();
+      state.q.head<2>() = CartUnder(prediction.BodyAt(recording_->scene, t, person), hip, state.q);
+      state.qd = (state.q - prediction.path.At(t - 1, person).q) / dt;
+    }
+  }
+  return prediction;
+}
+
+HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) const {
+  HipPaths centre;
+  for (const HipPath& hip : prediction.hip)
+    centre.emplace_back(hip.begin() + observed(), hip.end());
+  return HipDistribution(*filter_, *model_->recording_effect, centre);
+}
+
+Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
+                               int observed, int num_frames) {
+  if (observed == 0) return Predict(model, recording, num_frames);
+  Result<OnlinePredictor> made =
+      OnlinePredictor::Make(model, recording, num_frames > 0 ? num_frames : recording.num_frames());
+  if (!made.ok()) return made.error();
+  for (int t = 1; t < observed; ++t) made.value().Observe(FrameAt(recording, t));
+  Prediction prediction = made.value().Predict();
+  if (!prediction.status.ok) return prediction;
+  const HipDistribution hips = made.value().Distribution(prediction);
+  for (int n = 0; n < hips.num_people(); ++n) {
+    HipBand band;
+    for (int t = 0; t < hips.num_frames(); ++t) {
+      band.lower90.emplace_back();
+      band.upper90.emplace_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        band.lower90.back()[axis] = hips.Quantile(n, t, axis, 0.05);
+        band.upper90.back()[axis] = hips.Quantile(n, t, axis, 0.95);
+      }
+    }
+    prediction.bands.push_back(std::move(band));
+  }
+  return prediction;
+}
+
+std::string EffectText(const Prediction& prediction) {
+  if (prediction.observed == 0 || prediction.effect.error == 0.0) return "";
+  const EffectEstimate& b = prediction.effect;
+  return "tail " + Rounded(std::exp(b.mean), 3) + " times that of the mean recording (b " +
+         Rounded(b.mean, 2) + " +- " + Rounded(b.error, 2) + "), from " +
+         std::to_string(prediction.observed) + " frame" + (prediction.observed == 1 ? "" : "s") +
+         "\n";
+}
+
+}  // namespace pushid

@@ -1,0 +1,69 @@
+// ident: a prediction that learns from every frame it is shown.
+//
+//   auto predictor = OnlinePredictor::Make(model, scene, 120);   // frames to look ahead, in all
+//   while (camera.Next()) {
+//     predictor.value().Observe(people);                         // a few microseconds
+//     const Prediction prediction = predictor.value().Predict(); // one rollout
+//   }
+//
+// What is learned and how stands in results/recording_effect.h. Frames that were seen are in the
+// prediction as they were. From then on hips are forecast, angles come back to the rollout's as an
+// error of velocity dies out, and the cart is where the rod puts it; forces, steps and a moving rod
+// are the rollout's. Before anything is seen the prediction is that of Predict, to the bit.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/prediction/hip_distribution.h"
+#include "ident/prediction/prediction.h"
+
+namespace pushid {
+
+// Everybody at one frame.
+struct SeenFrame {
+  SeenHips hips;
+  std::vector<PendulumState<double>> states;
+};
+SeenFrame FrameAt(const PendulumRecording& recording, int frame);
+
+// Errors: a model that knows nothing of how recordings differ.
+MaybeError CheckLearnsFromFrames(const IdentifiedModel& model);
+
+class OnlinePredictor {
+ public:
+  // recording: people, pushes and frame 0; its later frames are not looked at. Both must outlive
+  // the predictor. Errors: those of CheckLearnsFromFrames; a rollout that leaves the domain
+  // whatever the effect.
+  static Result<OnlinePredictor> Make(const IdentifiedModel& model,
+                                      const PendulumRecording& recording, int num_frames);
+
+  // The next frame, frame 1 first; nothing once all frames were seen.
+  void Observe(SeenFrame frame);
+  int observed() const { return filter_->observed(); }  // with frame 0
+  EffectEstimate effect() const;
+  // Without bands, which take longer than all the rest.
+  Prediction Predict() const;
+  // Of the hips behind those seen in a prediction that did not fail.
+  HipDistribution Distribution(const Prediction& prediction) const;
+
+ private:
+  OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames);
+
+  const IdentifiedModel* model_;
+  const PendulumRecording* recording_;
+  std::unique_ptr<RecordingFilter> filter_;
+  std::vector<SeenFrame> seen_;
+};
+
+// From the first `observed` frames of a recording, with bands. num_frames: 0 means as many as the
+// recording has, otherwise more than observed. observed 0: nobody asked, Predict.
+Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
+                               int observed, int num_frames = 0);
+
+// "tail 1.2 times that of the mean recording (b 0.18 +- 0.21), from 12 frames"; empty where nothing
+// was seen.
+std::string EffectText(const Prediction& prediction);
+
+}  // namespace pushid

@@ -1,0 +1,139 @@
+// ident: whether what was recorded looks like what the model says of such recordings.
+#include <algorithm>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/chart.h"
+#include "ident/prediction/visual_check.h"
+#include "ident/report/page/sections.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kPanelWidth = 300, kPanelHeight = 210, kSmallWidth = 320;
+constexpr int kColumns = 3;
+constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
+
+Chart StratumChart(const CheckedStratum& stratum) {
+  Chart chart;
+  chart.title = stratum.name + " (" + std::to_string(stratum.recordings) + " recordings)";
+  chart.x_label = "s";
+  for (int q = 0; q < kNumCheckedShares; ++q) {
+    const bool middle = q == kNumCheckedShares / 2;
+    ChartBand band{{}, {}, middle ? kMiddleBandLook : kWideBandLook};
+    ChartLine line{{}, kMeasuredLook, false};
+    for (const CheckedFrame& frame : stratum.frames) {
+      band.lower.emplace_back(frame.seconds, frame.lower90[q]);
+      band.upper.emplace_back(frame.seconds, frame.upper90[q]);
+      line.points.emplace_back(frame.seconds, frame.observed[q]);
+    }
+    chart.bands.push_back(band);
+    chart.lines.push_back(line);
+  }
+  return chart;
+}
+
+ReportFigure StrataFigure(const VisualCheck& check) {
+  std::vector<Chart> charts;
+  TextTable numbers(
+      {"stratum", "time_s", "recordings", "percentile", "observed_s", "lower90_s", "upper90_s"},
+      {true, false, false, false, false, false, false});
+  for (const CheckedStratum& stratum : check.strata) {
+    charts.push_back(StratumChart(stratum));
+    for (const CheckedFrame& frame : stratum.frames) {
+      for (int q = 0; q < kNumCheckedShares; ++q) {
+        numbers.Add({stratum.name, DoubleText(frame.seconds), std::to_string(frame.recordings),
+                     DoubleText(100.0 * kCheckedShares[q]), DoubleText(frame.observed[q]),
+                     DoubleText(frame.lower90[q]), DoubleText(frame.upper90[q])});
+      }
+    }
+  }
+  return {"visual_predictive_check",
+          "10th, 50th and 90th percentile over recordings of how far the hip has gone along the "
+          "push, over the speed of the push (lines), and the middle 90 % of the same percentiles "
+          "in simulated recordings (blue; the median's orange).",
+          DrawCharts(charts, "visual predictive check", kColumns, kPanelWidth, kPanelHeight),
+          numbers};
+}
+
+TextTable StrataTable(const VisualCheck& check) {
+  TextTable table({"stratum", "recordings", "observed percentiles within their 90 %"},
+                  {true, false, false});
+  for (const CheckedStratum& stratum : check.strata) {
+    table.Add({stratum.name, std::to_string(stratum.recordings),
+               Rounded(100.0 * stratum.Inside(), 2) + " %"});
+  }
+  return table;
+}
+
+Chart HistogramChart(const std::string& title, const UniformityTest& test) {
+  Chart chart;
+  chart.title = title;
+  chart.x_label = "share of the model's distribution below";
+  const double bins = static_cast<double>(test.shares.size());
+  double most = 0.0;
+  for (size_t b = 0; b < test.shares.size(); ++b) {
+    const double from = static_cast<double>(b) / bins, to = from + 1.0 / bins;
+    const double share = test.shares[b], middle = 0.5 * (from + to);
+    chart.bands.push_back(
+        {{{from, 0.0}, {to, 0.0}}, {{from, share}, {to, share}}, kNarrowBandLook});
+    chart.lines.push_back({{{middle, share - test.errors[b]}, {middle, share + test.errors[b]}},
+                           kMeasuredLook,
+                           false});
+    most = std::max(most, share + test.errors[b]);
+  }
+  chart.levels = {1.0 / bins};
+  chart.y_from = 0.0;
+  chart.y_to = std::max(2.0 / bins, 1.1 * most);
+  return chart;
+}
+
+ReportFigure HistogramFigure(const VisualCheck& check) {
+  TextTable numbers({"axis", "from", "to", "share", "standard_error"},
+                    {true, false, false, false, false});
+  std::vector<Chart> charts;
+  const auto add = [&](const std::string& axis, const UniformityTest& test) {
+    charts.push_back(HistogramChart(axis + " the push", test));
+    const double bins = static_cast<double>(test.shares.size());
+    for (size_t b = 0; b < test.shares.size(); ++b) {
+      const double from = static_cast<double>(b) / bins;
+      numbers.Add({axis, DoubleText(from), DoubleText(from + 1.0 / bins),
+                   DoubleText(test.shares[b]), DoubleText(test.errors[b])});
+    }
+  };
+  add("along", check.along);
+  add("across", check.across);
+  return {"probability_integral_transform",
+          "Where the recorded hip lies in the model's distribution, with standard errors clustered "
+          "by recording; even where the model is right.",
+          DrawCharts(charts, "probability integral transform", 2, kSmallWidth, kPanelHeight),
+          numbers};
+}
+
+std::string TestText(const std::string& axis, const UniformityTest& test) {
+  return axis + " the push: F = " + Rounded(test.f, 3) + ", p = " + Rounded(test.p, 2) + " (" +
+         std::to_string(test.values.size()) + " values of " + std::to_string(test.recordings) +
+         " recordings)";
+}
+
+}  // namespace
+
+ReportSection VisualCheckSection(const FittedModel& model,
+                                 const std::vector<RecordingView>& views) {
+  ReportSection section{"checks", "Does the model look right", {}, {}, {}, {}, {}, ""};
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : views) recordings.push_back(view.run.recording);
+  const VisualCheck check = CheckVisually(ModelOf(model.fit), recordings);
+  if (check.strata.empty()) return section;
+  section.paragraphs = {
+      "Simulated recordings have effects of their own and errors that last; nothing of a recording "
+      "but its first frame and push is used. These recordings were fitted: new ones err more.",
+      "Uniform? " + TestText("along", check.along) + "; " + TestText("across", check.across) +
+          ". Values 0.25 s apart, Hotelling's test of five bins, clustered by recording: a small p "
+          "says that the distribution is not right."};
+  section.tables.push_back({"", StrataTable(check)});
+  section.figures.push_back(StrataFigure(check));
+  section.figures.push_back(HistogramFigure(check));
+  return section;
+}
+
+}  // namespace pushid

@@ -1,0 +1,83 @@
+// ident: what generators learn from.
+#include <algorithm>
+#include <map>
+
+#include "datasets/loading/forecast_windows.h"
+#include "ident/generators/push_particles.h"
+#include "ident/training/generator_training.h"
+
+namespace pushid {
+namespace {
+
+// Motions of the recordings, a group a person's share of the push: everybody counts alike.
+std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings,
+                                    const std::vector<int>& among) {
+  std::vector<LearntParticles> people;
+  for (int i : among) {
+    for (int n = 0; n < recordings[i].num_people(); ++n) {
+      PushedParticles particles = ParticlesOf(recordings[i], n);
+      people.push_back(
+          {0, std::move(particles.motion.frames), std::move(particles.motion.controls)});
+    }
+  }
+  return people;
+}
+
+}  // namespace
+
+GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
+  GeneratorSamples samples;
+  samples.settings.data = GeneratorData::kCmu;
+  samples.settings.observed = kObservedFrames;
+  samples.settings.predicted = kForecastFrames;
+  samples.settings.rate = kForecastRate;
+  samples.settings.layout = mocap.skeleton.layout;
+  std::map<std::string, int> actions;
+  for (LearntMotion& motion : LearntMotions(mocap, with_validation)) {
+    const int action =
+        actions.emplace(motion.action, static_cast<int>(actions.size())).first->second;
+    if (motion.phase == 0) samples.ridge.push_back(motion.motion);
+    samples.learnt.push_back({action, std::move(motion.motion)});
+  }
+  for (const MocapClip& clip : mocap.clips) {
+    if (!IsValidationClip(mocap, clip)) continue;
+    samples.held.push_back({0, EverySecond(clip.motion, 0)});
+  }
+  return samples;
+}
+
+GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
+                           const std::vector<int>& among, const std::vector<int>& held,
+                           int observed) {
+  GeneratorSamples samples;
+  GeneratorSettings& settings = samples.settings;
+  settings.data = GeneratorData::kPushes;
+  settings.observed = observed;
+  settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
+  settings.layout = PushLayout(recordings.front().joint_names);
+  samples.learnt = People(recordings, among);
+  samples.held = People(recordings, held);
+  int longest = observed + 1;
+  for (const auto& motion : samples.learnt) {
+    longest = std::max(longest, static_cast<int>(motion.motion.cols()));
+  }
+  settings.predicted = longest - observed;
+  return samples;
+}
+
+void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options) {
+  const GeneratorSettings& settings = samples.settings;
+  ParticleTrainingOptions& particles = options->particles;
+  particles.observed = settings.observed;
+  particles.predicted = settings.predicted;
+  if (settings.data != GeneratorData::kPushes) return;
+  // A push stands at the start of its recording, recordings differ in length, and a metric is a
+  // mean over all frames.
+  particles.from_start = true;
+  particles.even_frames = true;
+  particles.structure.controls = kPushControls;
+  particles.mirrored_controls = kMirroredPush;
+  options->ridge_share = 0.0;  // it knows one horizon only
+}
+
+}  // namespace pushid

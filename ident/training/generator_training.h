@@ -1,0 +1,56 @@
+// ident: training of generators: several seeds, one after the other, and the linear forecast beside
+// them, with checkpoints. Needs LibTorch (behind models/).
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "datasets/loading/mocap_folder.h"
+#include "ident/generators/generator_files.h"
+#include "ident/training/restoration_training.h"
+#include "models/generators/particle_trainer.h"
+
+namespace pushid {
+
+struct GeneratorTrainingOptions {
+  GeneratorKind kind = GeneratorKind::kParticles;
+  ParticleTrainingOptions particles;  // of every seed; seed is the first one's
+  int seeds = 3;                      // networks that are averaged
+  double ridge_share = ParticleGeneratorOptions{}.ridge_share;
+  double ridge_penalty = 1e-2;  // m^2
+  std::string checkpoint;       // file, one per seed beside it; empty: none
+  double checkpoint_seconds = 20.0;
+};
+
+struct GeneratorSamples {
+  GeneratorSettings settings;
+  std::vector<LearntParticles> learnt, held;
+  std::vector<Trajectories> ridge;  // what the linear forecast learns from
+};
+
+// Both phases of all clips but those below test/; with_validation: also the validation clips, which
+// otherwise only show how the training goes.
+GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
+
+// Every person of the recordings `among`, whole; those of `held` show how the training goes.
+GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
+                           const std::vector<int>& among, const std::vector<int>& held,
+                           int observed);
+
+// Options that the data decide: frames of a window, where it starts, controls.
+void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
+
+struct TrainedGenerator {
+  TrainedParticles particles;
+  std::vector<TrainingPoint> curve;  // stages "seed 1, drift", ...
+  bool resumed = false;
+};
+
+// Errors: nothing to learn from, a checkpoint that cannot be written. A checkpoint of other data or
+// options is not used.
+Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
+                                        const GeneratorTrainingOptions& options,
+                                        const TrainingProgress& progress = nullptr);
+
+}  // namespace pushid

@@ -1,0 +1,50 @@
+// models: learned generators of motion: from what was seen of people to what they do next.
+//
+//   std::vector<Trajectories> next = generator.Forecast(people, 25);
+//   auto futures = generator.Sample(people, 25, 20, normal);   // 20 futures of each person
+//
+// All people of a call have been seen for the same number of frames. A kind that lets people see
+// each other takes those of one call for a group; particles do not see each other, so that any
+// windows may be forecast together, which is faster.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "models/enum_names.h"
+#include "models/particles.h"
+
+namespace pushid {
+
+enum class GeneratorKind { kParticles };
+constexpr EnumNames<GeneratorKind, 1> Names(GeneratorKind) {
+  return {{{"particles", GeneratorKind::kParticles}}};
+}
+
+// What is seen of a person, and what acts on them.
+struct ObservedMotion {
+  Trajectories frames;
+  Eigen::MatrixXf controls = {};  // a column per frame, observed and to come; or empty
+};
+
+struct SampledFuture {
+  Trajectories motion;
+  double log_likelihood = 0.0;  // of its transitions; comparable between futures of one person
+};
+
+// Standard normal draws; models hold no random generator of their own.
+using NormalSource = std::function<double()>;
+
+class MotionGenerator {
+ public:
+  virtual ~MotionGenerator() = default;
+  virtual const ParticleLayout& layout() const = 0;
+  virtual std::vector<Trajectories> Forecast(const std::vector<ObservedMotion>& people,
+                                             int frames) const = 0;
+  // [person][future]
+  virtual std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
+                                                         int frames, int count,
+                                                         const NormalSource& normal) const = 0;
+};
+
+}  // namespace pushid

@@ -1,0 +1,129 @@
+// models: particles averaged and blended.
+#include "models/generators/particle_generator.h"
+
+#include <cmath>
+#include <utility>
+
+namespace pushid {
+namespace {
+
+std::vector<Trajectories> Empty(const std::vector<ObservedMotion>& people, int count, int frames) {
+  return std::vector<Trajectories>(people.size() * static_cast<size_t>(count),
+                                   Trajectories::Zero(people.front().frames.rows(), frames));
+}
+
+// Noise with a memory; what it adds to the likelihood that white noise of these values would have.
+class ColouredNoise {
+ public:
+  ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
+      : memory_(static_cast<float>(options.noise_memory)),
+        scale_(static_cast<float>(options.noise_scale)),
+        noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
+
+  const Eigen::MatrixXf& Next(const NormalSource& normal) {
+    Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
+    for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
+    const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
+    noise_ = memory_ * noise_ + scale_ * share * fresh;
+    is_first_ = false;
+    const float constant = static_cast<float>(noise_.rows()) * std::log(scale_ * share);
+    change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
+    change_.array() -= constant;
+    return noise_;
+  }
+  const Eigen::VectorXf& log_likelihood_change() const { return change_; }
+
+ private:
+  float memory_, scale_;
+  bool is_first_ = true;
+  Eigen::MatrixXf noise_;
+  Eigen::VectorXf change_;
+};
+
+}  // namespace
+
+ParticleGenerator::ParticleGenerator(ParticleLayout layout, std::vector<ParticleNetwork> members,
+                                     RidgeForecast ridge, const ParticleGeneratorOptions& options)
+    : layout_(std::move(layout)),
+      members_(std::move(members)),
+      ridge_(std::move(ridge)),
+      options_(options) {}
+
+std::vector<Trajectories> ParticleGenerator::MeanOfMembers(
+    const std::vector<ObservedMotion>& people, int frames) const {
+  std::vector<Trajectories> motions = Empty(people, 1, frames);
+  const float share = 1.0f / static_cast<float>(members_.size());
+  for (const ParticleNetwork& member : members_) {
+    ParticleRollout rollout(member, people);
+    for (int t = 0; t < frames; ++t) {
+      const Eigen::MatrixXf& poses = rollout.Step();
+      for (size_t n = 0; n < people.size(); ++n) {
+        motions[n].col(t) += share * poses.col(static_cast<Eigen::Index>(n));
+      }
+    }
+  }
+  return motions;
+}
+
+void ParticleGenerator::Blend(const std::vector<ObservedMotion>& people,
+                              std::vector<Trajectories>* motions) const {
+  const float share = static_cast<float>(options_.ridge_share);
+  if (share <= 0.0f) return;
+  for (size_t n = 0; n < people.size(); ++n) {
+    Trajectories& motion = (*motions)[n];
+    motion =
+        (1.0f - share) * motion + share * ridge_.Forecast(people[n].frames).leftCols(motion.cols());
+  }
+}
+
+void ParticleGenerator::Finish(const ObservedMotion& person, Trajectories* motion) const {
+  if (!options_.project_bones) return;
+  ProjectBones(person.frames.rightCols(1), layout_, motion);
+}
+
+std::vector<Trajectories> ParticleGenerator::Forecast(const std::vector<ObservedMotion>& people,
+                                                      int frames) const {
+  if (people.empty()) return {};
+  std::vector<Trajectories> motions = MeanOfMembers(people, frames);
+  Blend(people, &motions);
+  for (size_t n = 0; n < people.size(); ++n) Finish(people[n], &motions[n]);
+  return motions;
+}
+
+std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
+    const std::vector<ObservedMotion>& people, int frames, int count,
+    const NormalSource& normal) const {
+  std::vector<std::vector<SampledFuture>> futures(people.size());
+  if (people.empty() || count <= 0) return futures;
+  const std::vector<Trajectories> mean = MeanOfMembers(people, frames);
+  std::vector<Trajectories> blend = mean;
+  Blend(people, &blend);
+  const int members = static_cast<int>(members_.size());
+  for (int m = 0; m < members; ++m) {
+    const int share = count / members + (m < count % members ? 1 : 0);
+    if (share == 0) continue;
+    std::vector<Trajectories> motions = Empty(people, share, frames);
+    Eigen::MatrixXf jitter(layout_.num_coordinates(), static_cast<Eigen::Index>(motions.size()));
+    for (float& value : jitter.reshaped()) value = static_cast<float>(options_.jitter * normal());
+    ParticleRollout rollout(members_[m], people, share, &jitter);
+    Eigen::VectorXf log_likelihood = Eigen::VectorXf::Zero(static_cast<int>(motions.size()));
+    ColouredNoise noise(layout_.num_coordinates(), log_likelihood.size(), options_);
+    for (int t = 0; t < frames; ++t) {
+      const Eigen::MatrixXf& poses = rollout.Step(&noise.Next(normal));
+      log_likelihood += rollout.log_likelihood() + noise.log_likelihood_change();
+      for (size_t i = 0; i < motions.size(); ++i) {
+        motions[i].col(t) = poses.col(static_cast<Eigen::Index>(i));
+      }
+    }
+    for (size_t i = 0; i < motions.size(); ++i) {
+      const size_t n = i / static_cast<size_t>(share);
+      motions[i] += blend[n] - mean[n];
+      Finish(people[n], &motions[i]);
+      futures[n].push_back(
+          {std::move(motions[i]), static_cast<double>(log_likelihood(static_cast<int>(i)))});
+    }
+  }
+  return futures;
+}
+
+}  // namespace pushid

@@ -1,0 +1,132 @@
+// models: particles moved on by their network.
+#include "models/generators/particle_network.h"
+
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+using Array = Eigen::ArrayXXf;
+
+Array Sigmoid(const Eigen::Ref<const Array>& x) { return 1.0f / (1.0f + (-x).exp()); }
+
+Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
+  return (layer.weights * inputs).colwise() + layer.bias;
+}
+
+}  // namespace
+
+ParticleRollout::ParticleRollout(const ParticleNetwork& network,
+                                 const std::vector<ObservedMotion>& people, int copies,
+                                 const Eigen::MatrixXf* jitter)
+    : network_(network), people_(people), copies_(copies), jitter_(jitter) {
+  const Eigen::Index count = static_cast<Eigen::Index>(people.size()) * copies;
+  const int size = network.num_coordinates();
+  hidden_ = memory_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
+  history_ = Eigen::MatrixXf::Zero(kSkipSteps * size, count);
+  log_likelihood_ = Eigen::VectorXf::Zero(count);
+  for (Eigen::Index t = 0; t < people.front().frames.cols(); ++t) {
+    Eigen::MatrixXf pose(size, count);
+    for (Eigen::Index n = 0; n < count; ++n) pose.col(n) = people[n / copies].frames.col(t);
+    if (t == 0) pose_ = pose;
+    Observe(pose);
+  }
+}
+
+void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
+  const ParticleStructure& structure = network_.structure;
+  const int size = network_.num_coordinates();
+  const Eigen::Index count = pose.cols();
+  const Eigen::MatrixXf step = (pose - pose_).array().colwise() / network_.step_spread.array();
+  if (structure.HasSkip()) {
+    const Eigen::MatrixXf older = history_.topRows((kSkipSteps - 1) * size);
+    history_.bottomRows((kSkipSteps - 1) * size) = older;
+    history_.topRows(size) = step;
+  }
+  pose_ = pose;
+  Eigen::MatrixXf inputs(structure.NumInputs(size), count);
+  if (structure.particles) inputs.topRows(size) = step;
+  auto seen = inputs.middleRows(structure.particles ? size : 0, size);
+  seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
+  if (jitter_ != nullptr) seen += *jitter_;
+  for (Eigen::Index n = 0; structure.controls > 0 && n < count; ++n) {
+    const Eigen::MatrixXf& controls = people_[n / copies_].controls;
+    inputs.col(n).tail(structure.controls).setZero();
+    if (frame_ < controls.cols()) {
+      inputs.col(n).tail(structure.controls) =
+          controls.col(frame_).array() / network_.control_spread.array();
+    }
+  }
+  ++frame_;
+  const Array in = Apply(network_.input, inputs), own = Apply(network_.recurrent, hidden_);
+  const int h = kParticleHidden;
+  if (structure.cell == ParticleCell::kGru) {
+    const Array reset = Sigmoid(in.topRows(h) + own.topRows(h));
+    const Array update = Sigmoid(in.middleRows(h, h) + own.middleRows(h, h));
+    const Array fresh = (in.bottomRows(h) + reset * own.bottomRows(h)).tanh();
+    hidden_ = (1.0f - update) * fresh + update * hidden_.array();
+    return;
+  }
+  const Array gates = in + own;
+  memory_ = Sigmoid(gates.middleRows(h, h)) * memory_.array() +
+            Sigmoid(gates.topRows(h)) * gates.middleRows(2 * h, h).tanh();
+  hidden_ = Sigmoid(gates.bottomRows(h)) * memory_.array().tanh();
+}
+
+const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
+  Eigen::MatrixXf next = Apply(network_.drift, hidden_);
+  if (network_.structure.HasSkip()) next.noalias() += network_.skip * history_;
+  if (noise != nullptr) {
+    const Array log_noise =
+        Apply(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
+    next.array() += log_noise.exp() * noise->array();
+    const float constant = 0.5f * std::log(2.0f * static_cast<float>(M_PI));
+    log_likelihood_ = -(log_noise + 0.5f * noise->array().square() + constant)
+                           .colwise()
+                           .sum()
+                           .matrix()
+                           .transpose();
+  }
+  const bool steps = network_.structure.PredictsSteps();
+  next.array().colwise() *= (steps ? network_.step_spread : network_.pose_spread).array();
+  Observe(steps ? Eigen::MatrixXf(pose_ + next)
+                : Eigen::MatrixXf(next.colwise() + network_.pose_mean));
+  return pose_;
+}
+
+void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors) {
+  tensors->push_back({name + ".pose_mean", network.pose_mean});
+  tensors->push_back({name + ".pose_spread", network.pose_spread});
+  tensors->push_back({name + ".step_spread", network.step_spread});
+  if (network.structure.controls > 0) {
+    tensors->push_back({name + ".control_spread", network.control_spread});
+  }
+  AddTensors(name + ".input", network.input, tensors);
+  AddTensors(name + ".recurrent", network.recurrent, tensors);
+  AddTensors(name + ".drift", network.drift, tensors);
+  AddTensors(name + ".noise", network.noise, tensors);
+  if (network.structure.HasSkip()) tensors->push_back({name + ".skip", network.skip});
+}
+
+ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,
+                              int coordinates, TensorReader* reader) {
+  ParticleNetwork network;
+  network.structure = structure;
+  network.pose_mean = reader->Take(name + ".pose_mean", coordinates, 1);
+  network.pose_spread = reader->Take(name + ".pose_spread", coordinates, 1);
+  network.step_spread = reader->Take(name + ".step_spread", coordinates, 1);
+  if (structure.controls > 0) {
+    network.control_spread = reader->Take(name + ".control_spread", structure.controls, 1);
+  }
+  const int gates = structure.NumGates() * kParticleHidden;
+  network.input = TakeLayer(name + ".input", structure.NumInputs(coordinates), gates, reader);
+  network.recurrent = TakeLayer(name + ".recurrent", kParticleHidden, gates, reader);
+  network.drift = TakeLayer(name + ".drift", kParticleHidden, coordinates, reader);
+  network.noise = TakeLayer(name + ".noise", kParticleHidden, coordinates, reader);
+  if (structure.HasSkip()) {
+    network.skip = reader->Take(name + ".skip", coordinates, kSkipSteps * coordinates);
+  }
+  return network;
+}
+
+}  // namespace pushid

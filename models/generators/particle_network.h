@@ -1,0 +1,90 @@
+// models: SDE's generator without its training: particles whose displacements follow a learned
+// drift and learned noise (Lyu et al., "Learning Human Motion Prediction via Stochastic
+// Differential Equations", ACM MM 2021, called SDE).
+//
+//   p_t     = (S_t - S_{t-1}) / step_spread            displacement of every coordinate; p_0 = 0
+//   h_t     = cell([p_t, (S_t - pose_mean) / pose_spread, controls_t], h_{t-1})
+//   p_{t+1} = f + g e,   e ~ N(0, 1)                   the transition of SDE's Eq. 4
+//   f       = W h_t + b + sum_{k<9} A_k p_{t-k}        drift; A_0 = 1 and the rest 0 before
+//   training log g   = V h_t + c, held within -6 .. 2           noise, diagonal S_{t+1} = S_t +
+//   step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
+//
+// The forecast is the path without noise; what is predicted is fed back. Cells in PyTorch's
+// conventions. Rejected: a pose operator that is learned, as the released fragment has it: the sum
+// is what it has to be, and without it the error at 80 ms doubles.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "models/enum_names.h"
+#include "models/generators/motion_generator.h"
+#include "models/restoration/tensors.h"
+
+namespace pushid {
+
+enum class ParticleCell { kGru, kLstm };
+constexpr EnumNames<ParticleCell, 2> Names(ParticleCell) {
+  return {{{"gru", ParticleCell::kGru}, {"lstm", ParticleCell::kLstm}}};
+}
+
+struct ParticleStructure {
+  ParticleCell cell = ParticleCell::kGru;
+  bool skip = true;           // the sum over A_k
+  bool pose_operator = true;  // off: the next pose itself is predicted
+  bool particles = true;      // off: poses go in alone, and the next pose comes out
+  int controls = 0;           // further inputs a frame: a push
+
+  bool PredictsSteps() const { return pose_operator && particles; }
+  bool HasSkip() const { return skip && PredictsSteps(); }
+  int NumGates() const { return cell == ParticleCell::kGru ? 3 : 4; }
+  int NumInputs(int coordinates) const { return (particles ? 2 : 1) * coordinates + controls; }
+};
+
+inline constexpr int kSkipSteps = 9;
+inline constexpr int kParticleHidden = 256;
+inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
+
+struct ParticleNetwork {
+  ParticleStructure structure;
+  Eigen::VectorXf pose_mean, pose_spread, step_spread;  // by coordinate; m
+  Eigen::VectorXf control_spread;
+  DenseLayer input, recurrent;  // of the gates, side by side
+  DenseLayer drift, noise;
+  Eigen::MatrixXf skip;  // coordinates x 9 coordinates, the newest step first
+
+  int num_coordinates() const { return static_cast<int>(pose_mean.size()); }
+};
+
+// Where many people, or many futures of one, stand after the same number of frames.
+class ParticleRollout {
+ public:
+  // All people must have the same number of frames. Each stands `copies` times side by side.
+  // jitter: what is added to the scaled pose that goes in, a column for every copy of every person.
+  ParticleRollout(const ParticleNetwork& network, const std::vector<ObservedMotion>& people,
+                  int copies = 1, const Eigen::MatrixXf* jitter = nullptr);
+
+  // The next frame: a column per person. With `noise` (coordinates x people, standard normal) a
+  // sampled one.
+  const Eigen::MatrixXf& Step(const Eigen::MatrixXf* noise = nullptr);
+  // Of the last step's transitions, per person: log density of the displacement in its units.
+  const Eigen::VectorXf& log_likelihood() const { return log_likelihood_; }
+  const Eigen::MatrixXf& pose() const { return pose_; }
+
+ private:
+  void Observe(const Eigen::MatrixXf& pose);  // moves the cell on by a frame
+
+  const ParticleNetwork& network_;
+  const std::vector<ObservedMotion>& people_;
+  int copies_;
+  const Eigen::MatrixXf* jitter_;
+  int frame_ = 0;  // the next to be observed
+  Eigen::MatrixXf pose_, hidden_, memory_, history_;
+  Eigen::VectorXf log_likelihood_;
+};
+
+void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors);
+ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,
+                              int coordinates, TensorReader* reader);
+
+}  // namespace pushid

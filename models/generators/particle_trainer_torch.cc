@@ -1,0 +1,209 @@
+// models: the trainer of particles, in LibTorch.
+#include <algorithm>
+
+#include "models/generators/particle_losses_torch.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kHeldWindows = 256;
+constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
+
+torch::Tensor NoJitter(const ParticleBatch& batch) {
+  return torch::zeros({batch.frames.size(0), 1, batch.frames.size(2)});
+}
+
+// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
+double RateShare(int step, int steps, int warm_up) {
+  const int up = std::min(warm_up, std::max(1, steps / 2));
+  if (step < up) return (step + 1.0) / up;
+  return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
+}
+
+}  // namespace
+
+struct ParticleTrainer::Torch {
+  Torch(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+        const std::vector<LearntParticles>& held, const ParticleTrainingOptions& given)
+      : options(given),
+        statistics(ParticleStatistics(layout, learnt, options)),
+        windows(layout, learnt, options),
+        held_windows(layout, held, options),
+        losses(layout, options) {}
+
+  ParticleTrainingOptions options;
+  ParticleNetwork statistics;
+  ParticleWindows windows, held_windows;
+  ParticleLosses losses;
+  std::shared_ptr<ParticleModule> module;
+  std::shared_ptr<ParticleCritic> critic;
+  std::unique_ptr<torch::optim::AdamW> drift, noise, critics;
+  int step = 0;
+
+  int AllSteps() const { return options.steps + options.noise_steps; }
+  bool InDrift() const { return step < options.steps; }
+
+  std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
+    return std::make_unique<torch::optim::AdamW>(
+        parameters, torch::optim::AdamWOptions(options.learning_rate).weight_decay(0.0));
+  }
+
+  torch::Tensor Jitter(const ParticleBatch& batch) const {
+    return options.jitter * torch::randn({batch.frames.size(0), 1, batch.frames.size(2)});
+  }
+
+  torch::Tensor NoiseLossOf(const ParticleBatch& batch, const torch::Tensor& jitter) const {
+    const int first = std::min(kFirstNoiseStep, options.observed);
+    const auto [misses, hidden] = module->Misses(batch, jitter, first);
+    const torch::Tensor log_noise = module->LogNoise(hidden);
+    const torch::Tensor share =
+        batch.present.narrow(1, first, misses.size(1)).unsqueeze(2).expand_as(misses);
+    const torch::Tensor charge = options.noise_loss == NoiseLoss::kLikelihood
+                                     ? log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp()
+                                     : misses.square() + (2.0 * log_noise).exp();
+    return (charge * share).sum() / share.sum();
+  }
+
+  void Improve(torch::optim::AdamW* optimizer, const std::vector<torch::Tensor>& parameters,
+               const torch::Tensor& loss, double rate) {
+    SetLearningRate(optimizer, rate);
+    optimizer->zero_grad();
+    loss.backward();
+    torch::nn::utils::clip_grad_norm_(parameters, options.clip);
+    optimizer->step();
+  }
+
+  double DriftStep() {
+    const ParticleBatch batch = windows.Draw();
+    const torch::Tensor jitter = Jitter(batch);
+    const double rate = options.learning_rate * RateShare(step, options.steps, options.warm_up);
+    const torch::Tensor forecast =
+        module->Forecast(batch, jitter, options.observed, options.predicted);
+    torch::Tensor loss = losses(forecast, batch);
+    const double shown = loss.item<double>();
+    if (critic) {
+      const torch::Tensor last = batch.frames.narrow(1, options.observed - 1, 1);
+      const torch::Tensor made = critic->Features(forecast, last);
+      const torch::Tensor real =
+          critic->Features(batch.frames.narrow(1, options.observed, options.predicted), last);
+      Improve(critics.get(), critic->parameters(), critic->Loss(made.detach(), real), rate);
+      loss = loss - options.critic * critic->Score(made);
+    }
+    Improve(drift.get(), module->DriftParameters(), kLossUnits * loss, rate);
+    return shown;
+  }
+
+  double NoiseStep() {
+    const ParticleBatch batch = windows.Draw();
+    const torch::Tensor loss = NoiseLossOf(batch, Jitter(batch));
+    Improve(noise.get(), module->NoiseParameters(), loss,
+            options.learning_rate *
+                RateShare(step - options.steps, options.noise_steps, options.warm_up));
+    return loss.item<double>();
+  }
+
+  double HeldLoss(bool of_drift) const {
+    if (held_windows.num_windows() == 0) return std::nan("");
+    torch::NoGradGuard no_grad;
+    const ParticleBatch batch = held_windows.Some(kHeldWindows);
+    const torch::Tensor none = NoJitter(batch);
+    if (!of_drift) return NoiseLossOf(batch, none).item<double>();
+    return losses(module->Forecast(batch, none, options.observed, options.predicted), batch)
+        .item<double>();
+  }
+};
+
+ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
+                                 const std::vector<LearntParticles>& learnt,
+                                 const std::vector<LearntParticles>& held,
+                                 const ParticleTrainingOptions& options) {
+  torch::set_num_threads(options.num_threads);
+  torch::manual_seed(options.seed);
+  torch_ = std::make_unique<Torch>(layout, learnt, held, options);
+  Torch& t = *torch_;
+  t.module = std::make_shared<ParticleModule>(t.statistics);
+  t.drift = t.Adam(t.module->DriftParameters());
+  t.noise = t.Adam(t.module->NoiseParameters());
+  if (options.critic <= 0.0) return;
+  t.critic = std::make_shared<ParticleCritic>(layout.num_coordinates() * options.predicted,
+                                              ToTensor(t.statistics.pose_spread));
+  t.critics = t.Adam(t.critic->parameters());
+}
+
+ParticleTrainer::~ParticleTrainer() = default;
+
+bool ParticleTrainer::Done() const { return torch_->step >= torch_->AllSteps(); }
+
+TrainingPoint ParticleTrainer::RunRound() {
+  Torch& t = *torch_;
+  const bool in_drift = t.InDrift();
+  const int end = std::min(t.step + kParticleRound, in_drift ? t.options.steps : t.AllSteps());
+  double sum = 0.0;
+  const int count = end - t.step;
+  for (; t.step < end; ++t.step) sum += in_drift ? t.DriftStep() : t.NoiseStep();
+  return {t.step, sum / std::max(1, count), t.HeldLoss(in_drift), in_drift ? "drift" : "noise"};
+}
+
+ParticleNetwork ParticleTrainer::Network() const {
+  return torch_->module->Network(torch_->statistics);
+}
+
+Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames) const {
+  torch::NoGradGuard no_grad;
+  ParticleBatch batch;
+  batch.frames = ToTensor(person.frames).unsqueeze(0);
+  batch.controls = ToTensor(person.controls).unsqueeze(0);
+  const torch::Tensor forecast = torch_->module->Forecast(
+      batch, NoJitter(batch), static_cast<int>(person.frames.cols()), frames);
+  return ToMatrix(forecast.squeeze(0)).transpose();
+}
+
+std::string ParticleTrainer::State() const {
+  torch::serialize::OutputArchive archive, module, drift, noise, critic, critics;
+  torch_->module->save(module);
+  torch_->drift->save(drift);
+  torch_->noise->save(noise);
+  archive.write("module", module);
+  archive.write("drift", drift);
+  archive.write("noise", noise);
+  if (torch_->critic) {
+    torch_->critic->save(critic);
+    torch_->critics->save(critics);
+    archive.write("critic", critic);
+    archive.write("critics", critics);
+  }
+  archive.write("step", torch::tensor(torch_->step));
+  archive.write("random", at::detail::getDefaultCPUGenerator().get_state());
+  return Archived(archive);
+}
+
+bool ParticleTrainer::Resume(const std::string& state) {
+  try {
+    std::istringstream stream(state);
+    torch::serialize::InputArchive archive, module, drift, noise, critic, critics;
+    archive.load_from(stream);
+    archive.read("module", module);
+    archive.read("drift", drift);
+    archive.read("noise", noise);
+    if (torch_->critic) {
+      archive.read("critic", critic);
+      archive.read("critics", critics);
+      torch_->critic->load(critic);
+      torch_->critics->load(critics);
+    }
+    torch_->module->load(module);
+    torch_->drift->load(drift);
+    torch_->noise->load(noise);
+    torch::Tensor step, random;
+    archive.read("step", step);
+    archive.read("random", random);
+    auto generator = at::detail::getDefaultCPUGenerator();
+    generator.set_state(random);
+    torch_->step = step.item<int>();
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+}  // namespace pushid

@@ -1,0 +1,67 @@
+// models: particles and the bones between them.
+#include "models/particles.h"
+
+#include <algorithm>
+
+namespace pushid {
+namespace {
+
+// Where the bone of a particle begins.
+Eigen::Vector3f BoneStart(const Eigen::Ref<const Eigen::VectorXf>& pose,
+                          const ParticleLayout& layout, int particle) {
+  const int parent = layout.parents[particle];
+  if (parent == kFixedPoint) return layout.fixed.col(particle);
+  return pose.segment<3>(3 * parent);
+}
+
+}  // namespace
+
+Trajectories Mirrored(const Trajectories& motion, const ParticleLayout& layout) {
+  Trajectories mirrored(motion.rows(), motion.cols());
+  for (int i = 0; i < layout.num_particles(); ++i) {
+    mirrored.middleRows<3>(3 * i) = motion.middleRows<3>(3 * layout.mirrored[i]);
+    mirrored.row(3 * i + layout.mirrored_axis) *= -1.0f;
+  }
+  return mirrored;
+}
+
+Eigen::MatrixXf BoneLengths(const Trajectories& motion, const ParticleLayout& layout) {
+  Eigen::MatrixXf lengths = Eigen::MatrixXf::Zero(layout.num_particles(), motion.cols());
+  for (int i = 0; i < layout.num_particles(); ++i) {
+    if (layout.parents[i] == kNoBone) continue;
+    for (int t = 0; t < motion.cols(); ++t) {
+      const Eigen::Vector3f end = motion.col(t).segment<3>(3 * i);
+      lengths(i, t) = (end - BoneStart(motion.col(t), layout, i)).norm();
+    }
+  }
+  return lengths;
+}
+
+void ProjectBones(const Eigen::VectorXf& like, const ParticleLayout& layout, Trajectories* motion) {
+  const Eigen::VectorXf lengths = BoneLengths(like, layout);
+  for (int t = 0; t < motion->cols(); ++t) {
+    auto pose = motion->col(t);
+    for (int i = 0; i < layout.num_particles(); ++i) {
+      if (layout.parents[i] == kNoBone) continue;
+      const Eigen::Vector3f start = BoneStart(pose, layout, i);
+      const Eigen::Vector3f bone = pose.segment<3>(3 * i) - start;
+      const float length = bone.norm();
+      if (length > 1e-6f) pose.segment<3>(3 * i) = start + bone * (lengths(i) / length);
+    }
+  }
+}
+
+Eigen::VectorXf MeanDistance(const Trajectories& a, const Trajectories& b,
+                             const ParticleLayout& layout) {
+  const int frames = static_cast<int>(std::min(a.cols(), b.cols()));
+  Eigen::VectorXf mean = Eigen::VectorXf::Zero(frames);
+  for (int t = 0; t < frames; ++t) {
+    for (int i = 0; i < layout.num_particles(); ++i) {
+      mean(t) +=
+          layout.weights[i] * (a.col(t).segment<3>(3 * i) - b.col(t).segment<3>(3 * i)).norm();
+    }
+  }
+  return mean / static_cast<float>(layout.joints);
+}
+
+}  // namespace pushid

@@ -1,0 +1,126 @@
+// --observed in predict, evaluate and crossvalidate; --population in fit.
+#include <gtest/gtest.h>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+// Recordings that differ, or first frames would have nothing to tell.
+class ObservedTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    SyntheticOptions options;
+    options.subjects = 2;
+    options.recordings_per_subject = 6;
+    options.frames = 45;
+    options.joint_noise_m = 0.0005;
+    options.recording_spread = 0.4;
+    const auto made = MakeSyntheticRecordings(options);
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    ASSERT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made.value()));
+  }
+};
+
+TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
+  const std::string model = "--model=" + FitModel();
+  for (const bool asked : {false, true}) {
+    std::vector<std::string> more = {model, Recordings(),
+                                     "--json_out=" + Path(asked ? "one.json" : "none.json")};
+    if (asked) more.push_back("--observed=1");
+    const AppRun run = RunApp("pushid-evaluate", more);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  const auto none = Json(Path("none.json")), one = Json(Path("one.json"));
+  for (const char* key : {"hipADE_m", "hipFDE_m", "hipADE_standard_error_m"}) {
+    EXPECT_EQ(none["mean"][key], one["mean"][key]);
+  }
+  EXPECT_FALSE(none["mean"].contains("after_hipADE_m"));
+  EXPECT_EQ(one["mean"]["after_hipADE_m"], one["mean"]["hipADE_m"]);
+}
+
+TEST_F(ObservedTest, FramesThatAreSeenHelp) {
+  const std::string model = "--model=" + FitModel();
+  double before = 1e9;
+  for (const int k : {1, 10, 25}) {
+    const AppRun run = RunApp(
+        "pushid-evaluate",
+        {model, Recordings(), "--json_out=" + Path("s.json"), "--observed=" + std::to_string(k)});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto json = Json(Path("s.json"));
+    EXPECT_EQ(json["observed"], k);
+    EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), before);
+    before = json["mean"]["hipADE_m"];
+    EXPECT_TRUE(json["mean"].contains("inside90_x_share"));
+    for (const char* baseline : {"static", "constant_velocity", "reanchored"}) {
+      EXPECT_TRUE(json["baselines"][baseline]["mean"].contains("after_hipADE_m")) << baseline;
+    }
+    EXPECT_NE(run.out.find("90 % bands hold"), std::string::npos);
+    EXPECT_NE(run.out.find("re-anchored"), std::string::npos);
+  }
+}
+
+TEST_F(ObservedTest, PredictWritesBandsBehindWhatWasSeen) {
+  const std::string model = "--model=" + FitModel();
+  const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--observed=12",
+                                               "--out=" + Path("t.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("after hipADE"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("from 12 frames"), std::string::npos) << run.out;
+  const std::string csv = ReadText(Path("t.csv"));
+  EXPECT_NE(csv.substr(0, csv.find('\n')).find("hip_x_lower90_m,hip_x_upper90_m"),
+            std::string::npos);
+}
+
+TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
+  const AppRun run = RunApp(
+      "pushid-crossvalidate",
+      {Recordings(), "--folds=3", "--repeats=1", "--observed=12", "--json_out=" + Path("cv.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = Json(Path("cv.json"));
+  ASSERT_EQ(json["predictors"].size(), 4u);
+  EXPECT_EQ(json["predictors"][1]["name"], "re-anchored");
+  for (const auto& predictor : json["predictors"]) {
+    EXPECT_GT(predictor["mean"]["after_hipADE_m"].get<double>(), 0.0);
+  }
+  EXPECT_TRUE(json["predictors"][0]["mean"].contains("inside90_y_share"));
+  EXPECT_FALSE(json["predictors"][2]["mean"].contains("inside90_y_share"));
+  EXPECT_TRUE(json["paired_differences"][0].contains("after_hipADE_m"));
+}
+
+TEST_F(ObservedTest, WhatCannotBeIsRefused) {
+  const std::string model = "--model=" + FitModel();
+  const auto evaluate = [&](const std::string& observed) {
+    return RunApp("pushid-evaluate", {model, Recordings(), observed});
+  };
+  EXPECT_TRUE(Refused(evaluate("--observed=0"), {"--observed is 0", "at least 1"}));
+  EXPECT_TRUE(Refused(evaluate("--observed=-4"), {"--observed is -4"}));
+  EXPECT_TRUE(
+      Refused(evaluate("--observed=45"), {"recording " + id_ + " has 45 frames", "at most 44"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--frames=10",
+                                                "--observed=12", "--out=" + Path("t.csv")}),
+                      {"--frames=10", "--observed=12"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {Recordings(), "--observed=99"}),
+                      {"recording " + id_, "--observed=99"}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-crossvalidate", {Recordings(), "--preset=ldp", "--observed=9"}),
+              {"no push tail", "--push_tail=exponential"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--population"}),
+                      {"--population", "no push tail"}));
+  const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
+  EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
+                      {"ldp.json", "no push tail"}));
+}
+
+TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
+  const std::string model = FitModel("model.json", {"--population"});
+  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on tail_gain"), std::string::npos);
+  EXPECT_NE(fit_.out.find("alone"), std::string::npos);
+  const auto effect = Json(model)["recording_effect"];
+  EXPECT_EQ(effect["recordings"].size(), 12u);
+  EXPECT_GT(effect["error_scale_m"].get<double>(), 0.0);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,146 @@
+// Clips of exponential maps: read, refused with line and column, cut into the protocol's windows.
+#include "datasets/loading/mocap_folder.h"
+
+#include "datasets/loading/forecast_windows.h"
+#include "tests/mocap_support.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class MocapFolderTest : public TempDirTest {
+ protected:
+  void SetUp() override {
+    TempDirTest::SetUp();
+    WriteText("skeleton.json", kSmallSkeleton);
+    for (int i = 1; i <= 11; ++i) {
+      WriteText("train/sway/sway_" + std::to_string(i) + ".txt", SmallClip(120 + i, 0.3, i));
+    }
+  }
+  MocapFolder Read(const std::string& folder) {
+    Result<MocapFolder> read = ReadMocapFolder(folder);
+    EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().ToString());
+    return read.ok() ? read.value() : MocapFolder{};
+  }
+  std::string Complaint(const std::string& clip) {
+    WriteText("train/sway/sway_1.txt", clip);
+    const Result<MocapFolder> read = ReadMocapFolder(Path(""));
+    return read.ok() ? "no error" : read.error().ToString();
+  }
+};
+
+// Joint 1 hangs on the root and stands at its offset; joint 2's offset of 0.3 m is turned by joint
+// 1's map, about z; joint 5 shares joint 1's place.
+TEST_F(MocapFolderTest, AFrameByHand) {
+  WriteText("train/sway/sway_1.txt",
+            "9,9,9,0,0,0,0,0,1.5707963267948966,0,0,0,0,0,0,0,0,0,0,0,0\n");
+  const MocapFolder mocap = Read(Path(""));
+  const Eigen::VectorXf pose = mocap.clips[0].motion.col(0);
+  ASSERT_EQ(pose.size(), 12);
+  EXPECT_LT((pose.segment<3>(0) - Eigen::Vector3f(0, 0.5f, 0)).norm(), 1e-6f);
+  EXPECT_LT((pose.segment<3>(3) - Eigen::Vector3f(0.3f, 0.5f, 0)).norm(), 1e-6f);
+  EXPECT_LT((pose.segment<3>(6) - Eigen::Vector3f(0.3f, 0.3f, 0)).norm(), 1e-6f);
+  EXPECT_LT((pose.segment<3>(9) - Eigen::Vector3f(0.3f, 0.7f, 0)).norm(), 1e-6f);
+  EXPECT_EQ(mocap.skeleton.layout.weights, (std::vector<float>{2, 1, 1, 1}));
+  EXPECT_EQ(mocap.skeleton.layout.parents, (std::vector<int>{kFixedPoint, 0, 1, 1}));
+  EXPECT_EQ(mocap.skeleton.layout.mirrored, (std::vector<int>{0, 1, 3, 2}));
+}
+
+TEST_F(MocapFolderTest, ClipsStandInTheOrderOfTheirNumbersAndTheLastValidates) {
+  const MocapFolder mocap = Read(Path(""));
+  ASSERT_EQ(mocap.clips.size(), 11u);
+  EXPECT_EQ(mocap.clips[1].name, "sway_2");
+  EXPECT_EQ(mocap.clips[10].name, "sway_11");
+  EXPECT_TRUE(IsValidationClip(mocap, mocap.clips[10]));
+  EXPECT_FALSE(IsValidationClip(mocap, mocap.clips[9]));
+  EXPECT_EQ(LearntMotions(mocap, false).size(), 20u);
+  EXPECT_EQ(LearntMotions(mocap, true).size(), 22u);
+}
+
+TEST_F(MocapFolderTest, TestClipsAreNeverLearntFrom) {
+  WriteText("test/sway/sway_1.txt", SmallClip(400, 0.3, 0));
+  const MocapFolder mocap = Read(Path(""));
+  EXPECT_EQ(LearntMotions(mocap, true).size(), 22u);
+  EXPECT_EQ(MakeForecastWindows(mocap, ForecastProtocol::kTest).size(), 8u);
+}
+
+TEST_F(MocapFolderTest, AFolderOfActionsFindsItsSkeletonOneHigher) {
+  EXPECT_EQ(Read(Path("train")).clips.size(), 11u);
+  EXPECT_EQ(Read(Path("train/")).clips.size(), 11u);
+}
+
+TEST_F(MocapFolderTest, MalformedClipsAreNamedWithLineAndColumn) {
+  EXPECT_TRUE(Contains(Complaint("1,2,3\n"), "sway_1.txt:1:5: the line ends after 3 numbers"));
+  const std::string good = SmallClip(1, 0.1, 0);
+  EXPECT_TRUE(Contains(Complaint(good + "0,abc" + good.substr(8)),
+                       "sway_1.txt:2:3: number 2: 'abc' is not a number"));
+  EXPECT_TRUE(Contains(Complaint(good.substr(0, good.size() - 1) + ",7\n"),
+                       "the line has more numbers than it should"));
+  EXPECT_TRUE(Contains(Complaint("nan" + good.substr(8)), "sway_1.txt:1:1: number 1: "));
+  EXPECT_TRUE(Contains(Complaint("\n\n"), "the file has no frames"));
+}
+
+TEST_F(MocapFolderTest, SkeletonsThatDoNotHangTogetherAreRefused) {
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string text = kSmallSkeleton;
+    text.replace(text.find(from), from.size(), to);
+    const Result<MocapSkeleton> read = ReadMocapSkeleton(WriteText("skeleton.json", text));
+    return read.ok() ? "no error" : read.error().ToString();
+  };
+  EXPECT_TRUE(Contains(complaint("[-1, 0, 1", "[-1, 2, 1"), "an earlier joint"));
+  EXPECT_TRUE(Contains(complaint("[1, 2, 3, 4]", "[1, 2, 3, 9]"), "holds '9'"));
+  EXPECT_TRUE(Contains(complaint("\"5\": 1", "\"5\": 0"), "a joint that is not used"));
+  EXPECT_TRUE(Contains(complaint("3-3 <-> 4-4", "3-3 <-> 4-5"), "do not match"));
+  EXPECT_TRUE(Contains(complaint("3-3 <-> 4-4", "3-3 <-> 5-5"), "not used"));
+  EXPECT_TRUE(Contains(complaint("[0, 300, 0]", "[0, 300]"), "lists of three numbers"));
+  EXPECT_TRUE(Contains(complaint("\"used\"", "\"other\""), "used is missing"));
+}
+
+TEST_F(MocapFolderTest, NothingThereIsSaid) {
+  const Result<MocapFolder> none = ReadMocapFolder(Path("nowhere"));
+  ASSERT_FALSE(none.ok());
+  EXPECT_TRUE(Contains(none.error().ToString(), "skeleton.json"));
+  WriteText("empty/skeleton.json", kSmallSkeleton);
+  const Result<MocapFolder> empty = ReadMocapFolder(Path("empty"));
+  ASSERT_FALSE(empty.ok());
+  EXPECT_TRUE(Contains(empty.error().ToString(), "no clips"));
+}
+
+TEST(ForecastWindowsTest, TestWindowsStartWhereTheLiteratureDoes) {
+  EXPECT_EQ(TestWindowStarts(300), (std::vector<int>{130, 102, 47, 140, 51, 33, 171, 105}));
+  EXPECT_TRUE(TestWindowStarts(75).empty());
+  EXPECT_EQ(TestWindowStarts(76), std::vector<int>(8, 0));
+}
+
+TEST_F(MocapFolderTest, WindowsAreCutWhereTheyStart) {
+  const MocapFolder mocap = Read(Path(""));
+  const auto windows = MakeForecastWindows(mocap, ForecastProtocol::kValidation, 3);
+  // 131 frames, every second: 66; starts 0 .. 16.
+  ASSERT_EQ(windows.size(), 6u);
+  const Trajectories motion = EverySecond(mocap.clips[10].motion, 0);
+  EXPECT_EQ(windows[1].observed.col(0), motion.col(3));
+  EXPECT_EQ(windows[1].future.col(24), motion.col(3 + 49));
+  EXPECT_EQ(MakeForecastWindows(mocap, ForecastProtocol::kValidation).size(), 9u);
+}
+
+TEST(RealMocapTest, TheValidationSplitHasTheWindowsOfTheProtocol) {
+  if (MocapRoot().empty()) GTEST_SKIP() << kNoMocap;
+  const Result<MocapFolder> mocap = ReadMocapFolder(MocapRoot());
+  ASSERT_TRUE(mocap.ok()) << mocap.error().ToString();
+  EXPECT_EQ(mocap.value().skeleton.layout.num_particles(), 25);
+  std::map<std::string, int> windows;
+  for (const ForecastWindow& window :
+       MakeForecastWindows(mocap.value(), ForecastProtocol::kValidation, 1)) {
+    ++windows[window.action];
+  }
+  EXPECT_EQ(windows, (std::map<std::string, int>{{"basketball", 153},
+                                                 {"basketball_signal", 1571},
+                                                 {"directing_traffic", 1803},
+                                                 {"jumping", 127},
+                                                 {"running", 27},
+                                                 {"soccer", 238},
+                                                 {"walking", 116}}));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,88 @@
+// Scores of sampled futures: quantiles by hand, scores of normal samples, the search of a path.
+#include "ident/generators/forecast_spread.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/generators/path_search.h"
+#include "tests/models/generators/generator_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// Of nine values quantile 0.1 stands at place 1, 0.25 half way between the second and the third.
+TEST(SampleQuantileTest, StandsAtPTimesNPlusOne) {
+  const std::vector<double> values = {1, 2, 3, 4, 5, 6, 7, 8, 19};
+  EXPECT_DOUBLE_EQ(SampleQuantile(values, 0.1), 1.0);
+  EXPECT_DOUBLE_EQ(SampleQuantile(values, 0.25), 2.5);
+  EXPECT_DOUBLE_EQ(SampleQuantile(values, 0.5), 5.0);
+  EXPECT_DOUBLE_EQ(SampleQuantile(values, 0.9), 19.0);
+  EXPECT_DOUBLE_EQ(SampleQuantile(values, 0.01), 1.0);
+}
+
+// Truths and samples from N(0, 1), and samples that spread too little.
+class SpreadTest : public ::testing::Test {
+ protected:
+  SpreadScores Scores(double sample_size) {
+    Random random(1);
+    std::vector<ForecastWindow> windows;
+    std::vector<std::vector<SampledFuture>> samples;
+    const auto draw = [&](double size) {
+      Trajectories motion(12, kForecastFrames);
+      for (float& x : motion.reshaped()) x = static_cast<float>(size * random.Normal());
+      return motion;
+    };
+    for (int i = 0; i < 60; ++i) {
+      windows.push_back({"walk", Trajectories::Zero(12, 25), draw(1.0)});
+      samples.emplace_back();
+      for (int k = 0; k < 39; ++k) samples.back().push_back({draw(sample_size), 0.0});
+    }
+    spread_ = SpreadOf(windows, samples, FourParticles());
+    return spread_.mean;
+  }
+  ForecastSpread spread_;
+};
+
+// CRPS of N(0, 1) for a truth of N(0, 1): E|X - y| - E|X - X'| / 2 = E|X - X'| / 2 = 1/sqrt(pi).
+TEST_F(SpreadTest, OfTheRightSize) {
+  const SpreadScores scores = Scores(1.0);
+  EXPECT_NEAR(scores.coverage[0], 0.9, 0.03);
+  EXPECT_NEAR(scores.crps[0], 1.0 / std::sqrt(M_PI), 0.04);
+  EXPECT_LT(scores.best[0], 2.0);
+}
+
+TEST_F(SpreadTest, TooNarrowFuturesScoreWorseAndCoverLess) {
+  const SpreadScores right = Scores(1.0), narrow = Scores(0.3);
+  EXPECT_LT(narrow.coverage[2], 0.6);
+  EXPECT_GT(narrow.crps[2], right.crps[2]);
+  EXPECT_GT(narrow.energy[2], right.energy[2]);
+}
+
+TEST_F(SpreadTest, StandsBesideTheErrors) {
+  Scores(1.0);
+  nlohmann::ordered_json json = {{"mean", {{"MPJPE_mm", 1}}}};
+  AddSpreadJson(spread_, &json);
+  EXPECT_EQ(json["mean"]["MPJPE_mm"], 1);
+  EXPECT_NEAR(json["mean"]["coverage_90"]["1000"].get<double>(), 0.9, 0.05);
+  EXPECT_TRUE(json["actions"]["walk"]["energy_score_mm"].contains("80"));
+  EXPECT_TRUE(Contains(ForecastSpreadText(spread_), "best of n"));
+}
+
+// Three futures, of which two end at the target; the likelier of the two is chosen, not the
+// likeliest of all.
+TEST(PathSearchTest, TakesTheMostProbableThatEndsThere) {
+  const Trajectories there = Trajectories::Zero(12, 5), away = Trajectories::Ones(12, 5);
+  const std::vector<SampledFuture> futures = {{there, -9.0}, {there, -4.0}, {away, -1.0}};
+  const auto path = MostProbablePath(futures, Eigen::VectorXf::Zero(12), 0.1, FourParticles());
+  ASSERT_TRUE(path.ok());
+  EXPECT_EQ(path.value().future, 1);
+  EXPECT_EQ(path.value().near, 2);
+  EXPECT_EQ(path.value().log_likelihood, -4.0);
+  const auto none =
+      MostProbablePath(futures, Eigen::VectorXf::Constant(12, 5.0f), 0.1, FourParticles());
+  ASSERT_FALSE(none.ok());
+  EXPECT_TRUE(Contains(none.error().message, "raise --samples or --target_distance"));
+}
+
+}  // namespace
+}  // namespace pushid

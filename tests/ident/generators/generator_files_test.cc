@@ -1,0 +1,100 @@
+// Generators as files: round trips, and errors that say what is wrong.
+#include "ident/generators/generator_files.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/models/generators/generator_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class GeneratorFilesTest : public TempDirTest {
+ protected:
+  GeneratorFilesTest() {
+    trained_.settings.observed = 12;
+    trained_.settings.predicted = 6;
+    trained_.settings.layout = FourParticles();
+    trained_.settings.training["note"] = "of a test";
+    trained_.members = {RandomParticles(1), RandomParticles(2)};
+    RidgeFit fit;
+    fit.Add(SwayingMotion(100, 0.0f), 12, 6);
+    trained_.ridge = fit.Solve(1e-3);
+    trained_.ridge_share = 0.3;
+    trained_.jitter = 0.7;
+  }
+  std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
+    const auto loaded = LoadGenerator(folder, changes);
+    return loaded.ok() ? "no error" : loaded.error().ToString();
+  }
+  std::string ErrorAfter(const std::string& from, const std::string& to) {
+    EXPECT_FALSE(WriteGenerator(Path("g"), trained_));
+    std::string text = ReadText(Path("g/generator.json"));
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    if (at == std::string::npos) return "";
+    WriteText("g/generator.json", text.replace(at, from.size(), to));
+    return ErrorOf(Path("g"));
+  }
+  TrainedParticles trained_;
+  const std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
+};
+
+TEST_F(GeneratorFilesTest, ComeBackToTheLastBit) {
+  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
+  const auto loaded = LoadGenerator(Path("g"));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value().generator->Forecast(people_, 6)[0],
+            MakeGenerator(trained_)->Forecast(people_, 6)[0]);
+  const GeneratorSettings& settings = loaded.value().settings;
+  EXPECT_EQ(settings.observed, 12);
+  EXPECT_EQ(settings.layout.names, FourParticles().names);
+  EXPECT_EQ(settings.layout.parents, FourParticles().parents);
+  EXPECT_EQ(settings.layout.mirrored, FourParticles().mirrored);
+  EXPECT_EQ(settings.layout.weights, FourParticles().weights);
+  EXPECT_EQ(settings.training["note"], "of a test");
+}
+
+TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
+  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
+  GeneratorChanges changes;
+  changes.ridge_share = 1.0;
+  changes.project_bones = false;
+  const auto loaded = LoadGenerator(Path("g"), changes);
+  ASSERT_TRUE(loaded.ok());
+  EXPECT_LT((loaded.value().generator->Forecast(people_, 6)[0] -
+             trained_.ridge.Forecast(people_[0].frames))
+                .norm(),
+            1e-5f);
+  trained_.ridge_share = 0.0;
+  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
+  EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without a ridge"));
+}
+
+TEST_F(GeneratorFilesTest, MistakesAreNamed) {
+  EXPECT_TRUE(Contains(ErrorOf(Path("none")),
+                       "--model names the folder that "
+                       "pushid-train-generator --out wrote"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"kind\": \"particles\"", "\"kind\": \"waves\""),
+                       "kind is 'waves'; it must be particles"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"format\": 1", "\"format\": 2"), "format 2"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"rnn\""), "cell is 'rnn'"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 3"), "member2"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 0"), "1 to 100"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "more observed frames"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"seen\": 12"), "observed"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"parent\": 0", "\"parent\": 7"), "particle 1"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"up_axis\": 1", "\"up_axis\": 0"), "up_axis"));
+}
+
+TEST_F(GeneratorFilesTest, DamagedWeightsAreSeen) {
+  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
+  std::string bytes = ReadText(Path("g/weights.npy"));
+  bytes[bytes.size() - 2] ^= 1;
+  WriteText("g/weights.npy", bytes);
+  EXPECT_TRUE(Contains(ErrorOf(Path("g")), "weights_hash differs"));
+}
+
+}  // namespace
+}  // namespace pushid

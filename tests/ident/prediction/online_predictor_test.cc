@@ -1,0 +1,260 @@
+// Predictions that learn from the frames they are shown.
+#include "ident/prediction/online_predictor.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "ident/prediction/evaluation.h"
+#include "tests/ident/effect_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class OnlinePredictorTest : public ::testing::Test {
+ protected:
+  OnlinePredictorTest() : study_(SmallStudy()), model_(TrueModel(study_)) {
+    recordings_ = PlantEffects(model_, MakePendulums(study_), {0.4, 0.1, 11}, &effects_);
+    model_.recording_effect = RecordingEffect{};
+    model_.recording_effect->spread = 0.4;
+    model_.recording_effect->error_scale = 0.1;
+  }
+  OnlinePredictor After(size_t i, int observed) const {
+    auto made = OnlinePredictor::Make(model_, recordings_[i], recordings_[i].num_frames());
+    EXPECT_TRUE(made.ok());
+    for (int t = 1; t < observed; ++t) made.value().Observe(FrameAt(recordings_[i], t));
+    return std::move(made).value();
+  }
+
+  SyntheticOptions study_;
+  IdentifiedModel model_;
+  std::vector<PendulumRecording> recordings_;
+  std::vector<double> effects_;
+};
+
+TEST_F(OnlinePredictorTest, WithoutFramesIsThePredictionToTheBit) {
+  model_.recording_effect->blend_rate = 1.0;
+  for (const PendulumRecording& recording : recordings_) {
+    const Prediction plain = Predict(model_, recording);
+    const Prediction first = PredictFrom(model_, recording, 1).value();
+    EXPECT_EQ(first.hip, plain.hip);
+    for (int t = 0; t < recording.num_frames(); ++t) {
+      EXPECT_EQ(first.path.At(t, 0).q, plain.path.At(t, 0).q);
+      EXPECT_EQ(first.path.At(t, 0).qd, plain.path.At(t, 0).qd);
+    }
+    const RecordingScore a = ScoreModel(model_, recording), b = ScoreModel(model_, recording, 1);
+    EXPECT_EQ(a.hip_ade, b.hip_ade);
+    EXPECT_EQ(a.hip_fde, b.hip_fde);
+    EXPECT_EQ(b.after_hip_ade, b.hip_ade);
+  }
+}
+
+// The same by dense matrices: posterior of b over the nodes, one rollout at its mean, kriging.
+TEST_F(OnlinePredictorTest, EqualsTheDenseComputation) {
+  constexpr int kObserved = 20;
+  const PendulumRecording& r = recordings_[2];
+  const int frames = r.num_frames(), seen = kObserved - 1;
+  Eigen::MatrixXd k(frames - 1, frames - 1);
+  {
+    Eigen::MatrixXd v = k;
+    for (int t = 1; t < frames; ++t) {
+      for (int u = 1; u < frames; ++u) {
+        v(t - 1, u - 1) = std::exp(-std::abs(t - u) / 18.0) - std::exp(-(t + u) / 18.0);
+      }
+    }
+    const Eigen::MatrixXd sum = Eigen::MatrixXd::Ones(frames - 1, frames - 1)
+                                    .triangularView<Eigen::Lower>()
+                                    .toDenseMatrix();
+    k = sum * v * sum.transpose();
+    k /= k(30, 30);
+  }
+  const Eigen::MatrixXd with_noise =
+      k.topLeftCorner(seen, seen) + 0.0025 * Eigen::MatrixXd::Identity(seen, seen);
+  const Eigen::LLT<Eigen::MatrixXd> factor(with_noise);
+  const Eigen::Vector2d u = PushDirection(r);
+  Eigen::Matrix3d axes;
+  axes << u.x(), -u.y(), 0, u.y(), u.x(), 0, 0, 0, 1;
+  const Vector3<double> a(1.0, 0.3, 0.3);
+  const double g = PushSpeed(r) / 0.2;
+  const auto errors = [&](double b) {
+    const Prediction p = Predict(model_, r, 0, b);
+    Eigen::MatrixXd e(seen, 3);
+    for (int t = 1; t <= seen; ++t) {
+      e.row(t - 1) = (axes.transpose() * (r.hip[0][t] - p.hip[0][t])).cwiseQuotient(a) / g;
+    }
+    return e;
+  };
+  double sum = 0.0, mean = 0.0;
+  for (int j = 0; j < 33; ++j) {
+    const double b = -1.6 + 0.1 * j;
+    const Eigen::MatrixXd e = errors(b);
+    const double q = (e.transpose() * factor.solve(e)).trace();
+    const double weight = std::exp(-0.5 * (b * b / 0.16 + q / 0.01));
+    sum += weight;
+    mean += weight * b;
+  }
+  mean /= sum;
+
+  const OnlinePredictor predictor = After(2, kObserved);
+  EXPECT_NEAR(predictor.effect().mean, mean, 1e-9);
+  const Prediction prediction = predictor.Predict();
+  const Prediction rollout = Predict(model_, r, 0, mean);
+  const Eigen::MatrixXd kriged =
+      k.bottomLeftCorner(frames - 1 - seen, seen) * factor.solve(errors(mean));
+  for (int t = kObserved; t < frames; ++t) {
+    const Vector3<double> error = kriged.row(t - kObserved).transpose();
+    const Vector3<double> expected = rollout.hip[0][t] + axes * (g * a.cwiseProduct(error));
+    EXPECT_LT((prediction.hip[0][t] - expected).norm(), 1e-9) << t;
+  }
+}
+
+TEST_F(OnlinePredictorTest, LearnsTheEffect) {
+  double without = 0.0, with = 0.0;
+  std::vector<double> errors(2, 0.0);
+  for (size_t i = 0; i < recordings_.size(); ++i) {
+    const PendulumRecording& r = recordings_[i];
+    const int observed = 40;
+    const OnlinePredictor predictor = After(i, observed);
+    EXPECT_LT(predictor.effect().error, 0.4);
+    errors[0] += std::pow(effects_[i], 2);
+    errors[1] += std::pow(predictor.effect().mean - effects_[i], 2);
+    without += ScoreHip(r, Predict(model_, r).hip, observed).after_hip_ade;
+    with += ScoreHip(r, predictor.Predict().hip, observed).after_hip_ade;
+  }
+  EXPECT_LT(errors[1], 0.6 * errors[0]);
+  EXPECT_LT(with, 0.6 * without);
+}
+
+TEST_F(OnlinePredictorTest, FramesThatWereSeenAreAsTheyWere) {
+  const PendulumRecording& r = recordings_[0];
+  const Prediction p = After(0, 15).Predict();
+  for (int t = 1; t < 15; ++t) {
+    EXPECT_EQ(p.hip[0][t], r.hip[0][t]);
+    EXPECT_EQ(p.path.At(t, 0).q, r.states[0][t].q);
+  }
+  // The pendulum's tip stands over the hip, its velocity is what moves it there.
+  for (int t = 15; t < r.num_frames(); ++t) {
+    const PendulumState<double>& state = p.path.At(t, 0);
+    const Vector3<double> tip = HipPosition(r.scene.people[0].body, state.q);
+    EXPECT_LT((tip - p.hip[0][t]).head<2>().norm(), 1e-12) << t;
+    const Vector4<double> step = r.scene.dt * state.qd;
+    EXPECT_LT((p.path.At(t - 1, 0).q + step - state.q).norm(), 1e-12) << t;
+  }
+}
+
+// Nothing behind the frames seen is looked at.
+TEST_F(OnlinePredictorTest, KnowsNothingOfTheFuture) {
+  PendulumRecording cut = recordings_[1];
+  for (auto& hip : cut.hip) std::fill(hip.begin() + 12, hip.end(), Vector3<double>(9, 9, 9));
+  const Prediction a = PredictFrom(model_, recordings_[1], 12).value();
+  const Prediction b = PredictFrom(model_, cut, 12).value();
+  EXPECT_EQ(a.hip, b.hip);
+}
+
+TEST_F(OnlinePredictorTest, AFrameThatWasNotSeenDoesNotCount) {
+  PendulumRecording gap = recordings_[1];
+  gap.weight = {std::vector<double>(gap.num_frames(), 1.0)};
+  gap.weight[0][5] = 0.0;
+  PendulumRecording wild = gap;
+  wild.hip[0][5] += Vector3<double>(1.0, 1.0, 0.0);
+  const Prediction a = PredictFrom(model_, gap, 12).value();
+  const Prediction b = PredictFrom(model_, wild, 12).value();
+  EXPECT_EQ(a.effect.mean, b.effect.mean);
+  EXPECT_EQ(a.hip[0].back(), b.hip[0].back());
+}
+
+// Fully blended, people go on with the filtered velocity.
+TEST_F(OnlinePredictorTest, BlendsInConstantVelocity) {
+  model_.recording_effect->blend_rate = 100.0;
+  const Prediction p = After(0, 20).Predict();
+  const int last = recordings_[0].num_frames() - 1;
+  const Vector3<double> step = p.hip[0][last] - p.hip[0][last - 1];
+  for (int t = 21; t < last; ++t) {
+    EXPECT_LT((p.hip[0][t + 1] - p.hip[0][t] - step).norm(), 1e-12) << t;
+  }
+  EXPECT_GT(step.norm(), 1e-3);
+}
+
+// Drawn from the model, 90 % bands hold 90 %: of 100 recordings with a standard error of 2 %.
+TEST_F(OnlinePredictorTest, BandsHoldWhatTheModelDraws) {
+  SyntheticOptions study = study_;
+  study.subjects = study.recordings_per_subject = 10;
+  const auto recordings = PlantEffects(model_, MakePendulums(study), {0.4, 0.1, 12});
+  for (int observed : {1, 15, 30}) {
+    double inside = 0.0;
+    for (const PendulumRecording& r : recordings) {
+      const RecordingScore score = ScoreModel(model_, r, observed);
+      inside += 0.5 * (score.inside90_x + score.inside90_y) / 100.0;
+    }
+    EXPECT_NEAR(inside, 0.9, 0.05) << observed;
+  }
+}
+
+TEST_F(OnlinePredictorTest, QuantilesInvertTheDistribution) {
+  const OnlinePredictor predictor = After(3, 10);
+  const HipDistribution hips = predictor.Distribution(predictor.Predict());
+  ASSERT_EQ(hips.num_frames(), recordings_[3].num_frames() - 10);
+  for (double share : {0.05, 0.3, 0.95}) {
+    for (int t : {0, 20}) {
+      for (int axis : {0, 1, 2}) {
+        EXPECT_NEAR(hips.Cdf(0, t, axis, hips.Quantile(0, t, axis, share)), share, 1e-9);
+      }
+    }
+  }
+  model_.recording_effect->widening = {30.0, 0.0, 0.0};
+  const HipDistribution wide = predictor.Distribution(predictor.Predict());
+  const auto width = [](const HipDistribution& of) {
+    return of.Quantile(0, 9, 0, 0.95) - of.Quantile(0, 9, 0, 0.05);
+  };
+  EXPECT_GT(width(wide), 1.4 * width(hips));
+}
+
+TEST_F(OnlinePredictorTest, ModelsThatCannotLearnAreRefused) {
+  model_.source = "old.json";
+  model_.recording_effect.reset();
+  MaybeError error = CheckLearnsFromFrames(model_);
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(), "old.json: the model does not say how recordings"));
+  model_.options.push_tail = PushTail::kNone;
+  error = CheckLearnsFromFrames(model_);
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(), "--push_tail=exponential"));
+  EXPECT_FALSE(PredictFrom(model_, recordings_[0], 5).ok());
+}
+
+struct Camera {
+  const PendulumRecording& recording;
+  int frame = 0;
+  bool Next() { return ++frame < 30; }
+  SeenFrame People() const { return FrameAt(recording, frame); }
+};
+
+// The loop of ident/prediction/README.md, line by line.
+TEST_F(OnlinePredictorTest, LoopOfTheReadme) {
+  const IdentifiedModel& model = model_;
+  const PendulumRecording& start = recordings_[0];
+  Camera camera{start};
+  std::vector<Vector3<double>> targets;
+  // README: begins
+  OnlinePredictor predictor = OnlinePredictor::Make(model, start, 60).value();  // or its error()
+  while (camera.Next()) {
+    predictor.Observe(camera.People());
+    const Prediction prediction = predictor.Predict();
+    targets.push_back(prediction.hip[0].back());  // where the hip will be after a second
+  }
+  // README: ends
+  EXPECT_EQ(targets.size(), 29u);
+  const std::string source =
+      ReadText(PUSHID_SOURCE_DIR "/tests/ident/prediction/online_predictor_test.cc");
+  const std::string readme = ReadText(PUSHID_SOURCE_DIR "/ident/prediction/README.md");
+  const size_t from = source.find("// README: begins\n") + 18;
+  std::istringstream lines(source.substr(from, source.find("  // README: ends") - from));
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_TRUE(Contains(readme, line.substr(2) + "\n")) << line;
+  }
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,220 @@
+// Particles: one step by hand, samples around forecasts, blends, bones.
+#include "models/generators/particle_generator.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/models/generators/generator_samples.h"
+
+namespace pushid {
+namespace {
+
+Trajectories Moved(const ParticleNetwork& network, const ObservedMotion& person, int frames) {
+  const std::vector<ObservedMotion> people = {person};
+  ParticleRollout rollout(network, people);
+  Trajectories motion(person.frames.rows(), frames);
+  for (int t = 0; t < frames; ++t) motion.col(t) = rollout.Step();
+  return motion;
+}
+
+// Without drift a network of the first training step carries the last displacement on.
+TEST(ParticleRolloutTest, AnUntrainedNetworkGoesOnAtConstantVelocity) {
+  ParticleNetwork network = RandomParticles(1);
+  network.drift.weights.setZero(), network.drift.bias.setZero();
+  network.skip.setZero();
+  network.skip.leftCols(12).setIdentity();
+  const Trajectories seen = SwayingMotion(12, 0.3f);
+  const Trajectories next = Moved(network, {seen}, 4);
+  const Eigen::VectorXf step = seen.col(11) - seen.col(10);
+  for (int t = 0; t < 4; ++t) {
+    EXPECT_LT((next.col(t) - seen.col(11) - (t + 1) * step).norm(), 1e-5f) << t;
+  }
+}
+
+// A bias alone: p = b, and S moves by step_spread b. A cell of zero weights stays at h = 0.
+TEST(ParticleRolloutTest, OneStepByHand) {
+  ParticleStructure structure;
+  structure.skip = false;
+  ParticleNetwork network = RandomParticles(1, structure);
+  for (DenseLayer* layer : {&network.input, &network.recurrent}) {
+    layer->weights.setZero(), layer->bias.setZero();
+  }
+  network.drift.bias.setConstant(0.5f);
+  network.noise.bias.setConstant(std::log(2.0f));
+  const std::vector<ObservedMotion> people = {{SwayingMotion(3, 0.0f)}};
+  ParticleRollout rollout(network, people);
+  const Eigen::MatrixXf noise = Eigen::MatrixXf::Constant(12, 1, -1.0f);
+  const Eigen::VectorXf moved = rollout.Step(&noise) - people[0].frames.col(2);
+  EXPECT_LT((moved.array() - 0.01f * (0.5f - 2.0f)).abs().maxCoeff(), 1e-6f);
+  // log N(-2; 0, 2^2) for twelve coordinates.
+  const double density = -std::log(2.0) - 0.5 - 0.5 * std::log(2.0 * M_PI);
+  EXPECT_NEAR(rollout.log_likelihood()(0), 12 * density, 1e-4);
+}
+
+TEST(ParticleRolloutTest, NoiseIsHeldWithinItsBounds) {
+  ParticleNetwork network = RandomParticles(1);
+  network.noise.weights.setZero();
+  network.noise.bias.setConstant(50.0f);
+  const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.0f)}};
+  ParticleRollout still(network, people), moved(network, people);
+  const Eigen::MatrixXf noise = Eigen::MatrixXf::Ones(12, 1);
+  const Eigen::VectorXf difference = moved.Step(&noise) - still.Step();
+  EXPECT_LT((difference.array() / 0.01f - std::exp(2.0f)).abs().maxCoeff(), 1e-2f);
+}
+
+TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
+  for (ParticleCell cell : {ParticleCell::kGru, ParticleCell::kLstm}) {
+    ParticleStructure structure;
+    structure.cell = cell;
+    structure.controls = 1;
+    const ParticleNetwork network = RandomParticles(2, structure);
+    const std::vector<ObservedMotion> people = {
+        {SwayingMotion(12, 0.0f), Eigen::MatrixXf::Random(1, 20)}, {SwayingMotion(12, 1.0f)}};
+    ParticleRollout together(network, people, 2);
+    for (int t = 0; t < 5; ++t) together.Step();
+    for (int n = 0; n < 4; ++n) {
+      const Eigen::VectorXf alone = Moved(network, people[n / 2], 5).col(4);
+      EXPECT_LT((together.pose().col(n) - alone).norm(), 1e-5f) << n;
+    }
+  }
+}
+
+TEST(ParticleRolloutTest, WhatActsOnSomebodyMovesThem) {
+  ParticleStructure structure;
+  structure.controls = 1;
+  const ParticleNetwork network = RandomParticles(3, structure);
+  const Trajectories seen = SwayingMotion(12, 0.0f);
+  Eigen::MatrixXf push = Eigen::MatrixXf::Zero(1, 20);
+  const Trajectories free = Moved(network, {seen, push}, 6);
+  push(0, 14) = 5.0f;
+  const Trajectories pushed = Moved(network, {seen, push}, 6);
+  EXPECT_EQ(free.leftCols(3), pushed.leftCols(3));
+  EXPECT_GT((free.col(3) - pushed.col(3)).norm(), 1e-5f);
+}
+
+class ParticleGeneratorTest : public ::testing::Test {
+ protected:
+  ParticleGeneratorTest() {
+    RidgeFit fit;
+    for (float phase : {0.0f, 1.0f, 2.0f}) fit.Add(SwayingMotion(100, phase), 12, 6);
+    ridge_ = fit.Solve(1e-4);
+  }
+  ParticleGenerator Generator(double ridge_share, bool project_bones) const {
+    return {FourParticles(),
+            {RandomParticles(1), RandomParticles(2)},
+            ridge_,
+            {ridge_share, project_bones, 0.0}};
+  }
+  RidgeForecast ridge_;
+  std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
+};
+
+TEST_F(ParticleGeneratorTest, BlendsMembersAndTheLinearForecast) {
+  const Trajectories mean =
+      0.5f * (Moved(RandomParticles(1), people_[0], 6) + Moved(RandomParticles(2), people_[0], 6));
+  const Trajectories expected = 0.7f * mean + 0.3f * ridge_.Forecast(people_[0].frames);
+  EXPECT_LT((Generator(0.3, false).Forecast(people_, 6)[0] - expected).norm(), 1e-5f);
+  EXPECT_LT((Generator(0.0, false).Forecast(people_, 6)[0] - mean).norm(), 1e-5f);
+}
+
+TEST_F(ParticleGeneratorTest, BonesKeepTheLengthsThatWereSeen) {
+  const ParticleGenerator generator = Generator(0.3, true);
+  const Eigen::VectorXf seen = BoneLengths(people_[0].frames.rightCols(1), FourParticles());
+  Random random(1);
+  std::vector<Trajectories> motions = generator.Forecast(people_, 6);
+  const auto futures = generator.Sample(people_, 6, 3, [&] { return random.Normal(); });
+  for (const SampledFuture& future : futures[0]) {
+    motions.push_back(future.motion);
+  }
+  ASSERT_EQ(motions.size(), 4u);
+  for (const Trajectories& motion : motions) {
+    const Eigen::MatrixXf lengths = BoneLengths(motion, FourParticles());
+    EXPECT_LT((lengths.colwise() - seen).cwiseAbs().maxCoeff(), 1e-5f);
+  }
+}
+
+TEST_F(ParticleGeneratorTest, SamplesSpreadAroundTheForecastAndRepeatThemselves) {
+  const ParticleGenerator generator = Generator(0.3, false);
+  const auto sample = [&](uint64_t seed) {
+    Random random(seed);
+    return generator.Sample(people_, 6, 400, [&] { return random.Normal(); })[0];
+  };
+  const auto futures = sample(1), again = sample(1), other = sample(2);
+  Trajectories mean = Trajectories::Zero(12, 6);
+  for (const SampledFuture& future : futures) mean += future.motion / 400.0f;
+  const Trajectories forecast = generator.Forecast(people_, 6)[0];
+  EXPECT_LT((mean.col(0) - forecast.col(0)).norm(), 5e-3f);
+  EXPECT_GT((futures[0].motion - forecast).norm(), 1e-3f);
+  EXPECT_EQ(futures[7].motion, again[7].motion);
+  EXPECT_NE(futures[7].motion, other[7].motion);
+  EXPECT_NE(futures[0].log_likelihood, futures[1].log_likelihood);
+}
+
+// Jitter alone spreads the futures too, and the forecast knows nothing of it.
+TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
+  const auto ends = [&](double jitter) {
+    const ParticleGenerator generator(FourParticles(), {RandomParticles(1)}, ridge_,
+                                      {0.0, false, jitter});
+    Random random(1);
+    const auto futures = generator.Sample(people_, 6, 2, [&] { return random.Normal(); });
+    const Trajectories forecast = generator.Forecast(people_, 6)[0];
+    return std::make_pair(forecast, Trajectories(futures[0][0].motion - forecast));
+  };
+  EXPECT_EQ(ends(0.0).first, ends(0.7).first);
+  EXPECT_NE(ends(0.0).second, ends(0.7).second);
+  const Eigen::MatrixXf jitter = Eigen::MatrixXf::Constant(12, 1, 0.5f);
+  const ParticleNetwork network = RandomParticles(1);
+  ParticleRollout moved(network, people_, 1, &jitter);
+  Trajectories shifted = people_[0].frames;
+  shifted.array() += 0.5f * 0.1f;  // half a spread
+  const std::vector<ObservedMotion> other = {{shifted}};
+  ParticleRollout as_if(network, other);
+  const Eigen::VectorXf a = moved.Step() - people_[0].frames.col(11);
+  const Eigen::VectorXf b = as_if.Step() - shifted.col(11);
+  EXPECT_LT((a - b).norm(), 1e-5f);
+}
+
+// Noise of nothing: a future is its member's forecast, moved as the blend is.
+TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
+  const auto futures = Generator(0.0, false).Sample(people_, 6, 2, [] { return 0.0; })[0];
+  EXPECT_LT((futures[0].motion - Moved(RandomParticles(1), people_[0], 6)).norm(), 1e-5f);
+  EXPECT_LT((futures[1].motion - Moved(RandomParticles(2), people_[0], 6)).norm(), 1e-5f);
+}
+
+// Noise that remembers: after two frames, of steps g e_1 and g e_2 with a correlation of 0.5, the
+// spread is sqrt(3) g scale, against sqrt(2) g of white noise; the likelihood is that of the fresh
+// draws.
+TEST_F(ParticleGeneratorTest, NoiseMayLast) {
+  ParticleNetwork network = RandomParticles(1);
+  for (DenseLayer* layer : {&network.input, &network.recurrent, &network.drift, &network.noise}) {
+    layer->weights.setZero(), layer->bias.setZero();
+  }
+  network.skip.setZero();
+  const auto spread = [&](double memory, double scale) {
+    const ParticleGenerator generator(FourParticles(), {network}, ridge_,
+                                      {0.0, false, 0.0, memory, scale});
+    Random random(1);
+    const auto futures = generator.Sample(people_, 2, 2000, [&] { return random.Normal(); });
+    double square = 0.0;
+    for (const SampledFuture& future : futures[0]) {
+      square += (future.motion.col(1) - people_[0].frames.col(11)).squaredNorm() / (12 * 2000);
+    }
+    return std::sqrt(square) / 0.01;
+  };
+  EXPECT_NEAR(spread(0.0, 1.0), std::sqrt(2.0), 0.03);
+  EXPECT_NEAR(spread(0.5, 1.0), std::sqrt(3.0), 0.04);
+  EXPECT_NEAR(spread(0.5, 2.0), 2.0 * std::sqrt(3.0), 0.08);
+  const ParticleGenerator generator(FourParticles(), {network}, ridge_,
+                                    {0.0, false, 0.0, 0.5, 2.0});
+  const auto still = generator.Sample(people_, 2, 1, [] { return 1.0; });
+  // g is 1: -log(share scale) - 1/2 - log(2 pi) / 2 for each coordinate and frame.
+  const double constant = -0.5 - 0.5 * std::log(2.0 * M_PI) - std::log(2.0);
+  EXPECT_NEAR(still[0][0].log_likelihood, 12 * (2 * constant - 0.5 * std::log(0.75)), 1e-3);
+}
+
+TEST_F(ParticleGeneratorTest, NobodyHasNoFuture) {
+  EXPECT_TRUE(Generator(0.3, true).Forecast({}, 6).empty());
+  EXPECT_TRUE(Generator(0.3, true).Sample({}, 6, 3, [] { return 0.0; }).empty());
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,188 @@
+// pushid-train-generator and pushid-generate, as a user runs them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+#include "tests/mocap_support.h"
+
+namespace pushid {
+namespace {
+
+class GeneratorAppTest : public TempDirTest {
+ protected:
+  void SetUp() override {
+    TempDirTest::SetUp();
+    WriteText("clips/skeleton.json", kSmallSkeleton);
+    for (const char* action : {"sway", "bend"}) {
+      for (int i = 1; i <= 3; ++i) {
+        WriteText(
+            std::string("clips/train/") + action + "/" + action + "_" + std::to_string(i) + ".txt",
+            SmallClip(170, action[0] == 's' ? 0.3 : 0.6, i));
+      }
+    }
+  }
+  // Flags that are given later win.
+  std::vector<std::string> Quick(const std::string& out,
+                                 const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> flags = {
+        "--folder=" + Path("clips"), "--out=" + Path(out), "--seeds=2", "--steps=20",
+        "--noise_steps=10",          "--batch=8",          "--quiet"};
+    flags.insert(flags.end(), more.begin(), more.end());
+    return flags;
+  }
+  AppRun Train(const std::string& out, const std::vector<std::string>& more = {}) const {
+    return RunApp("pushid-train-generator", Quick(out, more));
+  }
+  AppRun Generate(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--model=" + Path("g"), "--folder=" + Path("clips"), "--quiet"});
+    return RunApp("pushid-generate", more);
+  }
+  nlohmann::ordered_json Json(const std::string& name) const {
+    return nlohmann::ordered_json::parse(ReadText(Path(name)));
+  }
+};
+
+TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
+  const AppRun train = Train("g");
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  EXPECT_TRUE(Contains(ReadText(Path("g/curve.svg")), "<svg"));
+  EXPECT_FALSE(std::filesystem::exists(Path("g/checkpoint.bin.1")));
+  const AppRun run = Generate({"--samples=19", "--json_out=" + Path("e.json"), "--action=sway",
+                               "--window=1", "--poses_out=" + Path("p.csv"),
+                               "--strip_out=" + Path("s.svg"), "--page_out=" + Path("p.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "mean of actions"));
+  const auto json = Json("e.json");
+  for (const char* horizon : {"80", "160", "320", "400", "1000"}) {
+    EXPECT_GT(json["mean"]["MPJPE_mm"][horizon].get<double>(), 0.0);
+    EXPECT_TRUE(json["actions"]["bend"]["coverage_90"].contains(horizon));
+  }
+  EXPECT_LT(json["mean"]["MPJPE_mm"]["80"].get<double>(),
+            json["baselines"]["zero_velocity"]["mean"]["MPJPE_mm"]["80"].get<double>());
+  EXPECT_TRUE(Contains(ReadText(Path("p.csv")), ",future,19,"));
+  EXPECT_TRUE(Contains(ReadText(Path("s.svg")), "sway, window 1"));
+  EXPECT_TRUE(Contains(ReadText(Path("p.html")), "</html>"));
+}
+
+TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
+  ASSERT_EQ(Train("g").exit_code, 0);
+  ASSERT_EQ(Train("h").exit_code, 0);
+  EXPECT_EQ(ReadText(Path("g/weights.npy")), ReadText(Path("h/weights.npy")));
+  ASSERT_EQ(Generate({"--samples=19", "--json_out=" + Path("a.json")}).exit_code, 0);
+  ASSERT_EQ(Generate({"--samples=19", "--json_out=" + Path("b.json")}).exit_code, 0);
+  auto a = Json("a.json"), b = Json("b.json");
+  a.erase("run"), b.erase("run");
+  EXPECT_EQ(a, b);
+}
+
+// Killed at a checkpoint, it goes on and ends with the bits of a training that was not disturbed.
+TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
+  const std::vector<std::string> longer = {"--steps=100", "--seeds=1", "--checkpoint_seconds=0"};
+  ASSERT_EQ(Train("whole", longer).exit_code, 0);
+  bool killed = false;
+  for (double seconds = 1.0; !killed && seconds < 60.0; seconds *= 2.0) {
+    const AppRun run = RunApp("pushid-train-generator", Quick("broken", longer), seconds);
+    if (run.exit_code == 0) break;
+    killed = std::filesystem::exists(Path("broken/checkpoint.bin.1"));
+  }
+  ASSERT_TRUE(killed) << "the training was done before it had a checkpoint";
+  const AppRun resumed = Train("broken", longer);
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_TRUE(Contains(resumed.out, "resumed from a checkpoint"));
+  EXPECT_EQ(ReadText(Path("whole/weights.npy")), ReadText(Path("broken/weights.npy")));
+}
+
+TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
+  ASSERT_EQ(Train("g").exit_code, 0);
+  const AppRun run = Generate({"--samples=50", "--target_window=3", "--target_distance=10",
+                               "--json_out=" + Path("e.json"), "--poses_out=" + Path("p.bvh")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json("e.json")["path"]["near"], 50);
+  const AppRun far = Generate({"--samples=50", "--target_window=3", "--target_distance=0"});
+  EXPECT_EQ(far.exit_code, 1);
+  EXPECT_TRUE(Contains(far.err, "raise --samples or --target_distance"));
+}
+
+TEST_F(GeneratorAppTest, MistakesAreNamed) {
+  EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--out=" + Path("g")}), {"--folder"}));
+  EXPECT_TRUE(Refused(Train("g", {"--cell=rnn"}), {"--cell is 'rnn'", "gru, lstm"}));
+  EXPECT_TRUE(Refused(Train("g", {"--kind=waves"}), {"--kind is 'waves'"}));
+  EXPECT_TRUE(
+      Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate takes folds of pushes"}));
+  EXPECT_TRUE(Refused(Train("g", {"--observed=1"}), {"--observed goes with --dataset=pushes"}));
+  EXPECT_TRUE(Refused(Train("g", {"--jitter=-1"}), {"--jitter is -1"}));
+  WriteText("clips/train/sway/sway_2.txt", "1,2\n");
+  EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
+  EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
+  EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
+  EXPECT_TRUE(Refused(Generate({"--target_window=3"}), {"give --samples"}));
+  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
+  EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
+}
+
+TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
+  ASSERT_EQ(Train("g").exit_code, 0);
+  std::string skeleton = kSmallSkeleton;
+  const std::string used = "\"used\": [1, 2, 3, 4]";
+  WriteText("clips/skeleton.json",
+            skeleton.replace(skeleton.find(used), used.size(), "\"used\": [1, 3, 4]"));
+  EXPECT_TRUE(Refused(Generate({}), {"3 particles", "the 4 that the generator knows"}));
+}
+
+class PushGeneratorAppTest : public AppTest {
+ protected:
+  AppRun Train(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--dataset=pushes", Recordings(), "--seeds=1", "--steps=30",
+                             "--noise_steps=10", "--batch=8", "--quiet"});
+    return RunApp("pushid-train-generator", more);
+  }
+};
+
+TEST_F(PushGeneratorAppTest, ForecastsPushes) {
+  for (const char* observed : {"20", "1"}) {
+    const AppRun train = Train({"--out=" + Path("g"), std::string("--observed=") + observed});
+    ASSERT_EQ(train.exit_code, 0) << train.err;
+    const AppRun run =
+        RunApp("pushid-generate",
+               {"--model=" + Path("g"), "--dataset=pushes", Recordings(), "--id=" + id_,
+                "--samples=19", "--page_out=" + Path("p.html"), "--json_out=" + Path("e.json")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto json = Json(Path("e.json"));
+    for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm"}) {
+      EXPECT_TRUE(json["mean"].contains(key)) << key;
+    }
+    EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 5e-3);
+    EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_));
+  }
+}
+
+TEST_F(PushGeneratorAppTest, CrossValidates) {
+  const AppRun run = Train({"--crossvalidate=2", "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "generator after observed"));
+  const auto json = Json(Path("e.json"));
+  EXPECT_EQ(json["recordings"].size(), 12u);
+  EXPECT_GT(json["mean"]["MPJPE_m"].get<double>(), 0.0);
+  EXPECT_TRUE(json["baselines"]["static"]["mean"].contains("MPJPE_m"));
+}
+
+TEST_F(PushGeneratorAppTest, MistakesAreNamed) {
+  EXPECT_TRUE(Refused(Train({}), {"--out"}));
+  EXPECT_TRUE(Refused(Train({"--crossvalidate=1"}), {"at least 2 folds"}));
+  ASSERT_EQ(Train({"--out=" + Path("g"), "--observed=30"}).exit_code, 0);
+  const std::string model = "--model=" + Path("g");
+  EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--folder=" + Path("x")}),
+                      {"forecasts pushes; give --dataset=pushes"}));
+  EXPECT_TRUE(Refused(
+      RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(), "--protocol=test"}),
+      {"--protocol goes with --dataset=cmu"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(),
+                                                 "--page_out=" + Path("p.html")}),
+                      {"--id is missing"}));
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,194 @@
+// The trainer of particles: it learns, repeats itself, goes on where it was broken off, and what it
+// returns is the network that LibTorch trained, to 1e-5 m.
+#include "models/generators/particle_trainer.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/models/generators/generator_samples.h"
+
+namespace pushid {
+namespace {
+
+std::vector<LearntParticles> Motions(int count, float phase) {
+  std::vector<LearntParticles> motions;
+  for (int i = 0; i < count; ++i) {
+    motions.push_back({i % 2, SwayingMotion(60, phase + 0.7f * static_cast<float>(i))});
+  }
+  return motions;
+}
+
+ParticleTrainingOptions Quick() {
+  ParticleTrainingOptions options;
+  options.observed = 12;
+  options.predicted = 8;
+  options.steps = 60;
+  options.noise_steps = 30;
+  options.batch = 16;
+  options.warm_up = 10;
+  options.jitter = 0.1;
+  return options;
+}
+
+ParticleNetwork Trained(const ParticleTrainingOptions& options) {
+  ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  while (!trainer.Done()) trainer.RunRound();
+  return trainer.Network();
+}
+
+void ExpectSame(const ParticleNetwork& a, const ParticleNetwork& b) {
+  EXPECT_EQ(a.input.weights, b.input.weights);
+  EXPECT_EQ(a.recurrent.weights, b.recurrent.weights);
+  EXPECT_EQ(a.drift.weights, b.drift.weights);
+  EXPECT_EQ(a.noise.weights, b.noise.weights);
+  EXPECT_EQ(a.skip, b.skip);
+}
+
+TEST(ParticleTrainerTest, LearnsBeyondConstantVelocity) {
+  ParticleTrainingOptions options = Quick();
+  options.steps = 300;
+  options.noise_steps = 0;
+  ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  const TrainingPoint first = trainer.RunRound();
+  TrainingPoint last = first;
+  while (!trainer.Done()) last = trainer.RunRound();
+  EXPECT_LT(last.validation_loss, 0.5 * first.validation_loss);
+  EXPECT_EQ(last.epoch, 300);
+  EXPECT_EQ(last.stage, "drift");
+}
+
+TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
+  ParticleTrainingOptions options = Quick();
+  options.critic = 0.01;  // its state counts too
+  const ParticleNetwork one = Trained(options);
+  ExpectSame(one, Trained(options));
+  for (int rounds : {1, 2}) {  // within the drift, and where the noise begins
+    ParticleTrainer broken(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+    for (int i = 0; i < rounds; ++i) broken.RunRound();
+    const std::string state = broken.State();
+    ParticleTrainer resumed(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+    ASSERT_TRUE(resumed.Resume(state));
+    while (!resumed.Done()) resumed.RunRound();
+    ExpectSame(one, resumed.Network());
+  }
+  ParticleTrainer other(FourParticles(), Motions(6, 0.0f), {}, options);
+  EXPECT_FALSE(other.Resume("no state"));
+}
+
+TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
+  std::vector<ParticleStructure> structures(5);
+  structures[1].cell = ParticleCell::kLstm;
+  structures[2].skip = false;
+  structures[3].pose_operator = false;
+  structures[4].particles = false;
+  for (size_t i = 0; i < structures.size(); ++i) {
+    ParticleTrainingOptions options = Quick();
+    options.structure = structures[i];
+    options.steps = 30;
+    options.noise_steps = 0;
+    ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), {}, options);
+    while (!trainer.Done()) trainer.RunRound();
+    const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.5f)}};
+    const ParticleNetwork network = trainer.Network();
+    ParticleRollout rollout(network, people);
+    const Trajectories torch = trainer.Forecast(people[0], 8);
+    for (int t = 0; t < 8; ++t) {
+      EXPECT_LT((rollout.Step() - torch.col(t)).cwiseAbs().maxCoeff(), 1e-5f) << i << " " << t;
+    }
+  }
+}
+
+TEST(ParticleTrainerTest, LearnsFromWhatActsOnPeople) {
+  // A push of one frame at frame 3 moves the motion by 1 cm a frame per unit from then on.
+  std::vector<LearntParticles> motions;
+  Random random(1);
+  for (int i = 0; i < 12; ++i) {
+    LearntParticles pushed = {0, SwayingMotion(1, 0.0f).replicate(1, 12),
+                              Eigen::MatrixXf::Zero(1, 12)};
+    const float push = static_cast<float>(random.Normal());
+    pushed.controls(0, 3) = push;
+    for (int t = 4; t < 12; ++t) pushed.motion.col(t).array() += 0.01f * push * (t - 3);
+    motions.push_back(pushed);
+  }
+  ParticleTrainingOptions options = Quick();
+  options.structure.controls = 1;
+  options.mirrored = 0.0;
+  options.mirrored_controls = {1.0f};
+  options.from_start = options.even_frames = true;
+  options.observed = 1;
+  options.predicted = 14;  // longer than the motions
+  options.jitter = 0.0;
+  options.steps = 200;
+  options.noise_steps = 0;
+  ParticleTrainer trainer(FourParticles(), motions, motions, options);
+  TrainingPoint last;
+  while (!trainer.Done()) last = trainer.RunRound();
+  EXPECT_LT(last.validation_loss, 0.01);  // m; it moves by 8 cm a unit
+  EXPECT_GT((trainer.Network().control_spread(0)), 0.1f);
+}
+
+// Motions that a random walk shakes: the likelihood keeps its noise, the squared error goes on to
+// lose it.
+TEST(ParticleTrainerTest, TheLikelihoodFindsTheNoiseAndTheSquaredErrorLosesIt) {
+  std::vector<LearntParticles> motions;
+  Random random(3);
+  for (int i = 0; i < 6; ++i) {
+    LearntParticles walk = {0, SwayingMotion(80, static_cast<float>(i))};
+    Eigen::VectorXf drift = Eigen::VectorXf::Zero(12);
+    for (int t = 0; t < 80; ++t) {
+      for (float& x : drift) x += static_cast<float>(0.01 * random.Normal());
+      walk.motion.col(t) += drift;
+    }
+    motions.push_back(walk);
+  }
+  ParticleTrainingOptions options = Quick();
+  options.noise_steps = 150;
+  const auto mean_log_noise = [&](NoiseLoss loss) {
+    options.noise_loss = loss;
+    ParticleTrainer trainer(FourParticles(), motions, {}, options);
+    while (!trainer.Done()) trainer.RunRound();
+    const ParticleNetwork network = trainer.Network();
+    return network.noise.bias.mean();
+  };
+  EXPECT_LT(mean_log_noise(NoiseLoss::kSquared), mean_log_noise(NoiseLoss::kLikelihood) - 0.1f);
+}
+
+// An arm that swings at random: the mean of where it may be is nearer to the shoulder than the arm
+// is long. Charged for bones, the forecast stays about as long.
+TEST(ParticleTrainerTest, BonesCanBeLearntToo) {
+  std::vector<LearntParticles> motions;
+  Random random(5);
+  for (int i = 0; i < 6; ++i) {
+    LearntParticles swing = {0, SwayingMotion(60, 0.0f, 0.0f)};
+    double angle = random.Normal();
+    for (int t = 0; t < 60; ++t) {
+      angle += 0.4 * random.Normal();
+      for (int k = 0; k < 3; ++k) swing.motion(6 + k, t) = swing.motion(3 + k, t);
+      swing.motion(6, t) += static_cast<float>(0.3 * std::cos(angle));
+      swing.motion(7, t) += static_cast<float>(0.3 * std::sin(angle));
+    }
+    motions.push_back(swing);
+  }
+  ParticleTrainingOptions options = Quick();
+  options.steps = 100;
+  options.noise_steps = 0;
+  options.mirrored = 0.0;
+  const auto arm_error = [&](double weight) {
+    options.bones = weight;
+    ParticleTrainer trainer(FourParticles(), motions, {}, options);
+    while (!trainer.Done()) trainer.RunRound();
+    const ParticleNetwork network = trainer.Network();
+    double error = 0.0;
+    for (int start : {0, 10, 20, 30}) {
+      const std::vector<ObservedMotion> people = {{motions[0].motion.middleCols(start, 12)}};
+      ParticleRollout rollout(network, people);
+      for (int t = 0; t < 8; ++t) {
+        error += std::abs(BoneLengths(rollout.Step(), FourParticles())(2, 0) - 0.3) / 32.0;
+      }
+    }
+    return error;
+  };
+  EXPECT_LT(arm_error(10.0), 0.7 * arm_error(0.0));
+}
+
+}  // namespace
+}  // namespace pushid
