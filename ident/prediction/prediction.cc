@@ -10,6 +10,7 @@
 #include "models/self_network.h"
 
 namespace pushid {
+namespace {
 
 Prediction PredictOne(const ModelOptions& options,
                       const std::vector<ParameterSet<double>>& parameters,
