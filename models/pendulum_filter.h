@@ -3,7 +3,8 @@
 //   predict: s <- step(s),  P <- A P A' + Q,  A = d step / ds,  Q = dt B M^-1 L L' M^-1 B'
 //   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
 // B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout, over
-// any scalar, so that derivatives by parameters pass through it. Sources: Jazwinski, Stochastic
+// any scalar, so that derivatives by parameters pass through it (or from a step with derivatives of
+// its own: residuals/sensitivities/step_jacobian.h). Sources: Jazwinski, Stochastic
 // Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and ctsmTMB.
 //
 // Of several people each has a covariance of their own: what people do to each other is taken at
@@ -48,7 +49,68 @@ Eigen::Matrix<T, N, kColumns> SolveLower(const Eigen::Matrix<T, N, N>& lower,
   return columns;
 }
 
+// A step of everybody with its derivatives by each person's own state, by dual numbers.
 template <typename T>
+class DualStep {
+ public:
+  // All arguments must outlive the object.
+  DualStep(const Scene& scene, const ModelOptions& options,
+           const std::vector<ParameterSet<T>>& parameters)
+      : scene_(scene), parameters_(Duals(parameters)), forces_(scene, options, parameters_) {}
+  DualStep(const DualStep&) = delete;
+  DualStep& operator=(const DualStep&) = delete;
+
+  // states: of everybody at the frame that the next steps start from.
+  void Begin(const std::vector<PendulumState<T>>& states) {
+    states_.clear();
+    for (const PendulumState<T>& state : states) {
+      PendulumState<D>& constant = states_.emplace_back();
+      for (int i = 0; i < 4; ++i) {
+        constant.q[i] = D::Constant(state.q[i]);
+        constant.qd[i] = D::Constant(state.qd[i]);
+      }
+    }
+  }
+
+  // The person's velocity one step on, and its derivatives by [q, qd].
+  Vector4<T> Velocity(int frame, int person, Eigen::Matrix<T, 4, 8>* by_state) {
+    const PendulumState<D> kept = states_[person];
+    for (int i = 0; i < 4; ++i) {
+      states_[person].q[i].v[i] = T(1.0);
+      states_[person].qd[i].v[4 + i] = T(1.0);
+    }
+    forces_.Update(states_.data());
+    forces_.Prepare(person, &scratch_);
+    const NetForce<D> force = forces_.On(person, frame, states_[person].qd);
+    const Vector4<D> qd = states_[person].qd + D(scene_.dt) * forces_.AccelerationOf(person, force);
+    states_[person] = kept;
+    Vector4<T> next;
+    for (int i = 0; i < 4; ++i) {
+      next[i] = qd[i].a;
+      by_state->row(i) = qd[i].v.transpose();
+    }
+    return next;
+  }
+
+ private:
+  using D = Dual<T, 8>;
+  static std::vector<ParameterSet<D>> Duals(const std::vector<ParameterSet<T>>& parameters) {
+    std::vector<ParameterSet<D>> duals(parameters.size());
+    for (size_t n = 0; n < parameters.size(); ++n) {
+      for (int i = 0; i < kNumParameters; ++i) duals[n][i] = D::Constant(parameters[n][i]);
+    }
+    return duals;
+  }
+
+  const Scene& scene_;
+  std::vector<ParameterSet<D>> parameters_;
+  SceneForces<D> forces_;
+  std::vector<PendulumState<D>> states_;
+  std::vector<int> scratch_;
+};
+
+// Step: as DualStep is one.
+template <typename T, typename Step = DualStep<T>>
 class PendulumFilter {
  public:
   using Covariance = Eigen::Matrix<T, 8, 8>;
@@ -62,19 +124,14 @@ class PendulumFilter {
   // as well. Scene and options must outlive the filter.
   PendulumFilter(const Scene& scene, const ModelOptions& options,
                  const std::vector<ParameterSet<T>>& parameters)
-      : scene_(scene), options_(options), parameters_(parameters) {
-    for (const ParameterSet<T>& p : parameters) {
-      ParameterSet<D> constant;
-      for (int i = 0; i < kNumParameters; ++i) constant[i] = D::Constant(p[i]);
-      duals_.push_back(constant);
-    }
-    forces_.emplace_back(scene, options, duals_);
+      : scene_(scene),
+        options_(options),
+        parameters_(parameters),
+        step_(scene_, options_, parameters_) {
     for (int n = 0; n < scene.num_people(); ++n) {
-      PendulumState<T> state;
+      PendulumState<T>& state = states_.emplace_back();
       state.q = scene.people[n].start.q.template cast<T>();
       state.qd = scene.people[n].start.qd.template cast<T>();
-      states_.push_back(state);
-      before_.push_back(constant_.emplace_back(Constant(state)).qd);
       Covariance start = Covariance::Zero();
       start.template topLeftCorner<4, 4>() =
           MeasurementCovariance<T>(scene.people[n].body, parameters[n]);
@@ -85,12 +142,16 @@ class PendulumFilter {
 
   // From `frame` to the next.
   RolloutStatus Predict(int frame) {
-    std::vector<PendulumState<T>> next(states_.size());
-    for (int n = 0; n < scene_.num_people(); ++n) next[n] = PredictOne(frame, n);
+    std::vector<Vector4<T>> velocities;
+    Eigen::Matrix<T, 4, 8> by_state;
+    step_.Begin(states_);
     for (int n = 0; n < scene_.num_people(); ++n) {
-      before_[n] = constant_[n].qd;
-      states_[n] = next[n];
-      constant_[n] = Constant(next[n]);
+      velocities.push_back(step_.Velocity(frame, n, &by_state));
+      Spread(frame, n, by_state);
+    }
+    for (int n = 0; n < scene_.num_people(); ++n) {
+      states_[n].qd = velocities[n];
+      states_[n].q += scene_.dt * velocities[n];
       const std::string_view outside = OutsideDomain(scene_.people[n].body, states_[n]);
       if (!outside.empty()) return {false, frame + 1, n, outside};
     }
@@ -113,7 +174,6 @@ class PendulumFilter {
     state.q += moved.template head<4>();
     state.qd += moved.template tail<4>();
     P -= rows.transpose() * rows;
-    constant_[person] = Constant(state);
     return innovation;
   }
 
@@ -121,41 +181,6 @@ class PendulumFilter {
   const Covariance& covariance(int person) const { return covariances_[person]; }
 
  private:
-  using D = Dual<T, 8>;
-
-  static PendulumState<D> Constant(const PendulumState<T>& state) {
-    PendulumState<D> constant;
-    for (int i = 0; i < 4; ++i) {
-      constant.q[i] = D::Constant(state.q[i]);
-      constant.qd[i] = D::Constant(state.qd[i]);
-    }
-    return constant;
-  }
-
-  // The person's state and covariance one step on; everybody else as they are.
-  PendulumState<T> PredictOne(int frame, int n) {
-    const PendulumState<D> kept = constant_[n];
-    for (int i = 0; i < 4; ++i) {
-      constant_[n].q[i].v[i] = T(1.0);
-      constant_[n].qd[i].v[4 + i] = T(1.0);
-    }
-    SceneForces<D>& forces = forces_[0];
-    forces.Update(constant_.data());
-    forces.Prepare(n, &scratch_);
-    const NetForce<D> force = forces.On(n, frame, before_[n]);
-    const Vector4<D> qd = constant_[n].qd + D(scene_.dt) * forces.AccelerationOf(n, force);
-    constant_[n] = kept;
-    Eigen::Matrix<T, 4, 8> by_state;
-    PendulumState<T> next;
-    for (int i = 0; i < 4; ++i) {
-      next.qd[i] = qd[i].a;
-      by_state.row(i) = qd[i].v.transpose();
-    }
-    next.q = states_[n].q + scene_.dt * next.qd;
-    Spread(frame, n, by_state);
-    return next;
-  }
-
   // P one step on. With V = d qd' / ds and q' = q + dt qd', the new blocks follow from V P and Q.
   void Spread(int frame, int n, const Eigen::Matrix<T, 4, 8>& by_state) {
     const Body& body = scene_.people[n].body;
@@ -180,13 +205,9 @@ class PendulumFilter {
   const Scene& scene_;
   const ModelOptions& options_;
   std::vector<ParameterSet<T>> parameters_;
-  std::vector<ParameterSet<D>> duals_;
-  std::vector<SceneForces<D>> forces_;  // one
+  Step step_;
   std::vector<PendulumState<T>> states_;
-  std::vector<PendulumState<D>> constant_;  // the same, without derivatives
-  std::vector<Vector4<D>> before_;          // velocities one frame earlier
   std::vector<Covariance> covariances_;
-  std::vector<int> scratch_;
 };
 
 }  // namespace pushid

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "datasets/files/random.h"
 #include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/sensitivities/step_jacobian.h"
 
 namespace pushid {
 namespace {
@@ -69,7 +71,9 @@ RolloutStatus Innovations(const LikelihoodProblem& problem,
                           const std::vector<ParameterSet<T>>& parameters,
                           std::vector<GaussianDensity<T>>* densities) {
   const PendulumRecording& r = *problem.recording;
-  PendulumFilter<T> filter(r.scene, problem.options, parameters);
+  // Doubles take the analytic step.
+  using Step = std::conditional_t<std::is_same_v<T, double>, StepJacobian, DualStep<T>>;
+  PendulumFilter<T, Step> filter(r.scene, problem.options, parameters);
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     const RolloutStatus status = filter.Predict(t);
     if (!status.ok) return status;

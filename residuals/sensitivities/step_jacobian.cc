@@ -1,0 +1,45 @@
+// residuals: forces, their derivatives, and those of the equations of motion, put together.
+#include "residuals/sensitivities/step_jacobian.h"
+
+#include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/rollout_sensitivities.h"
+
+namespace pushid {
+
+void StepJacobian::Begin(const std::vector<PendulumState<double>>& states) {
+  states_ = states;
+  forces_.Update(states_.data());
+}
+
+Vector4<double> StepJacobian::Velocity(int frame, int person,
+                                       Eigen::Matrix<double, 4, 8>* by_state) {
+  const Body& body = scene_.people[person].body;
+  const SelfForce& self = forces_.self(person);
+  const ParameterSet<double>& p = forces_.Parameters(person);
+  const PendulumState<double>& state = states_[person];
+  forces_.Prepare(person, &scratch_);
+  const NetForce<double> force = forces_.On(person, frame, state.qd);
+  const Vector4<double> a = forces_.AccelerationOf(person, force);
+  SelfForce::Jacobian jacobian;
+  NetForceJacobian(scene_, options_, self, p, person, frame, state, state.qd, &jacobian);
+  const Matrix4<double> rigid = InverseDynamicsJacobian(body, state, a);
+  Eigen::Matrix<double, 4, 8> of_force = jacobian.by_state;
+  of_force.middleCols<2>(2) -= rigid.leftCols<2>();
+  of_force.middleCols<2>(6) -= rigid.rightCols<2>();
+  if (options_.interaction.Any() &&
+      ForcesAt(scene_, options_.push, person, frame) == ActiveForces::kAll) {
+    forces_.pairs().ForEachPair([&](int n, int j) {
+      if ((n != person && j != person) || !forces_.Between(n, j).acts()) return;
+      const PairJacobian pair =
+          ComputePairJacobian(options_.interaction, options_.interaction_network.get(),
+                              PairOf(scene_, n, j), forces_.Parameters(0), states_[n], states_[j]);
+      const int at = n == person ? 0 : 1;
+      of_force += pair.by_states.block<4, 8>(4 * at, 8 * at);
+    });
+  }
+  *by_state = scene_.dt * InverseMassMatrix(body, force.angles, body.mass) * of_force;
+  by_state->rightCols<4>() += Matrix4<double>::Identity();
+  return state.qd + scene_.dt * a;
+}
+
+}  // namespace pushid
