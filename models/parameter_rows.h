@@ -252,11 +252,11 @@
     m.process_noise.Any() && m.process_noise.push, false, \
     "factor on the noise while a push acts", \
     "with --process_noise=...,push") \
-  X(kMeasuredCart, "measured_cart", "s_c", "m", 0.003, 1e-6, 1, 0.003, kLog, \
+  X(kMeasuredCart, "measured_cart", "s_c", "m", 0.003, 1e-4, 1, 0.003, kLog, \
     m.process_noise.Any(), false, \
     "error of the measured cart on each axis", \
     "with --likelihood=innovation") \
-  X(kMeasuredHip, "measured_hip", "s_h", "m", 0.003, 1e-6, 1, 0.003, kLog, \
+  X(kMeasuredHip, "measured_hip", "s_h", "m", 0.003, 1e-4, 1, 0.003, kLog, \
     m.process_noise.Any(), false, \
     "error of the measured hip on each axis", \
     "with --likelihood=innovation")

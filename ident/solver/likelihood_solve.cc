@@ -1,8 +1,6 @@
 // ident: rounds of building and solving by a likelihood.
 #include "ident/solver/likelihood_solve.h"
 
-#include <ceres/manifold.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/pooling_spread.h"
+#include "ident/solver/whitened_bfgs.h"
 #include "models/parameter_facts.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
@@ -25,8 +24,8 @@ constexpr double kSettled = 0.01;    // relative change of a spread
 constexpr double kShareOfNoise = 0.1;
 constexpr double kLowMeasurementError = 3e-4;  // m
 
-// Far at first, then as little as makes the curvature right.
-double FallOfNoise(int round) { return round == 0 ? 6.0 : round == 1 ? 2.0 : kFisherShift; }
+// Steps of Fisher scoring before BFGS.
+constexpr int kScoringRounds = 3, kScoringSteps = 3;
 
 // Root mean squares of what the model leaves of the transitions, as sigmas.
 Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& point) {
@@ -76,25 +75,20 @@ void TakeNoise(const FitProblem& problem, FitPoint* point) {
   }
 }
 
-// Whether the likelihood stays.
+// BFGS, and the units' spread anew, in turns. Whether the likelihood stays.
 bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* options,
              SolveStart* start) {
   for (int round = 0; round < kMostRounds; ++round) {
     const double spread =
         UpdatePoolingSpread(FitProblem(recordings, *options), start->to, &options->table);
-    FitProblem problem(recordings, *options);
-    problem.set_fall_of_noise(FallOfNoise(round + 1));
-    SolveStart again = Refit(problem, start->to, false, options->num_threads);
+    const FitProblem problem(recordings, *options);
+    const SolveStage stage = SolveByBfgs(problem, {}, &start->to, &start->message);
     const double before = start->cost;
-    start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
-    start->iterations += again.iterations;
-    start->to = std::move(again.to);
-    start->cost = again.cost;
-    start->converged = again.converged;
-    start->failed = std::move(again.failed);
-    start->message = std::move(again.message);
-    const bool exact = FallOfNoise(round + 1) == kFisherShift;
-    const bool stays = exact && std::abs(before - start->cost) < kSameCost && spread < kSettled;
+    start->stages.push_back(stage);
+    start->iterations += stage.iterations;
+    start->cost = stage.final_cost;
+    start->converged = stage.converged;
+    const bool stays = std::abs(before - start->cost) < kSameCost && spread < kSettled;
     if (stays && start->converged) return true;
   }
   return false;
@@ -122,13 +116,18 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
             ? "start " + std::to_string(s + 1) + "/" + std::to_string(options->num_starts) + ", "
             : "";
     own.horizons = {0};
-    FitProblem whole(recordings, own);
-    whole.set_fall_of_noise(FallOfNoise(0));
+    own.max_iterations = kScoringSteps;
+    const FitProblem whole(recordings, own);
     SolveStart start = SolveFrom(whole, from,
                                  !first        ? "random"
                                  : by_equation ? "equation_error"
                                                : "nominal",
                                  label, progress);
+    for (int round = 1; round < kScoringRounds; ++round) {
+      start.to = Refit(whole, start.to, false, own.num_threads).to;
+    }
+    own.max_iterations = options->max_iterations;
+    start.failed.clear();
     const bool stays = SolveOn(recordings, &own, &start);
     start.usable = std::isfinite(start.cost) && start.failed.empty();
     const SolveStart* best = solved.solution.best < 0 ? nullptr : &solved.solution.Best();
@@ -154,7 +153,7 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
   SetLikelihood(Likelihood::kInnovation, &own);
   FreeNoise(&own);
   StartNoise(FitProblem(recordings, *options), point, &own);
-  FitProblem problem(recordings, own);
+  const FitProblem problem(recordings, own);
   FitPoint noise = problem.NominalPoint();
   noise.unit = point.unit;
   std::vector<int> held;
@@ -164,19 +163,11 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
     held.push_back(static_cast<int>(i));
     noise.shared[i] = point.shared[held.size() - 1];  // in table order, with the noise at its end
   }
+  for (size_t i = fitted.size(); i < noise.Flat().size(); ++i) held.push_back(static_cast<int>(i));
   double cost = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMostRounds; ++round) {
-    problem.set_fall_of_noise(FallOfNoise(round));
-    FitProblem::Built built = problem.Build(&noise, 0, false, options->num_threads);
-    if (!built.shortened.empty()) return;
-    built.problem->SetManifold(
-        noise.shared.data(),
-        new ceres::SubsetManifold(static_cast<int>(noise.shared.size()), held));
-    for (auto& [unit, deviations] : noise.unit) {
-      built.problem->SetParameterBlockConstant(deviations.data());
-    }
     std::string message;
-    const SolveStage stage = SolveBuilt(&built, SolverOptions(own, *built.problem), 0, &message);
+    const SolveStage stage = SolveByBfgs(problem, held, &noise, &message);
     if (std::abs(cost - stage.final_cost) < kSameNoise) break;
     cost = stage.final_cost;
   }

@@ -1,9 +1,9 @@
 // ident: a solve that maximizes a likelihood of single steps (residuals/likelihood.h).
 //
 // The noise starts at the spread of the transitions that the other parameters' start leaves, and
-// equation error starts these. A problem's rows are Fisher scoring where it is built and end where
-// the noise has fallen by a factor of 1.6 (residuals/gaussian_rows.h): it is built anew and solved
-// on until the likelihood stays, as the spread of pooled units is estimated anew.
+// equation error starts these. A few steps of Fisher scoring (residuals/gaussian_rows.h), the
+// problem built anew after every third, come near the optimum; BFGS finds it (whitened_bfgs.h), in
+// turns with the spread of pooled units.
 #pragma once
 
 #include "ident/solver/likelihood_score.h"

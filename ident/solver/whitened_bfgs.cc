@@ -1,0 +1,151 @@
+// ident: the cost and its gradient in whitened coordinates, and Ceres' line search over them.
+#include "ident/solver/whitened_bfgs.h"
+
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "ident/problem/jacobian_blocks.h"
+
+namespace pushid {
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+// How far the logarithm of noise may fall: far.
+constexpr double kAnyFall = 40.0;
+constexpr double kNearBound = 1e-3;  // on the fitted scale
+constexpr double kRidge = 1e-9;      // of the information's diagonal: a direction may be unknown
+
+// Bounds of every number of a point, in its order; those of units are open.
+struct Bounds {
+  VectorXd lower, upper;
+};
+
+Bounds BoundsOf(const FitProblem& problem, Eigen::Index size) {
+  Bounds bounds{VectorXd::Constant(size, -HUGE_VAL), VectorXd::Constant(size, HUGE_VAL)};
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+    bounds.lower[i] = ToFitted(spec.transform, spec.lower);
+    bounds.upper[i] = ToFitted(spec.transform, spec.upper);
+  }
+  return bounds;
+}
+
+VectorXd FlatOf(const FitPoint& point) {
+  const std::vector<double> flat = point.Flat();
+  return Eigen::Map<const VectorXd>(flat.data(), static_cast<Eigen::Index>(flat.size()));
+}
+
+void SetFlat(const VectorXd& flat, FitPoint* point) {
+  point->SetFlat(std::vector<double>(flat.data(), flat.data() + flat.size()));
+}
+
+// The exact cost: half the squares of rows that do not end, less their offset.
+class WhitenedCost : public ceres::FirstOrderFunction {
+ public:
+  WhitenedCost(const FitProblem& problem, const FitPoint& at, const MatrixXd& root)
+      : problem_(problem),
+        point_(at),
+        origin_(FlatOf(at)),
+        root_(root),
+        bounds_(BoundsOf(problem, origin_.size())) {
+    problem_.set_fall_of_noise(kAnyFall);
+    built_ = problem_.Build(&point_, 0);
+  }
+
+  VectorXd At(const double* z) const {
+    return origin_ + root_ * Eigen::Map<const VectorXd>(z, root_.cols());
+  }
+
+  bool Evaluate(const double* z, double* cost, double* gradient) const override {
+    const VectorXd x = At(z);
+    if ((x.array() < bounds_.lower.array()).any() || (x.array() > bounds_.upper.array()).any()) {
+      return false;
+    }
+    SetFlat(x, &point_);
+    std::vector<double> by_x;
+    if (!built_.problem->Evaluate({}, cost, nullptr, gradient != nullptr ? &by_x : nullptr,
+                                  nullptr)) {
+      return false;
+    }
+    *cost -= built_.offset;
+    if (gradient == nullptr) return true;
+    Eigen::Map<VectorXd>(gradient, root_.cols()) =
+        root_.transpose() * Eigen::Map<const VectorXd>(by_x.data(), x.size());
+    return true;
+  }
+  int NumParameters() const override { return static_cast<int>(root_.cols()); }
+
+ private:
+  FitProblem problem_;
+  mutable FitPoint point_;  // Ceres' problem looks at it
+  VectorXd origin_;
+  MatrixXd root_;
+  Bounds bounds_;
+  mutable FitProblem::Built built_;
+};
+
+// R of the header at a point: a column for each number that moves.
+MatrixXd RootOfInverse(const MatrixXd& information, const std::vector<int>& moving) {
+  MatrixXd own = information(moving, moving);
+  own.diagonal() *= 1.0 + kRidge;
+  const Eigen::LLT<MatrixXd> cholesky(own);
+  if (cholesky.info() != Eigen::Success) return {};
+  const Eigen::Index size = static_cast<Eigen::Index>(moving.size());
+  const MatrixXd inverse = cholesky.matrixL().solve(MatrixXd::Identity(size, size));
+  MatrixXd root = MatrixXd::Zero(information.rows(), size);
+  root(moving, Eigen::all) = inverse.transpose();
+  return root;
+}
+
+}  // namespace
+
+SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
+                       std::string* message) {
+  SolveStage stage;
+  FitProblem fisher = problem;
+  fisher.set_fall_of_noise(kFisherShift);
+  const FitProblem::Built built = fisher.Build(point, 0);
+  const JacobianBlocks score = EvaluateJacobianBlocks(built);
+  const VectorXd x = FlatOf(*point), gradient = score.jacobian.transpose() * score.residuals;
+  const Bounds bounds = BoundsOf(problem, x.size());
+  std::vector<int> moving;
+  for (int i = 0; i < x.size(); ++i) {
+    const bool at_bound = (x[i] < bounds.lower[i] + kNearBound && gradient[i] > 0.0) ||
+                          (x[i] > bounds.upper[i] - kNearBound && gradient[i] < 0.0);
+    const bool stays = std::find(held.begin(), held.end(), i) != held.end();
+    if (!at_bound && !stays) moving.push_back(i);
+  }
+  const MatrixXd root = RootOfInverse(score.jacobian.transpose() * score.jacobian, moving);
+  if (root.size() == 0) {
+    *message = "the Fisher information has no inverse";
+    return stage;
+  }
+  auto* cost = new WhitenedCost(problem, *point, root);  // of the gradient problem
+  const ceres::GradientProblem whitened(cost);
+  ceres::GradientProblemSolver::Options options;
+  options.line_search_direction_type = ceres::BFGS;
+  options.max_num_iterations = problem.options().max_iterations;
+  options.function_tolerance = problem.options().function_tolerance;
+  options.logging_type = ceres::SILENT;
+  std::vector<double> z(moving.size(), 0.0);
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, whitened, z.data(), &summary);
+  *message = summary.message;
+  stage.initial_cost = summary.initial_cost;
+  stage.final_cost = summary.final_cost;
+  stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  stage.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  for (const ceres::IterationSummary& i : summary.iterations) {
+    stage.trace.push_back({0, i.iteration, i.cost, i.gradient_max_norm});
+  }
+  if (summary.IsSolutionUsable()) SetFlat(cost->At(z.data()), point);
+  return stage;
+}
+
+}  // namespace pushid
