@@ -147,6 +147,10 @@ int Run() {
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
   const Result<Predictors> predictors = MakePredictors(flags, options.value(), &pendulums);
   if (!predictors.ok()) return Fail(predictors.error());
+  const Result<Candidates> noisy = drawn.value().samples > 0
+                                       ? NoisyModels(flags, options.value(), &pendulums)
+                                       : Result<Candidates>(Candidates{});
+  if (!noisy.ok()) return Fail(noisy.error());
   const Result<std::vector<Fold>> folds =
       MakeFolds(pendulums, flags.scheme, flags.folds, flags.repeats, Seed());
   if (!folds.ok()) return Fail(folds.error());
@@ -161,17 +165,13 @@ int Run() {
         }));
   }
   std::vector<HeldOutFutures> futures;
-  if (const int draws = drawn.value().samples; draws > 0) {
-    const auto models = NoisyModels(flags, options.value(), &pendulums);
-    if (!models.ok()) return Fail(models.error());
-    for (const auto& [name, model] : models.value()) {
-      futures.push_back(
-          CrossValidateFutures(name, pendulums, folds.value(), model, draws, drawn.value().seed,
-                               NumThreads(), [&line, &of = name](int done, int total) {
-                                 line.Show(of + ", futures: fold " + std::to_string(done) + " of " +
-                                           std::to_string(total));
-                               }));
-    }
+  for (const auto& [name, model] : noisy.value()) {
+    futures.push_back(CrossValidateFutures(
+        name, pendulums, folds.value(), model, drawn.value().samples, drawn.value().seed,
+        NumThreads(), [&line, &of = name](int done, int total) {
+          line.Show(of + ", futures: fold " + std::to_string(done) + " of " +
+                    std::to_string(total));
+        }));
   }
   std::vector<BandCoverage> bands;
   if (flags.bands) {

@@ -173,7 +173,7 @@ class PendulumFilter {
     const Eigen::Matrix<T, 8, 1> moved = rows.transpose() * white;
     state.q += moved.template head<4>();
     state.qd += moved.template tail<4>();
-    P -= rows.transpose() * rows;
+    P -= rows.transpose().lazyProduct(rows);  // of such sizes Eigen would call its large kernel
     return innovation;
   }
 
@@ -190,8 +190,9 @@ class PendulumFilter {
                             NoiseFactor<T>(options_.process_noise, body, parameters_[n], state.qd,
                                            Pushed(scene_, n, frame));
     Covariance& P = covariances_[n];
-    const Eigen::Matrix<T, 4, 8> moved = by_state * P;
-    const Matrix4<T> rates = moved * by_state.transpose() + dt * (gain * gain.transpose());
+    const Eigen::Matrix<T, 4, 8> moved = by_state.lazyProduct(P);
+    const Matrix4<T> rates =
+        moved.lazyProduct(by_state.transpose()) + dt * (gain * gain.transpose());
     const Matrix4<T> places_rates = moved.template leftCols<4>().transpose();  // cov(q, qd')
     const Matrix4<T> mixed = places_rates + dt * rates;
     const Matrix4<T> places = P.template topLeftCorner<4, 4>() +

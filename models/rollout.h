@@ -64,10 +64,47 @@ std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) 
   return {};
 }
 
-// initial_velocity: one entry per person; parameters as in SceneForces. path is overwritten; on
-// failure it holds the frames before the named one. trace may be null. network_weights: as in
-// SceneForces. noise: standard normal draws by frame and person that drive the process noise
+// Goes on from frame `from` of a path, whose states up to there are given; the posture stays that
+// of the scene's start. On failure the path holds the frames before the named one. trace may be
+// null. noise: standard normal draws by frame and person that drive the process noise
 // (process_noise.h); null: none.
+template <typename T>
+RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForces<T>* forces,
+                     int from, RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
+                     const FrameTable<Vector4<double>>* noise = nullptr) {
+  const int people = scene.num_people(), num_frames = path->num_frames();
+  std::vector<int> scratch;
+  for (int t = from; t < num_frames; ++t) {
+    const bool last = t + 1 == num_frames;
+    if (last && trace == nullptr) break;
+    forces->Update(path->Frame(t));
+    for (int n = 0; n < people; ++n) forces->Prepare(n, &scratch);
+    for (int n = 0; n < people; ++n) {
+      const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
+      NetForce<T> force = forces->On(n, t, qd_previous);
+      if (noise != nullptr) {
+        const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
+        force[ForcePart::kNoise] =
+            NoiseFactor<T>(options.process_noise, scene.people[n].body, forces->Parameters(n),
+                           path->At(t, n).qd, Pushed(scene, n, t)) *
+            white.template cast<T>();
+      }
+      const Vector4<T> qdd = forces->AccelerationOf(n, force);
+      if (trace != nullptr) {
+        trace->At(t, n) = force;
+        trace->At(t, n).AddGround(path->At(t, n).qd + scene.dt * qdd);
+      }
+      if (last) continue;
+      path->At(t + 1, n) = forces->Next(n, qdd, force, qd_previous);
+      const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
+      if (!outside.empty()) return {false, t + 1, n, outside};
+    }
+  }
+  return {};
+}
+
+// initial_velocity: one entry per person; parameters and network_weights as in SceneForces. path is
+// overwritten; on failure, trace and noise: RollOn.
 template <typename T>
 RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const std::vector<ParameterSet<T>>& parameters,
@@ -77,40 +114,13 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const FrameTable<Vector4<double>>* noise = nullptr) {
   const int people = scene.num_people();
   SceneForces<T> forces(scene, options, parameters, network_weights);
-  std::vector<int> scratch;
   *path = RolloutPath<T>(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
   for (int n = 0; n < people; ++n) {
     path->At(0, n).q = scene.people[n].start.q.template cast<T>();
     path->At(0, n).qd = initial_velocity[n];
   }
-  for (int t = 0; t < num_frames; ++t) {
-    const bool last = t + 1 == num_frames;
-    if (last && trace == nullptr) break;
-    forces.Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
-    for (int n = 0; n < people; ++n) {
-      const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
-      NetForce<T> force = forces.On(n, t, qd_previous);
-      if (noise != nullptr) {
-        const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
-        force[ForcePart::kNoise] =
-            NoiseFactor<T>(options.process_noise, scene.people[n].body, forces.Parameters(n),
-                           path->At(t, n).qd, Pushed(scene, n, t)) *
-            white.template cast<T>();
-      }
-      const Vector4<T> qdd = forces.AccelerationOf(n, force);
-      if (trace != nullptr) {
-        trace->At(t, n) = force;
-        trace->At(t, n).AddGround(path->At(t, n).qd + scene.dt * qdd);
-      }
-      if (last) continue;
-      path->At(t + 1, n) = forces.Next(n, qdd, force, qd_previous);
-      const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
-      if (!outside.empty()) return {false, t + 1, n, outside};
-    }
-  }
-  return {};
+  return RollOn<T>(scene, options, &forces, 0, path, trace, noise);
 }
 
 // The initial velocities that the scene itself holds.

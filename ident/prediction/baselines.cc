@@ -31,33 +31,6 @@ HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observ
   return paths;
 }
 
-namespace {
-
-// The rollout's steps (models/rollout.h) from a state that is none of the scene's start, to which
-// the posture still belongs.
-RolloutStatus GoOn(const IdentifiedModel& model, const PendulumRecording& recording, int from,
-                   RolloutPath<double>* path) {
-  const int people = recording.num_people();
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  SceneForces<double> forces(recording.scene, model.options, parameters);
-  std::vector<int> scratch;
-  for (int t = from; t + 1 < path->num_frames(); ++t) {
-    forces.Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
-    for (int n = 0; n < people; ++n) {
-      const Vector4<double>& qd_previous = path->At(t - 1, n).qd;
-      const NetForce<double> force = forces.On(n, t, qd_previous);
-      path->At(t + 1, n) = forces.Next(n, forces.AccelerationOf(n, force), force, qd_previous);
-      const std::string_view outside =
-          OutsideDomain(recording.scene.people[n].body, path->At(t + 1, n));
-      if (!outside.empty()) return {false, t + 1, n, outside};
-    }
-  }
-  return {};
-}
-
-}  // namespace
-
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                              int observed) {
   Prediction prediction = Predict(model, recording);
@@ -70,7 +43,10 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
       state.qd = recording.states[n][t].qd;
     }
   }
-  prediction.status = GoOn(model, recording, from, &prediction.path);
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  SceneForces<double> forces(recording.scene, model.options, parameters);
+  prediction.status =
+      RollOn<double>(recording.scene, model.options, &forces, from, &prediction.path);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < people; ++n) {
     // From where the hip was seen, which the rod of frame 0 puts elsewhere.

@@ -15,4 +15,7 @@ std::string ReportText(const FittedModel& model);
 // where nothing is.
 std::string NetworkText(const FitResult& result);
 
+// -2 log likelihood, AIC, BIC and what they may be compared with; result.likelihood must be there.
+std::string LikelihoodText(const FitResult& result);
+
 }  // namespace pushid

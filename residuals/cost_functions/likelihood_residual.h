@@ -13,8 +13,8 @@
 //   blocks:    BlockLayout without initial velocities: a filter knows how little it knows of them
 // Jacobian of transitions by Jets over the parameters. A filter's covariance needs the derivatives
 // of the step's own derivatives: by Jets over dual numbers these are exact and cost 55 filters for
-// twelve parameters; by central differences of whole filters they cost 24 and are good to 1e-8. The
-// fit takes differences (or Jets, with --jacobian=autodiff), the tests hold one against the other.
+// twelve parameters; by differences of whole filters they cost 12 and are good to 5e-5. The fit
+// takes differences (or Jets, with --jacobian=autodiff), the tests hold one against the other.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -94,7 +94,7 @@ class LikelihoodResidual : public ceres::CostFunction {
   // By column of the recording; false where the likelihood is not defined.
   bool ByJets(const std::vector<ParameterSet<double>>& values, RowMajorMatrix* jacobian) const;
   bool ByDifferences(const std::vector<ParameterSet<double>>& values,
-                     RowMajorMatrix* jacobian) const;
+                     const std::vector<double>& rows, RowMajorMatrix* jacobian) const;
 
   LikelihoodProblem problem_;
   bool jets_;

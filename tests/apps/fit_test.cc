@@ -44,7 +44,7 @@ TEST_F(FitAppTest, RefitsAreKeptAndReported) {
   const std::string path = FitModel("model.json", {"--push_check", "--horizon_check"});
   const nlohmann::ordered_json model = Json(path);
   EXPECT_EQ(model["push_check"]["refits"].size(), 8u);     // of pushes by inverse dynamics
-  EXPECT_EQ(model["horizon_check"]["refits"].size(), 3u);  // 8, 16 and 32 of 44 steps
+  EXPECT_EQ(model["horizon_check"]["refits"].size(), 4u);  // one step; 8, 16 and 32 of 44
   EXPECT_EQ(model["push_check"]["parameters"][0]["name"], "mu");
   const AppRun report = RunApp("pushid-report", {"--model=" + path, "--text"});
   ASSERT_EQ(report.exit_code, 0) << report.err;

@@ -65,7 +65,7 @@ TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
   const AppRun evaluated = RunApp("pushid-evaluate", {"--model=" + noisy_, Recordings(),
                                                       "--samples=20", "--json_out=" + scores});
   ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
-  const auto& mean = Json(scores).at("futures").at("mean");
+  const nlohmann::ordered_json mean = Json(scores).at("futures").at("mean");
   for (const char* key :
        {"inside90_x_1", "crps_x_m", "energy_m", "deviance_nats", "energy_standard_error_m"}) {
     EXPECT_TRUE(mean.contains(key)) << key;

@@ -9,6 +9,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/fit_setup.h"
 #include "ident/results/weighted_solve.h"
 #include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
@@ -41,6 +42,23 @@ void SolveOnly(benchmark::State& state, const char* preset) {
 }
 BENCHMARK_CAPTURE(SolveOnly, tail, "tail")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(SolveOnly, ldp, "ldp")->Unit(benchmark::kMillisecond);
+
+// The same recordings by the innovation likelihood, drift and noise together.
+void SolveByInnovations(benchmark::State& state) {
+  FitOptions options = MakeFitOptions({{"preset", "tail"}, {"likelihood", "innovation"}}).value();
+  options.num_threads = 1;
+  if (MaybeError error = PrepareFit(SinglePeople().recordings, &options)) {
+    state.SkipWithError(error->ToString().c_str());
+    return;
+  }
+  Solution solution;
+  for (auto _ : state) {
+    FitOptions own = options;
+    solution = SolveAsAsked(SinglePeople().recordings, &own).solution;
+  }
+  Report(state, solution);
+}
+BENCHMARK(SolveByInnovations)->Unit(benchmark::kMillisecond);
 
 // With uncertainty, behaviour and everything else that stands in a result.
 void WholeFit(benchmark::State& state, const char* preset) {

@@ -56,6 +56,7 @@ void AddConfidence(FittedModel* model) {
   result->subjects["anna"].pooled["mu"] = result->estimates.front();
   result->settings["single"]["mu"] = result->estimates.front();
   result->nuisance = {};
+  result->likelihood = LikelihoodScore{-7.5, 40, 6};
   model->profiles = {{"mu",
                       "N s/m",
                       20.0,

@@ -36,10 +36,13 @@ inline ParameterSet<double> RecoveringParameters() {
   return p;
 }
 
-// Each of them times a random factor within [1 - spread, 1 + spread].
+// Each of them times a random factor within [1 - spread, 1 + spread]; a rollout feels no noise.
 inline ParameterSet<double> RandomRecoveringParameters(Random* random, double spread) {
   ParameterSet<double> p = RecoveringParameters();
-  for (double& value : p) value *= random->Uniform(1.0 - spread, 1.0 + spread);
+  for (int id = 0; id < kNumParameters; ++id) {
+    if (!IsNoiseParameter(static_cast<Parameter>(id)))
+      p[id] *= random->Uniform(1.0 - spread, 1.0 + spread);
+  }
   return p;
 }
 

@@ -6,6 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 #include "ident/report/starts_text.h"
 
 namespace pushid {
@@ -13,10 +14,24 @@ namespace {
 
 constexpr double kWaterfallWidth = 450, kWaterfallHeight = 210;
 
+// Costs on a logarithmic axis. Those of a likelihood may be negative: they count from 1 below the
+// lowest.
+struct CostAxis {
+  double base = 0.0;
+  explicit CostAxis(double lowest) : base(lowest > 0.0 ? 0.0 : lowest - 1.0) {}
+  std::string Title() const { return base == 0.0 ? "cost" : "1 + cost above the lowest"; }
+  double At(double cost) const { return std::log10(std::max(1e-300, cost - base)); }
+};
+
 // Costs of the starts, best first: steps are basins, a long first one is trust.
 ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
   Chart chart;
-  chart.title = "cost of the starts, best first";
+  double lowest = HUGE_VAL;
+  for (const SolveStart* start : ranked) {
+    if (start->usable) lowest = std::min(lowest, start->cost);
+  }
+  const CostAxis axis(lowest);
+  chart.title = axis.Title() + " of the starts, best first";
   chart.x_label = "rank";
   chart.logarithmic = true;
   ChartPoints ended;
@@ -25,8 +40,8 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
     const SolveStart& s = *ranked[i];
     numbers.Add({std::to_string(i + 1), s.kind, s.usable ? DoubleText(s.cost) : "",
                  std::to_string(s.failed.size())});
-    if (!s.usable || !s.failed.empty() || !(s.cost > 0.0)) continue;
-    ended.emplace_back(static_cast<double>(i + 1), std::log10(s.cost));
+    if (!s.usable || !s.failed.empty()) continue;
+    ended.emplace_back(static_cast<double>(i + 1), axis.At(s.cost));
   }
   chart.lines = {{ended, kPredictedLook, false}, {ended, kPredictedLook, true}};
   return {"starts_waterfall",
@@ -56,6 +71,7 @@ ReportSection SolveSection(const FittedModel& model) {
                 std::to_string(s.failed.size()), s.message});
   }
   section.tables.push_back({"starts, best first", starts});
+  if (result.likelihood) section.paragraphs.push_back(LikelihoodText(result));
   const std::string across = AcrossStartsNote(result);
   if (!across.empty()) section.paragraphs.push_back(across);
   if (ranked.size() > 1) section.figures.push_back(WaterfallFigure(ranked));
@@ -63,15 +79,18 @@ ReportSection SolveSection(const FittedModel& model) {
   if (spread.rows().size() > 1) section.tables.push_back({"where the best starts ended", spread});
   const std::vector<TracePoint>& trace = result.diagnostics.trace;
   if (trace.size() < 2) return section;
+  double lowest = HUGE_VAL;
+  for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
+  const CostAxis axis(lowest);
   Chart cost, gradient;
-  cost.title = "cost";
+  cost.title = axis.Title();
   gradient.title = "largest gradient component";
   ChartLine c{{}, kPredictedLook, false}, g = c;
   TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"},
                     std::vector<bool>(5, true));
   for (size_t i = 0; i < trace.size(); ++i) {
     const double step = static_cast<double>(i);
-    c.points.emplace_back(step, std::log10(std::max(1e-300, trace[i].cost)));
+    c.points.emplace_back(step, axis.At(trace[i].cost));
     if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
     numbers.Add({std::to_string(i), std::to_string(trace[i].horizon),
                  std::to_string(trace[i].iteration), DoubleText(trace[i].cost),

@@ -79,13 +79,14 @@ TEST(HorizonCheck, TheTruthDoesNotDrift) {
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const FittedModel model = Checked(recordings, options);
   const RefitTable& check = *model.horizon_check;
-  ASSERT_EQ(check.rows.size(), 4u);  // 8, 16, 32 and 64 of 69 steps
-  EXPECT_EQ(check.rows[0].frames, 8);
-  EXPECT_LT(check.rows[3].standard_error[0], check.rows[1].standard_error[0])
+  ASSERT_EQ(check.rows.size(), 5u);  // one step; 8, 16, 32 and 64 of 69
+  EXPECT_EQ(check.rows[0].frames, kOneStep);
+  EXPECT_EQ(check.rows[1].frames, 8);
+  EXPECT_LT(check.rows[4].standard_error[0], check.rows[2].standard_error[0])
       << "more frames tell more";
   // While the push lasts a fit without priors may end anywhere; from 32 frames on it may not.
   RefitTable later = check;
-  later.rows.erase(later.rows.begin(), later.rows.begin() + 2);
+  later.rows.erase(later.rows.begin(), later.rows.begin() + 3);
   for (const Drift& drift : Drifts(later)) {
     EXPECT_LT(drift.in_errors, 4.0) << check.parameters[drift.parameter];
   }
