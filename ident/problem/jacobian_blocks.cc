@@ -79,22 +79,14 @@ std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
   return rows;
 }
 
-namespace {
-
-// Of a column's unit: errors of 1e-6 of the curvature, and above the rounding of a filter's rows,
-// whose Jacobian is a difference itself.
-constexpr double kDifference = 1e-3;
-
-}  // namespace
-
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit,
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
                   JacobianBlocks* score) {
   const Eigen::Index size = score->jacobian.cols();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index column = 0;
   for (double* block : built.parameter_blocks) {
     for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
-      const double step = kDifference * unit[column];
+      const double step = steps[column];
       if (step == 0.0) continue;
       const double value = block[k];
       block[k] = value + step;

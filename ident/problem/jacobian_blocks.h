@@ -29,10 +29,10 @@ JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built);
 
 void CorrectRobustLoss(const FitProblem& problem, JacobianBlocks* score);
 
-// Central differences of the gradient J'r, one column at a time, a ten-thousandth of `unit` to
-// either side (0: a column that does not move). Leaves the curvature empty where some residual
-// cannot be evaluated beside the point.
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& unit,
+// Central differences of the gradient J'r, one column at a time, `steps` to either side (0: a
+// column that does not move). Leaves the curvature empty where some residual cannot be evaluated
+// beside the point.
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
                   JacobianBlocks* score);
 
 }  // namespace pushid

@@ -215,6 +215,13 @@ struct Evaluated {
   Clusters clusters;
   Clustering clustering;
 };
+
+// Steps of the gradient's differences, of a column's unit. Those of a likelihood stay above the
+// rounding of rows whose Jacobian is a difference itself.
+double CurvatureStep(const FitProblem& problem) {
+  return problem.options().likelihood == Likelihood::kTrajectory ? 1e-4 : 1e-3;
+}
+
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
@@ -224,7 +231,7 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   e.clusters = MakeClusters(problem.recordings(), problem.options().cluster);
   e.clustering = ClusterRows(problem, e.clusters, e.score);
   if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
-    AddCurvature(built, e.unit, &e.score);
+    AddCurvature(built, CurvatureStep(problem) * e.unit, &e.score);
   }
   return e;
 }

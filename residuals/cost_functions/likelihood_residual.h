@@ -13,7 +13,7 @@
 //   blocks:    BlockLayout without initial velocities: a filter knows how little it knows of them
 // Jacobian of transitions by Jets over the parameters. A filter's covariance needs the derivatives
 // of the step's own derivatives: by Jets over dual numbers these are exact and cost 55 filters for
-// twelve parameters; by differences of whole filters they cost 12 and are good to 5e-5. The fit
+// twelve parameters; by differences of whole filters they cost 12 and are good to 3e-4. The fit
 // takes differences (or Jets, with --jacobian=autodiff), the tests hold one against the other.
 #pragma once
 

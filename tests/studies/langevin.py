@@ -77,13 +77,11 @@ def likelihood():
 
 def horizons():
     check = studies.fit("single", "--horizon_check").json["horizon_check"]
-    rows = []
-    for row in check["rows"]:
-        if row.get("failure"):
-            continue
-        rows.append([row["name"], *(with_error(v, e) for v, e in zip(row["value"], row["standard_error"]))])
-    rows.append(["all", *(with_error(v, e) for v, e in zip(check["value"], check["standard_error"]))])
-    return studies.table(["fitted to", *(f"`{name}`" for name in check["parameters"])], rows)
+    rows = [[refit["name"], *map(with_error, refit["values"], refit["standard_errors"])]
+            for refit in check["refits"] if not refit["failure"]]
+    parameters = check["parameters"]
+    rows.append(["all", *(with_error(p["value"], p["standard_error"]) for p in parameters)])
+    return studies.table(["fitted to", *(f"`{p['name']}`" for p in parameters)], rows)
 
 
 CANDIDATES = [("diagonal", "diagonal"), ("full", "full"), ("diagonal, speed", "diagonal,speed"),
