@@ -48,6 +48,11 @@ Result<Candidates> NoisyModels(const CrossvalidateFlags& flags, const FitOptions
   for (auto& [name, candidate] : all.value()) {
     if (candidate.model.process_noise.Any()) noisy.emplace_back(name, candidate);
   }
+  if (Given("observed")) {
+    return Error{
+        "--samples draws futures from frame 0 on, and --observed predicts from later: leave one "
+        "out"};
+  }
   if (noisy.empty()) {
     return Error{
         "--samples: no candidate has process noise to draw from; add "
@@ -133,7 +138,7 @@ int Run() {
   const Result<CrossvalidateFlags> read = CrossvalidateFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const CrossvalidateFlags& flags = read.value();
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
   if (MaybeError error = CheckFlags(flags)) return Fail(*error);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();

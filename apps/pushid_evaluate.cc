@@ -48,11 +48,12 @@ int Run() {
   const Result<EvaluateFlags> read = EvaluateFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const EvaluateFlags& flags = read.value();
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
   if (MaybeError error = CheckObservedFlag()) return Fail(*error);
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
+  if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({}, flags.restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());

@@ -56,7 +56,7 @@ int Between(const PathFlags& flags, const IdentifiedModel& model) {
   if (paths.size() > 1) {
     std::printf("most probable: %s\n", flags.end_names[best].c_str());
   }
-  std::printf("action: -log probability of the path, nats, up to a constant of its frames\n");
+  std::printf("action: -log probability density of the path, up to a constant of its frames\n");
   return Write(flags, paths[best], 1.0 / flags.fps, json);
 }
 

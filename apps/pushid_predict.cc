@@ -36,10 +36,11 @@ int Run() {
   const Result<PredictFlags> read = PredictFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const PredictFlags& flags = read.value();
-  const Result<FuturesFlags> futures = FuturesFlagsFromCommandLine();
+  const Result<FuturesFlags> futures = FuturesFlagsFromCommandLine(true);
   if (!futures.ok()) return Fail(futures.error());
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
+  if (MaybeError error = CheckDraws(futures.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({flags.id}, flags.restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());

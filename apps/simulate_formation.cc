@@ -159,12 +159,13 @@ int SimulateFormation() {
   const Result<FormationBodyFlags> body_flags = FormationBodyFlagsFromCommandLine();
   if (!body_flags.ok()) return Fail(body_flags.error());
 
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine();
+  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(true);
   if (!drawn.ok()) return Fail(drawn.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   const auto bodies = PlanBodies(body_flags.value(), RodMoves(model.value().options), &scene);
   if (!bodies.ok()) return Fail(bodies.error());
+  if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);
   if (!model.value().options.interaction.Any() && scene.num_people() > 1) {
     Warn(model.value().source +

@@ -141,8 +141,9 @@ std::string Title(const std::vector<HipPush>& pushes) {
 
 // Flags of recordings of single people would be taken and do nothing.
 MaybeError CheckNoneOfRecordings() {
-  for (const char* flag : {"out", "recordings_per_person", "frames", "noise", "push_kind",
-                           "recording_spread", "subject_spread", "seed", "truth_stance"}) {
+  for (const char* flag :
+       {"out", "recordings_per_person", "frames", "noise", "push_kind", "recording_spread",
+        "subject_spread", "seed", "truth_stance", "truth_noise"}) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag +
                  " belongs to recordings of single people, not to --formation"};

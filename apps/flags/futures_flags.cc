@@ -16,12 +16,26 @@ DEFINE_string(samples_out, "",
 
 namespace pushid {
 
-Result<FuturesFlags> FuturesFlagsFromCommandLine() {
+MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
+  if (flags.samples == 0) return std::nullopt;
+  if (Given("observed")) {
+    return Error{
+        "--samples draws futures from frame 0 on, and --observed predicts from later: leave one "
+        "out"};
+  }
+  return CheckDrawsFrom(model);
+}
+
+Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes) {
   if (MaybeError error = CheckRange("samples", FLAGS_samples, 0, 100000)) return *error;
   if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: ask for 2 or more"};
   for (const char* flag : {"samples_seed", "samples_out"}) {
     if (FLAGS_samples > 0 || !Given(flag)) continue;
     return Error{std::string("--") + flag + " needs --samples, the number of futures"};
+  }
+  if (!writes && Given("samples_out")) {
+    return Error{
+        "--samples_out is of pushid-predict and pushid-simulate: here futures are only scored"};
   }
   if (MaybeError error = CheckOutputFiles({FLAGS_samples_out})) return *error;
   return FuturesFlags{FLAGS_samples, FLAGS_samples_seed, FLAGS_samples_out};

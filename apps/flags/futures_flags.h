@@ -14,7 +14,11 @@ struct FuturesFlags {
   std::uint64_t seed = 1;
   std::string out;  // all of them (CSV); empty: not written
 };
-Result<FuturesFlags> FuturesFlagsFromCommandLine();
+// writes: whether the program has --samples_out.
+Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes);
+
+// What is wrong with drawing from a model: no process noise, or frames that were seen.
+MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model);
 
 // Draws them, prints where everybody is at the end, writes --samples_out; nothing without
 // --samples. num_frames: 0 means as many as the recording has. Returns an exit code.

@@ -13,9 +13,11 @@ DEFINE_string(
     from, "",
     "where a path begins: x, y (m), theta, phi (rad), xd, yd (m/s), thetad, phid (rad/s), "
     "comma-separated, as in theta=0.05,xd=0.3; what is not named is 0");
-DEFINE_string(to, "",
-              "where it ends, the same; without a velocity any will do. Several ends, separated by "
-              "semicolons: the most probable one is named");
+DEFINE_string(
+    to, "",
+    "where it ends, the same; velocities are free where none is named, and all are held where "
+    "one is. Several ends, separated by semicolons: the most probable one is named. "
+    "Models whose noise grows with speed have no such path");
 DEFINE_int32(frames, pushid::PathFlags{}.frames, "frames of the path, both ends included");
 DEFINE_double(fps, pushid::PathFlags{}.fps, "frames a second");
 DEFINE_double(mass, pushid::kReferenceMass, "the person's mass, kg");
@@ -38,6 +40,12 @@ MaybeError ReadEnds(PathFlags* flags) {
     const std::string name(Trimmed(text));
     const Result<PathEnd> to = ParsePathEnd("--to", name, false);
     if (!to.ok()) return to.error();
+    if (name.empty()) return Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
+    if (!flags->to.empty() && to.value().rates_held != flags->to.front().rates_held) {
+      return Error{
+          "--to holds velocities in some ends and leaves them free in others, whose probabilities "
+          "cannot be compared; name a velocity in all of them or in none"};
+    }
     flags->to.push_back(to.value());
     flags->end_names.push_back(name);
   }

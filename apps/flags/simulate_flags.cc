@@ -56,6 +56,9 @@ Result<SimulateFlags> SimulateFlagsFromCommandLine() {
   if (const char* flag = GivenFormationFlag()) {
     return Error{std::string("--") + flag + " needs --formation: line, diamond or grid"};
   }
+  for (const char* flag : {"samples", "samples_seed", "samples_out"}) {
+    if (Given(flag)) return Error{std::string("--") + flag + " draws futures of a --formation"};
+  }
   for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
                            CheckOutputFolder("out", FLAGS_out), CheckNumbers()}) {
     if (error) return *error;

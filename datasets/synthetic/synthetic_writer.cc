@@ -1,4 +1,5 @@
 // datasets: synthetic recordings as files, through the writers that users have.
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 
@@ -74,8 +75,17 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
   about["stance"] = NameOf(options.model.stance);
   about["joint_noise_m"] = options.joint_noise_m;
   for (int i = 0; i < kFirstOwnParameter; ++i) {
+    if (IsNoiseParameter(static_cast<Parameter>(i))) continue;
     about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
   }
+  if (options.model.process_noise.Any()) {
+    for (int i = kFirstNoiseParameter; i < kMeasuredCart; ++i) {
+      about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
+    }
+  }
+  // The cart is the middle of two ankles.
+  about["truth"]["measured_cart"] = options.joint_noise_m / std::sqrt(2.0);
+  about["truth"]["measured_hip"] = options.joint_noise_m;
   for (const SyntheticRecording& made : recordings) {
     const std::string csv = "push/" + made.recording.id + ".csv";
     const int people = made.scene.num_people();

@@ -80,7 +80,9 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
     RecordingDiagnostics d;
     d.id = recording.id;
     for (const auto& [id, cluster] : built.blocks) {
-      if (cluster == g) built.problem->EvaluateResidualBlock(id, false, &d.cost, nullptr, nullptr);
+      if (cluster != g) continue;
+      built.problem->EvaluateResidualBlock(id, false, &d.cost, nullptr, nullptr);
+      d.cost -= built.OffsetOf(g);
     }
     const std::vector<double> raw = problem.RawResiduals(point, g);
     if (!raw.empty()) {

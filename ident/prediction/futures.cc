@@ -11,6 +11,7 @@
 #include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
 #include "ident/results/model_rollout.h"
+#include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/clusters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
@@ -20,18 +21,9 @@ namespace {
 // Rows of BandPoint that are scored: hip x, hip y, theta, phi.
 constexpr int kScored[] = {0, 1, 3, 4};
 
-// Whether a value lies within the order statistics whose ranks are p (n + 1) and (1 - p)(n + 1).
-bool Within(const std::vector<double>& sorted, double value, double share) {
-  const double n = static_cast<double>(sorted.size());
-  const double outside = 0.5 * (1.0 - share) * (n + 1.0);
-  const auto at = [&](double rank) {
-    const double clamped = std::clamp(rank - 1.0, 0.0, n - 1.0);
-    const size_t low = static_cast<size_t>(clamped);
-    const size_t high = std::min(sorted.size() - 1, low + 1);
-    const double part = clamped - static_cast<double>(low);
-    return (1.0 - part) * sorted[low] + part * sorted[high];
-  };
-  return at(outside) <= value && value <= at(n + 1.0 - outside);
+bool Within(const std::vector<double>& draws, double value, double share) {
+  const double outside = 0.5 * (1.0 - share);
+  return Quantile(draws, outside) <= value && value <= Quantile(draws, 1.0 - outside);
 }
 
 double Energy(const std::vector<Eigen::Vector2d>& draws, const Eigen::Vector2d& value) {
@@ -57,13 +49,20 @@ double Crps(std::vector<double> draws, double value) {
   return to_value / n - apart / (n * (n - 1.0));
 }
 
+uint64_t SeedOfRecording(uint64_t seed, int recording) {
+  return seed * 1000003u + static_cast<uint64_t>(recording);
+}
+
+MaybeError CheckDrawsFrom(const IdentifiedModel& model) {
+  if (model.options.process_noise.Any()) return std::nullopt;
+  return Error{(model.source.empty() ? "the model" : model.source) +
+               " has no process noise to draw futures from; fit it with "
+               "--process_noise=diagonal or --likelihood=innovation"};
+}
+
 Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecording& recording,
                             int draws, uint64_t seed, int num_frames) {
-  if (!model.options.process_noise.Any()) {
-    return Error{(model.source.empty() ? "the model" : model.source) +
-                 " has no process noise to draw futures from; fit it with "
-                 "--process_noise=diagonal or --likelihood=innovation"};
-  }
+  if (MaybeError error = CheckDrawsFrom(model)) return *error;
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
   const Scene& scene = recording.scene;
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
@@ -102,17 +101,21 @@ FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording&
                           const Futures& futures) {
   FuturesScore score;
   const int people = recording.num_people();
-  const double share = 1.0 / ((recording.num_frames() - 1.0) * people);
+  double counted = 0.0;
+  for (int n = 0; n < people; ++n) {
+    for (int t = 1; t < recording.num_frames(); ++t) counted += recording.Weight(n, t) > 0.0;
+  }
+  const double share = 1.0 / std::max(1.0, counted);
   std::vector<double> values(futures.paths.size());
   std::vector<Eigen::Vector2d> places(futures.paths.size());
   for (int n = 0; n < people; ++n) {
     for (int t = 1; t < recording.num_frames(); ++t) {
+      if (recording.Weight(n, t) <= 0.0) continue;
       BandPoint measured;
       measured << recording.hip[n][t], recording.states[n][t].q.tail<2>();
       for (int i = 0; i < 4; ++i) {
         const int row = kScored[i];
         for (size_t d = 0; d < values.size(); ++d) values[d] = futures.paths[d][n][t][row];
-        std::sort(values.begin(), values.end());
         score.inside50[i] += share * Within(values, measured[row], 0.5);
         score.inside90[i] += share * Within(values, measured[row], 0.9);
         score.crps[i] += share * Crps(values, measured[row]);
@@ -210,6 +213,10 @@ std::string FuturesText(const std::vector<FuturesSummary>& summaries) {
     if (summary.failed > 0) {
       text += "; " + std::to_string(summary.failed) + " draws left the model's domain";
     }
+    if (summary.without > 0) {
+      text += "; " + std::to_string(summary.without) +
+              " recordings have fewer than two draws that stay in it, and are left out";
+    }
     text += "\n";
   }
   return text +
@@ -223,8 +230,10 @@ Result<FuturesSummary> EvaluateFutures(const IdentifiedModel& model,
   std::vector<PendulumRecording> scored;
   std::vector<FuturesScore> scores;
   int failed = 0;
-  for (const PendulumRecording& recording : recordings) {
-    const Result<Futures> futures = DrawFutures(model, recording, draws, seed);
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& recording = recordings[i];
+    const Result<Futures> futures =
+        DrawFutures(model, recording, draws, SeedOfRecording(seed, static_cast<int>(i)));
     if (!futures.ok()) return futures.error();
     failed += futures.value().failed;
     if (futures.value().paths.size() < 2) continue;
@@ -232,7 +241,9 @@ Result<FuturesSummary> EvaluateFutures(const IdentifiedModel& model,
     scores.push_back(ScoreFutures(model, recording, futures.value()));
   }
   if (scores.empty()) return Error{"every drawn future leaves the model's domain"};
-  return SummarizeFutures("", scored, scores, draws, failed);
+  FuturesSummary summary = SummarizeFutures("", scored, scores, draws, failed);
+  summary.without = static_cast<int>(recordings.size() - scored.size());
+  return summary;
 }
 
 }  // namespace pushid

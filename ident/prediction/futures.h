@@ -24,14 +24,20 @@ struct Futures {
   std::vector<std::vector<std::vector<BandPoint>>> paths;
 };
 
+// What is wrong with drawing from a model: it has no process noise.
+MaybeError CheckDrawsFrom(const IdentifiedModel& model);
+
 // num_frames: 0 means as many as the recording has. Errors: no process noise in the model.
 Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecording& recording,
                             int draws, uint64_t seed, int num_frames = 0);
 
+// For scores over recordings, whose draws are to be independent.
+uint64_t SeedOfRecording(uint64_t seed, int recording);
+
 // Unbiased CRPS of draws against a value.
 double Crps(std::vector<double> draws, double value);
 
-// How well draws tell what came, over frames 1 .. T - 1 and people.
+// How well draws tell what came, over the measured frames from frame 1 on, and people.
 struct FuturesScore {
   // Shares of frames within the central 50 and 90 % of the draws, and CRPS: of the hip's x and y
   // and of theta and phi.
@@ -56,7 +62,7 @@ inline constexpr FuturesMetric kFuturesMetrics[] = {
     {{"crps_theta", "rad"}, [](const FuturesScore& s) { return s.crps[2]; }},
     {{"crps_phi", "rad"}, [](const FuturesScore& s) { return s.crps[3]; }},
     {{"energy", "m"}, [](const FuturesScore& s) { return s.energy; }},
-    {{"deviance", "nats"}, [](const FuturesScore& s) { return s.deviance; }},
+    {{"deviance", "1"}, [](const FuturesScore& s) { return s.deviance; }},
 };
 
 // Means over recordings with standard errors over their clusters (score_clusters.h), in the order
@@ -64,6 +70,7 @@ inline constexpr FuturesMetric kFuturesMetrics[] = {
 struct FuturesSummary {
   std::string name;  // of the model, where there are several
   int recordings = 0, draws = 0, failed = 0;
+  int without = 0;  // recordings with fewer than two draws that stay in the domain
   std::string clusters;
   std::vector<double> mean, error;
 };

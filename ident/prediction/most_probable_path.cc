@@ -15,7 +15,8 @@
 namespace pushid {
 namespace {
 
-constexpr int kLanes = 12;  // of Jets: three nodes of one person
+constexpr int kLanes = 12;              // of Jets: three nodes of one person
+constexpr double kFurthestEnd = 100.0;  // m, m/s, rad/s
 constexpr const char* kEndNames[] = {"x", "y", "theta", "phi", "xd", "yd", "thetad", "phid"};
 
 // Nodes: q of everybody, frame by frame.
@@ -53,7 +54,7 @@ struct PathProblem {
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     path->iterations = static_cast<int>(summary.iterations.size()) - 1;
-    if (summary.IsSolutionUsable()) return std::nullopt;
+    if (summary.termination_type == ceres::CONVERGENCE) return std::nullopt;
     return Error{"no most probable path was found: " + summary.message};
   }
 };
@@ -83,10 +84,10 @@ MaybeError CheckEnd(const char* which, const PathEnd& end) {
   for (int i = 0; i < 8; ++i) {
     const double value = i < 4 ? end.state.q[i] : end.state.qd[i - 4];
     const bool angle = i == 2 || i == 3;
-    if (std::isfinite(value) && (!angle || std::abs(value) <= kMaxAngle)) continue;
+    const double most = angle ? kMaxAngle : kFurthestEnd;
+    if (std::isfinite(value) && std::abs(value) <= most) continue;
     return Error{std::string("--") + which + ": " + kEndNames[i] + " is " + Rounded(value, 4) +
-                 (angle ? ", outside the model's domain (" + Rounded(kMaxAngle, 3) + " rad)"
-                        : ", no number")};
+                 ", outside the model's domain (" + Rounded(most, 3) + ")"};
   }
   return std::nullopt;
 }
@@ -213,11 +214,13 @@ Result<PathEnd> ParsePathEnd(const std::string& flag, const std::string& text, b
   if (!values.ok()) return values.error();
   PathEnd end;
   end.rates_held = always;
+  bool seen[8] = {};
   for (const NamedValue& named : values.value()) {
     bool known = false;
     for (int i = 0; i < 8; ++i) {
       if (named.name != kEndNames[i]) continue;
-      known = true;
+      if (seen[i]) return Error{flag + " names " + named.name + " twice"};
+      known = seen[i] = true;
       (i < 4 ? end.state.q[i] : end.state.qd[i - 4]) = named.value;
       if (i >= 4) end.rates_held = true;
     }

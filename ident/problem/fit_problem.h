@@ -82,8 +82,8 @@ class FitProblem {
   static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero
 
   // By how much the logarithm of the noise may fall in a solve before its rows end
-  // (residuals/gaussian_rows.h): kFisherShift, where J'J is the Fisher information, or more far from
-  // the optimum.
+  // (residuals/gaussian_rows.h): kFisherShift, where J'J is the Fisher information, or more far
+  // from the optimum.
   void set_fall_of_noise(double logarithm) { fall_of_noise_ = logarithm; }
 
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
@@ -98,6 +98,11 @@ class FitProblem {
     // The cost less this is the negative log likelihood, up to a constant that no point changes
     // (residuals/gaussian_rows.h): only so do costs of problems built at different points compare.
     double offset = 0.0;
+    std::map<int, double> offset_of;  // by recording; empty for rollouts
+    double OffsetOf(int recording) const {
+      const auto found = offset_of.find(recording);
+      return found == offset_of.end() ? 0.0 : found->second;
+    }
     int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
 
     void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,

@@ -189,15 +189,15 @@ void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     if (Count(i) == 0) continue;
     const std::vector<double*> blocks = RecordingBlocks(point, i);
-    auto residual =
-        std::make_unique<LikelihoodResidual>(LikelihoodOf(i, Weight(i, 0)), blocks.data(),
-                                             options_.jacobian == JacobianMethod::kAutodiff,
-                                             fall_of_noise_);
+    auto residual = std::make_unique<LikelihoodResidual>(
+        LikelihoodOf(i, Weight(i, 0)), blocks.data(),
+        options_.jacobian == JacobianMethod::kAutodiff, fall_of_noise_);
     if (!residual->status().ok) {
       built->shortened.push_back({i, residual->status()});
       continue;
     }
     built->offset += Count(i) * residual->offset();
+    built->offset_of[i] = Count(i) * residual->offset();
     built->AddRollout(std::move(residual), blocks, i);
   }
 }

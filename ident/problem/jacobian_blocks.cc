@@ -54,6 +54,14 @@ JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built) {
 
 void CorrectRobustLoss(const FitProblem& problem, JacobianBlocks* score) {
   score->robust_jacobian = score->jacobian;
+  if (problem.options().likelihood != Likelihood::kTrajectory) {  // has no robust loss
+    for (Eigen::Index row = 0; row < score->jacobian.rows(); ++row) {
+      if (score->cluster_of_row[static_cast<size_t>(row)] < 0) {
+        score->robust_jacobian.row(row).setZero();
+      }
+    }
+    return;
+  }
   const double robust = problem.options().sigmas.robust;
   for (Eigen::Index row = 0; row < score->jacobian.rows();) {
     const int recording = score->cluster_of_row[static_cast<size_t>(row)];

@@ -42,6 +42,8 @@ class Adviser {
   }
 
  private:
+  bool OfSteps() const { return result_.options.likelihood != Likelihood::kTrajectory; }
+
   // A command that was given already says no more.
   void Add(const std::string& sentence, const FitCommand& command) {
     const std::string text = command.ToString();
@@ -93,7 +95,8 @@ void Adviser::Identifiability() {
   }
   std::string weak;
   for (const Estimate& e : result_.estimates) {
-    if (e.status == EstimateStatus::kAtBound) {
+    if (e.status == EstimateStatus::kAtBound &&
+        !IsMeasurementError(result_.options.table.Find(e.name)->id)) {
       Add(e.name +
               " is at its bound, so its error is unknown; see whether the fit gets worse "
               "when it is held there.",
@@ -146,6 +149,7 @@ void Adviser::Person() {
   const Verdict verdict = VerdictOf(result_.behaviour, o.model);
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
   const bool tail = o.model.push_tail == PushTail::kExponential;
+  if (OfSteps()) return;  // nothing can hold such a fit to settle
   switch (verdict) {
     case Verdict::kSettles:
       return;
@@ -253,7 +257,7 @@ void Adviser::Pushes() {
 }
 
 void Adviser::Horizons() {
-  if (model_.horizon_check) return;
+  if (model_.horizon_check || OfSteps()) return;
   Add("A parameter that means something keeps its value on fewer frames; see which do.",
       Same().Set("horizon_check", "true"));
 }

@@ -75,6 +75,7 @@ std::string PriorVerdict(const RefitTable& check) {
     for (const RefitRow& row : check.rows) {
       if (!row.value.empty()) most = std::max(most, std::abs(row.value[i] - check.value[i]));
     }
+    if (check.standard_error[i] <= 0.0) continue;  // at its bound
     if (!(most > kFarMove * check.standard_error[i])) continue;
     moved += (moved.empty() ? "" : ", ") + check.parameters[i];
   }

@@ -67,8 +67,10 @@ TextTable EstimateTable(const FitResult& result) {
             : "";
     const bool unknown = e.status == EstimateStatus::kUnidentifiable;
     const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
-    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : Rounded(e.standard_error, 3),
-               unknown ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
+    const bool no_error = no_shares && e.standard_error <= 0.0;
+    const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
+    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
+               unknown || no_error ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
                no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
   }
   return table;

@@ -78,8 +78,12 @@ std::string LikelihoodText(const FitResult& result) {
          NameOf(result.options.model.process_noise) + ": -2 log L " + Rounded(score.deviance, 7) +
          " of " + std::to_string(score.measured) + " numbers, AIC " + Rounded(score.Aic(), 7) +
          ", BIC " + Rounded(score.Bic(), 7) + " (" + Count(score.parameters, "parameter") +
-         "); compare with other models by the same likelihood of the same recordings\n"
-         "  it fits single steps: what a rollout does over many of them is another question";
+         "); compare with other models by the same likelihood of the same recordings\n" +
+         (AnyPooled(result.options.table) ? "  units' deviations are not counted as parameters: "
+                                            "compare models that pool alike\n"
+                                          : "") +
+         "  it fits single steps: settling, errors and outliers below are those of its rollouts,\n"
+         "  which are another question";
 }
 
 std::string ReportText(const FittedModel& model) {

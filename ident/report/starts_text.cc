@@ -12,10 +12,18 @@ namespace {
 
 bool Ended(const SolveStart& start) { return start.usable && start.failed.empty(); }
 
+// A likelihood's cost is known but for a constant: its differences count, not its shares.
+constexpr double kSameLogLikelihood = 0.5;
+
+bool OfLikelihood(const FitResult& result) {
+  return result.options.likelihood != Likelihood::kTrajectory;
+}
+
 std::vector<const SolveStart*> AsGood(const FitResult& result) {
   std::vector<const SolveStart*> as_good;
+  const double same = OfLikelihood(result) ? kSameLogLikelihood : kSameCost * result.cost;
   for (const SolveStart& start : result.starts) {
-    if (Ended(start) && start.cost <= (1.0 + kSameCost) * result.cost) as_good.push_back(&start);
+    if (Ended(start) && start.cost <= result.cost + same) as_good.push_back(&start);
   }
   return as_good;
 }
@@ -29,8 +37,8 @@ std::string AcrossStartsNote(const FitResult& result) {
     if (Ended(start)) worst = std::max(worst, start.cost);
   }
   return std::to_string(AsGood(result).size()) + " of " + std::to_string(result.starts.size()) +
-         " starts end within 1 % of the lowest cost, " + Rounded(result.cost, 6) +
-         "; the highest is " + Rounded(worst, 6) + "\n";
+         " starts end within " + (OfLikelihood(result) ? "0.5" : "1 %") + " of the lowest cost, " +
+         Rounded(result.cost, 6) + "; the highest is " + Rounded(worst, 6) + "\n";
 }
 
 TextTable AcrossStartsTable(const FitResult& result) {

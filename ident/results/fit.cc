@@ -134,7 +134,7 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
     if (cluster < 0) continue;
     double cost = 0.0;
     built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
-    fitted[cluster].cost = cost;
+    fitted[cluster].cost = cost - built.OffsetOf(cluster);
   }
   return fitted;
 }
@@ -252,7 +252,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   const bool rollouts = options.likelihood == Likelihood::kTrajectory;
   const WeightedSolution solved = SolveAsAsked(recordings, &result.options, progress);
   const Solution& solution = solved.solution;
-  if (solution.best >= 0) EstimateNoise(recordings, solution.Best().to, &result.options);
+  std::string no_noise;
+  if (solution.best >= 0) {
+    no_noise = EstimateNoise(recordings, solution.Best().to, &result.options);
+  }
   const FitProblem problem(recordings, result.options);
   result.starts = solution.starts;
   result.best_start = solution.best;
@@ -287,6 +290,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.behaviour = problem.BehaviourAt(best.to);
   result.recordings = FittedRecordings(problem, best);
   result.warnings = Warnings(problem, result);
+  if (!no_noise.empty()) result.warnings.push_back(no_noise);
   if (!rollouts && options.likelihood != Likelihood::kTransitionAsPrinted) {
     result.likelihood = ScoreByLikelihood(problem, best.to);
   }

@@ -37,6 +37,7 @@ MaybeError TakeSelfFrom(const std::string& path, Stance stance, ParameterTable* 
   }
   for (ParameterSpec& spec : table->specs) {
     if (spec.id >= kFirstPairParameter && spec.id < kSupportFront) continue;
+    if (IsNoiseParameter(spec.id)) continue;  // of this fit
     spec.nominal = source.parameters[spec.id];
     spec.free = false;
   }
@@ -67,6 +68,18 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   }
   if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
     return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
+  }
+  for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
+                           "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
+                           "robust", "settling_weight", "mode_weight", "stability_weight"}) {
+    if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
+                 NameOf(options.likelihood) + " is of single steps, and knows nothing of it"};
+  }
+  if (const std::string* noise = Find(given, "process_noise");
+      options.likelihood != Likelihood::kTrajectory && noise != nullptr && *noise == "none") {
+    return Error{"--likelihood=" + NameOf(options.likelihood) +
+                 " needs process noise, and --process_noise is none"};
   }
   for (const char* name : {"pool_by", "pooling_sigma"}) {
     if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;

@@ -104,15 +104,24 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
         "place and velocity; " +
         what + " has a memory of its own: leave one of them out"};
   }
+  bool told_by_pushes = false;
   for (const PendulumRecording& r : recordings) {
     if (r.num_frames() < 3) {
       return Error{"recording " + r.id + " has too few frames for a likelihood of single steps"};
     }
-    if (options.likelihood == Likelihood::kTrajectory) continue;
+    for (const ScenePush& push : r.scene.pushes) {
+      told_by_pushes = told_by_pushes || push.kind == PushKind::kExternal;
+    }
     if (r.initial_velocity != InitialVelocity::kFree) continue;
-    return Error{"recording " + r.id +
-                 " has free initial velocities, which --likelihood=" + NameOf(options.likelihood) +
-                 " does not fit; set initial_velocity to zero or estimated in the manifest"};
+    return Error{
+        "recording " + r.id +
+        " has free initial velocities, which likelihoods of single steps and process noise "
+        "do not fit; set initial_velocity to zero or estimated in the manifest"};
+  }
+  if (model.process_noise.push && !told_by_pushes) {
+    return Error{
+        "--process_noise names push, but every push is a net one, made from the same motion by "
+        "inverse dynamics: what happens while it acts says nothing of noise; leave push out"};
   }
   return std::nullopt;
 }

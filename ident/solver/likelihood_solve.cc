@@ -50,19 +50,21 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
   return (sum / std::max(1, count)).cwiseSqrt();
 }
 
+bool GivenByUser(const ParameterSpec& spec) {
+  return spec.nominal != AllParameterFacts()[spec.id].nominal;
+}
+
 // Where the user has given no other start.
 void StartNoise(const FitProblem& problem, const FitPoint& point, FitOptions* options) {
   const Vector4<double> spread = SpreadOfTransitions(problem, point);
   for (int i = 0; i < 4; ++i) {
     ParameterSpec& spec = options->table.specs[kSigmaX + i];
-    if (!spec.free || spec.nominal != AllParameterFacts()[spec.id].nominal) continue;
+    if (!spec.free || GivenByUser(spec)) continue;
     spec.nominal = std::clamp(kShareOfNoise * spread[i], 2.0 * spec.lower, 0.5 * spec.upper);
   }
   for (Parameter id : {kMeasuredCart, kMeasuredHip}) {
     ParameterSpec& spec = options->table[id];
-    if (spec.free && spec.nominal == AllParameterFacts()[id].nominal) {
-      spec.nominal = kLowMeasurementError;
-    }
+    if (spec.free && !GivenByUser(spec)) spec.nominal = kLowMeasurementError;
   }
 }
 
@@ -88,6 +90,7 @@ bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* optio
     start->iterations += stage.iterations;
     start->cost = stage.final_cost;
     start->converged = stage.converged;
+    if (!std::isfinite(start->cost)) return false;
     const bool stays = std::abs(before - start->cost) < kSameCost && spread < kSettled;
     if (stays && start->converged) return true;
   }
@@ -101,20 +104,20 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
   const auto begin = std::chrono::steady_clock::now();
   LikelihoodSolution solved;
   std::vector<SolveStart>& starts = solved.solution.starts;
-  for (int s = 0; s < options->num_starts; ++s) {
-    FitOptions own = *options;
+  const FitOptions asked = *options;
+  for (int s = 0; s < asked.num_starts; ++s) {
+    FitOptions own = asked;
     const FitProblem problem(recordings, own);
     const bool first = s == 0, by_equation = own.start == FitStart::kEquationError;
-    FitPoint from = !first        ? RandomStart(problem, own.start_spread, own.seed + s)
+    FitPoint from = !first        ? RandomStart(problem, own.start_spread, RandomStartSeed(own, s))
                     : by_equation ? EquationErrorStart(problem)
                                   : problem.NominalPoint();
     StartNoise(problem, from, &own);
     const FitProblem with_noise(recordings, own);
     TakeNoise(with_noise, &from);
-    const std::string label =
-        options->num_starts > 1
-            ? "start " + std::to_string(s + 1) + "/" + std::to_string(options->num_starts) + ", "
-            : "";
+    const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +
+                                                         std::to_string(asked.num_starts) + ", "
+                                                   : "";
     own.horizons = {0};
     own.max_iterations = kScoringSteps;
     const FitProblem whole(recordings, own);
@@ -124,9 +127,9 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
                                                : "nominal",
                                  label, progress);
     for (int round = 1; round < kScoringRounds; ++round) {
-      start.to = Refit(whole, start.to, false, own.num_threads).to;
+      start.to = SolveFrom(whole, start.to, start.kind, label, progress).to;
     }
-    own.max_iterations = options->max_iterations;
+    own.max_iterations = asked.max_iterations;
     start.failed.clear();
     const bool stays = SolveOn(recordings, &own, &start);
     start.usable = std::isfinite(start.cost) && start.failed.empty();
@@ -134,7 +137,7 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
     if (start.usable && (best == nullptr || start.cost < best->cost)) {
       solved.solution.best = s;
       solved.stays = stays;
-      own.horizons = options->horizons;
+      own.horizons = asked.horizons;
       *options = own;
     }
     starts.push_back(std::move(start));
@@ -144,14 +147,17 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
   return solved;
 }
 
-void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
-                   FitOptions* options) {
+std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
+                          FitOptions* options) {
   if (!options->model.process_noise.Any() || options->likelihood != Likelihood::kTrajectory) {
-    return;
+    return "";
   }
   FitOptions own = *options;
   SetLikelihood(Likelihood::kInnovation, &own);
   FreeNoise(&own);
+  for (ParameterSpec& spec : own.table.specs) {
+    if (IsNoiseParameter(spec.id) && GivenByUser(spec)) spec.free = false;
+  }
   StartNoise(FitProblem(recordings, *options), point, &own);
   const FitProblem problem(recordings, own);
   FitPoint noise = problem.NominalPoint();
@@ -168,6 +174,9 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
   for (int round = 0; round < kMostRounds; ++round) {
     std::string message;
     const SolveStage stage = SolveByBfgs(problem, held, &noise, &message);
+    if (!std::isfinite(stage.final_cost)) {
+      return "the process noise is not estimated: " + message;
+    }
     if (std::abs(cost - stage.final_cost) < kSameNoise) break;
     cost = stage.final_cost;
   }
@@ -176,6 +185,7 @@ void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPo
     if (!IsNoiseParameter(f.parameter)) continue;
     options->table[f.parameter].nominal = found[f.parameter];
   }
+  return "";
 }
 
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point) {

@@ -6,6 +6,8 @@
 // turns with the spread of pooled units.
 #pragma once
 
+#include <string>
+
 #include "ident/solver/likelihood_score.h"
 #include "ident/solver/solver.h"
 
@@ -16,16 +18,17 @@ struct LikelihoodSolution {
   bool stays = false;  // the best one's likelihood, from round to round
 };
 
-// options: on return with the noise's start and the units' spread.
+// The best of the starts, each on its own. options: on return with the best one's start of the
+// noise and its units' spread.
 LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recordings,
                                      FitOptions* options, const SolveProgress& progress = nullptr);
 
 // The process noise, and the errors of measurement, under which a fit of whole rollouts explains
 // single steps best (innovation likelihood), everything else held at `point`: the table's fixed
-// values on return. Nothing changes where the model has no noise, a likelihood of steps has found
-// it already, or a filter leaves the domain.
-void EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
-                   FitOptions* options);
+// values on return. What the user has set stays. Nothing changes where the model has no noise, or a
+// likelihood of steps has found it already. Returns a warning where it cannot be estimated.
+std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
+                          FitOptions* options);
 
 // At a point of a problem.
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);

@@ -11,6 +11,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/solver/early_stopping.h"
+#include "ident/solver/whitened_bfgs.h"
 
 namespace pushid {
 namespace {
@@ -87,6 +88,14 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
+  if (problem.options().likelihood != Likelihood::kTrajectory) {
+    const SolveStage stage = SolveByBfgs(problem, {}, &start.to, &start.message);
+    start.stages.push_back(stage);
+    start.iterations = stage.iterations;
+    start.cost = stage.final_cost;
+    start.converged = start.usable = stage.converged;
+    return start;
+  }
   FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
   ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
   if (!from.weights.empty() && !hold_network) {
@@ -226,6 +235,10 @@ std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* poin
   return notes;
 }
 
+std::uint64_t RandomStartSeed(const FitOptions& options, int i) {
+  return options.seed * 1000003u + static_cast<std::uint64_t>(i);
+}
+
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {
   Random random(seed);
   FitPoint point = problem.NominalPoint();
@@ -250,7 +263,7 @@ Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
     FitPoint from;
     std::string kind;
     if (i > 0) {
-      from = RandomStart(problem, options.start_spread, options.seed * 1000003u + i);
+      from = RandomStart(problem, options.start_spread, RandomStartSeed(options, i));
       kind = "random";
     } else if (options.start == FitStart::kEquationError) {
       from = EquationErrorStart(problem);

@@ -18,8 +18,9 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
                       std::string* message);
 
-// All frames from a point near the optimum (profiles, bootstrap, leaving recordings out); in one
-// thread where refits run in parallel. hold_network: its weights are constant.
+// All frames, or the likelihood, from a point near the optimum (profiles, bootstrap, leaving
+// recordings out); in one thread where refits run in parallel. hold_network: its weights are
+// constant.
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
                  int num_threads = 1);
 
@@ -38,6 +39,8 @@ FitPoint EquationErrorStart(const FitProblem& problem);
 // log scale by 10 %). Returns what was moved, in words.
 std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point);
 
+// Of the i-th start, the first being 0.
+std::uint64_t RandomStartSeed(const FitOptions& options, int i);
 // The nominal point with every free gain multiplied by spread^u, u uniform in [-1, 1].
 FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed);
 

@@ -7,6 +7,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "ident/problem/jacobian_blocks.h"
 
@@ -15,10 +16,12 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
+// Of a number that nothing depends on, in a direction's information.
+constexpr double kNoInformation = 1e-12;
 // How far the logarithm of noise may fall: far.
 constexpr double kAnyFall = 40.0;
 constexpr double kNearBound = 1e-3;  // on the fitted scale
-constexpr double kRidge = 1e-9;      // of the information's diagonal: a direction may be unknown
+constexpr double kRidge = 1e-9;      // of the information's diagonal: directions may be unknown
 
 // Bounds of every number of a point, in its order; those of units are open.
 struct Bounds {
@@ -45,7 +48,12 @@ void SetFlat(const VectorXd& flat, FitPoint* point) {
   point->SetFlat(std::vector<double>(flat.data(), flat.data() + flat.size()));
 }
 
-// The exact cost: half the squares of rows that do not end, less their offset.
+// The cost at the origin. The solver compares changes with the cost itself, and a negative log
+// likelihood may be negative: counted from here it never is.
+constexpr double kLevel = 1e6;
+constexpr double kSameCost = 1e-4;  // nats: changes below end the search
+
+// The exact cost: half the squares of rows that do not end, but for a constant.
 class WhitenedCost : public ceres::FirstOrderFunction {
  public:
   WhitenedCost(const FitProblem& problem, const FitPoint& at, const MatrixXd& root)
@@ -56,7 +64,13 @@ class WhitenedCost : public ceres::FirstOrderFunction {
         bounds_(BoundsOf(problem, origin_.size())) {
     problem_.set_fall_of_noise(kAnyFall);
     built_ = problem_.Build(&point_, 0);
+    double at_origin = 0.0;
+    built_.problem->Evaluate({}, &at_origin, nullptr, nullptr, nullptr);
+    shift_ = kLevel - at_origin;
   }
+
+  // What a cost of the solver's is above the negative log likelihood.
+  double above() const { return shift_ + built_.offset; }
 
   VectorXd At(const double* z) const {
     return origin_ + root_ * Eigen::Map<const VectorXd>(z, root_.cols());
@@ -73,7 +87,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
                                   nullptr)) {
       return false;
     }
-    *cost -= built_.offset;
+    *cost += shift_;
     if (gradient == nullptr) return true;
     Eigen::Map<VectorXd>(gradient, root_.cols()) =
         root_.transpose() * Eigen::Map<const VectorXd>(by_x.data(), x.size());
@@ -87,6 +101,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
   VectorXd origin_;
   MatrixXd root_;
   Bounds bounds_;
+  double shift_ = 0.0;
   mutable FitProblem::Built built_;
 };
 
@@ -108,22 +123,33 @@ MatrixXd RootOfInverse(const MatrixXd& information, const std::vector<int>& movi
 SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
                        std::string* message) {
   SolveStage stage;
+  stage.final_cost = HUGE_VAL;
   FitProblem fisher = problem;
   fisher.set_fall_of_noise(kFisherShift);
   const FitProblem::Built built = fisher.Build(point, 0);
+  if (!built.shortened.empty()) {
+    const FailedRollout& failed = built.shortened.front();
+    *message = "the filter of recording " + problem.recordings()[failed.recording].id +
+               " leaves the model's domain: " + std::string(failed.status.quantity) + " at frame " +
+               std::to_string(failed.status.frame);
+    return stage;
+  }
   const JacobianBlocks score = EvaluateJacobianBlocks(built);
   const VectorXd x = FlatOf(*point), gradient = score.jacobian.transpose() * score.residuals;
   const Bounds bounds = BoundsOf(problem, x.size());
+  const MatrixXd information = score.jacobian.transpose() * score.jacobian;
+  const double nothing = kNoInformation * information.diagonal().maxCoeff();
   std::vector<int> moving;
   for (int i = 0; i < x.size(); ++i) {
     const bool at_bound = (x[i] < bounds.lower[i] + kNearBound && gradient[i] > 0.0) ||
                           (x[i] > bounds.upper[i] - kNearBound && gradient[i] < 0.0);
     const bool stays = std::find(held.begin(), held.end(), i) != held.end();
-    if (!at_bound && !stays) moving.push_back(i);
+    if (!at_bound && !stays && information(i, i) > nothing) moving.push_back(i);
   }
-  const MatrixXd root = RootOfInverse(score.jacobian.transpose() * score.jacobian, moving);
+  const MatrixXd root = RootOfInverse(information, moving);
   if (root.size() == 0) {
-    *message = "the Fisher information has no inverse";
+    *message =
+        moving.empty() ? "nothing moves the likelihood" : "the Fisher information has no inverse";
     return stage;
   }
   auto* cost = new WhitenedCost(problem, *point, root);  // of the gradient problem
@@ -131,18 +157,18 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = problem.options().max_iterations;
-  options.function_tolerance = problem.options().function_tolerance;
+  options.function_tolerance = kSameCost / kLevel;
   options.logging_type = ceres::SILENT;
   std::vector<double> z(moving.size(), 0.0);
   ceres::GradientProblemSolver::Summary summary;
   ceres::Solve(options, whitened, z.data(), &summary);
   *message = summary.message;
-  stage.initial_cost = summary.initial_cost;
-  stage.final_cost = summary.final_cost;
+  stage.initial_cost = summary.initial_cost - cost->above();
+  if (summary.IsSolutionUsable()) stage.final_cost = summary.final_cost - cost->above();
   stage.converged = summary.termination_type == ceres::CONVERGENCE;
   stage.iterations = static_cast<int>(summary.iterations.size()) - 1;
   for (const ceres::IterationSummary& i : summary.iterations) {
-    stage.trace.push_back({0, i.iteration, i.cost, i.gradient_max_norm});
+    stage.trace.push_back({0, i.iteration, i.cost - cost->above(), i.gradient_max_norm});
   }
   if (summary.IsSolutionUsable()) SetFlat(cost->At(z.data()), point);
   return stage;

@@ -14,8 +14,9 @@
 
 namespace pushid {
 
-// From *point, whose value is overwritten; where nothing can be evaluated it stays. held: columns
-// of FitPoint::Flat that stay where they are.
+// From *point, whose value is overwritten; where nothing can be evaluated it stays, the cost is
+// infinite, and message says why. held: columns of FitPoint::Flat that stay where they are, as
+// those do that nothing depends on.
 SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
                        std::string* message);
 

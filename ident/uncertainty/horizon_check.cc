@@ -60,8 +60,9 @@ RefitRow FitOneStep(const FitProblem& whole) {
   SetLikelihood(Likelihood::kInnovation, &options);
   FreeNoise(&options);
   const LikelihoodSolution found = SolveByLikelihood(whole.recordings(), &options);
-  if (found.solution.best < 0) {
-    row.failure = "no start could be solved";
+  if (found.solution.best < 0 || !found.stays) {
+    row.failure = found.solution.best < 0 ? found.solution.starts.front().message
+                                          : "the likelihood still rose when the rounds ended";
     return row;
   }
   const FitProblem problem(whole.recordings(), options);

@@ -7,6 +7,7 @@
 #include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
 #include "ident/results/fit.h"
+#include "ident/results/json_pieces.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {
@@ -60,8 +61,8 @@ HeldOutFutures CrossValidateFutures(const std::string& name,
         fitted[f] = 1;
         for (int i : folds[f].held_out) {
           const Result<Futures> futures =
-              DrawFutures(solved.value().model, recordings[i], draws, seed);
-          if (!futures.ok() || futures.value().paths.size() < 2) continue;
+              DrawFutures(solved.value().model, recordings[i], draws, SeedOfRecording(seed, i));
+          if (!futures.ok() || futures.value().paths.size() < 2) continue;  // counted below
           by_fold[f].push_back(
               {i, futures.value().failed,
                ScoreFutures(solved.value().model, recordings[i], futures.value())});
@@ -86,6 +87,7 @@ HeldOutFutures CrossValidateFutures(const std::string& name,
     all.held_out.push_back(Mean(by_recording[i]));
   }
   all.summary = SummarizeFutures(name, scored, all.held_out, draws, failed);
+  all.summary.without = static_cast<int>(recordings.size() - scored.size());
   return all;
 }
 
@@ -134,10 +136,11 @@ nlohmann::ordered_json ToJson(const FuturesSummary& summary) {
                                  {"recordings", summary.recordings},
                                  {"draws", summary.draws},
                                  {"failed", summary.failed},
+                                 {"recordings_left_out", summary.without},
                                  {"clusters", summary.clusters}};
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
-    json["mean"][kFuturesMetrics[i].Key()] = summary.mean[i];
-    json["mean"][kFuturesMetrics[i].ErrorKey()] = summary.error[i];
+    json["mean"][kFuturesMetrics[i].Key()] = NumberJson(summary.mean[i]);
+    json["mean"][kFuturesMetrics[i].ErrorKey()] = NumberJson(summary.error[i]);
   }
   return json;
 }

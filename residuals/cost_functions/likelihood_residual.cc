@@ -24,6 +24,16 @@ constexpr double kDifference = 3e-5;
 // Of qd, m/s and rad/s: what the deviations as printed are measured in.
 constexpr double kPrintedScale = 0.05;
 
+// Whether a push on the person stands for all that its step shows.
+bool PushedByNetForce(const Scene& scene, int person, int frame) {
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person == person && push.kind != PushKind::kExternal && push.Active(frame)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // Velocities at the first frame are known exactly, at the others as measured.
 template <typename T>
 void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSet<T>>& parameters,
@@ -43,7 +53,8 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
     forces.Update(states.data());
     for (int n = 0; n < scene.num_people(); ++n) {
       GaussianDensity<T>& density = (*densities)[t * scene.num_people() + n];
-      density.measured = r.Weight(n, t) > 0.0 && r.Weight(n, t + 1) > 0.0;
+      density.measured =
+          r.Weight(n, t) > 0.0 && r.Weight(n, t + 1) > 0.0 && !PushedByNetForce(scene, n, t);
       Vector4<double> drawn;
       for (double& w : drawn) w = random.Normal();
       if (!density.measured) continue;
@@ -81,9 +92,10 @@ RolloutStatus Innovations(const LikelihoodProblem& problem,
     for (int n = 0; n < r.num_people(); ++n) {
       GaussianDensity<T>& density = (*densities)[t * r.num_people() + n];
       const double weight = r.Weight(n, t + 1);
-      density.measured = weight > 0.0;
-      if (!density.measured) continue;
+      if (weight <= 0.0) continue;
       const auto innovation = filter.Update(n, r.states[n][t + 1].q, weight);
+      density.measured = !PushedByNetForce(r.scene, n, t);
+      if (!density.measured) continue;
       density.v = innovation.v;
       density.lower = innovation.lower;
     }

@@ -9,6 +9,9 @@
 //                Its expectation holds |M^-1 L|^2 itself and no determinant: L goes to 0.
 //   innovation   of every measurement given all before it (models/pendulum_filter.h)
 //
+// Steps under a net push are no evidence: its rows were made from this very motion, by inverse
+// dynamics. A filter goes through them, and their densities count as not measured.
+//
 //   residuals: kGaussianRows for frames 1 .. T - 1; ordered by frame, then person
 //   blocks:    BlockLayout without initial velocities: a filter knows how little it knows of them
 // Jacobian of transitions by Jets over the parameters. A filter's covariance needs the derivatives

@@ -62,8 +62,9 @@ ReportSection SolveSection(const FittedModel& model) {
     return std::make_tuple(!a->usable, a->failed.size(), a->cost) <
            std::make_tuple(!b->usable, b->failed.size(), b->cost);
   });
-  TextTable starts({"rank", "start", "cost", "iterations", "converged", "failed recordings", ""},
-                   {false, true, false, false, true, false, true});
+  TextTable starts(
+      {"rank", "start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
+      {false, true, false, false, true, false, true});
   for (size_t i = 0; i < ranked.size(); ++i) {
     const SolveStart& s = *ranked[i];
     starts.Add({std::to_string(i + 1), s.kind, s.usable ? Rounded(s.cost, 6) : "-",
@@ -106,7 +107,9 @@ ReportSection SolveSection(const FittedModel& model) {
     }
   }
   section.figures.push_back({"trace",
-                             "The best start. The cost jumps where the horizon grows (lines).",
+                             result.options.likelihood == Likelihood::kTrajectory
+                                 ? "The best start. The cost jumps where the horizon grows (lines)."
+                                 : "The best start: Fisher scoring, then BFGS.",
                              DrawCharts({cost, gradient}, "trace", 2, 450, 210), numbers});
   return section;
 }

@@ -21,6 +21,11 @@ TEST(Crps, OfAUniformDistributionIsItsClosedForm) {
   }
 }
 
+TEST(Crps, OfTwoDrawsByHand) {
+  EXPECT_DOUBLE_EQ(Crps({0.0, 1.0}, 0.0), 0.0);  // 1/2 - |0 - 1| / 2; with n^2 it were 1/4
+  EXPECT_DOUBLE_EQ(Crps({1.0, 0.0, 2.0}, 3.0), 2.0 - 2.0 / 3.0);
+}
+
 // Twenty draws are scored as a thousand are, on average.
 TEST(Crps, FewDrawsAreNotBiased) {
   Random random(4);

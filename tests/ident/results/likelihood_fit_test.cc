@@ -77,7 +77,7 @@ TEST(TransitionFit, OnExactStatesFindsTheNoise) {
   }
 }
 
-TEST(TransitionFit, AsPrintedTheNoiseEndsAtItsBound) {
+TEST(TransitionFit, AsPrintedTheNoiseIsFarTooSmall) {
   const SyntheticOptions study = NoisyStudy(5);
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   FitOptions options = ByLikelihood(study, "transition_as_printed");

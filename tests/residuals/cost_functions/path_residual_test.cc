@@ -129,6 +129,37 @@ TEST(SceneAction, ItsJacobianIsThatOfNumericDifferentiation) {
   }
 }
 
+// By each person's own velocity, from differences of the forces themselves: friction and damping
+// make it negative.
+TEST(SceneAction, ItsDivergenceRowIsHalfTheDivergence) {
+  const ThreeFrames frames(0.0);
+  const double* const at[] = {frames.nodes[0].data(), frames.nodes[1].data(),
+                              frames.nodes[2].data()};
+  std::vector<double> rows(10);
+  ASSERT_TRUE(
+      (SceneAction{&frames.scene, &frames.options, &frames.parameters, 6}(at, rows.data())));
+  const std::vector<PendulumState<double>> states = StatesAtNode(at, 2, frames.scene.dt);
+  SceneForces<double> forces(frames.scene, frames.options, frames.parameters);
+  std::vector<int> scratch;
+  constexpr double kStep = 1e-5;
+  for (int n = 0; n < 2; ++n) {
+    double divergence = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      for (double sign : {1.0, -1.0}) {
+        std::vector<PendulumState<double>> moved = states;
+        moved[n].qd[i] += sign * kStep;
+        forces.Update(moved.data());
+        forces.Prepare(n, &scratch);
+        const NetForce<double> force = forces.On(n, 6, moved[n].qd);
+        divergence += sign * forces.AccelerationOf(n, force)[i] / (2.0 * kStep);
+      }
+    }
+    EXPECT_LT(divergence, -0.1);
+    const double row = rows[SceneAction::kRows * n + 4];
+    EXPECT_NEAR(0.5 * row * row - kDivergenceShift, 0.5 * frames.scene.dt * divergence, 1e-7);
+  }
+}
+
 // A rollout needs little noise; a motion against the forces needs much.
 TEST(SceneAction, RolloutsAreProbable) {
   const ThreeFrames frames(0.0);
