@@ -18,7 +18,8 @@ namespace pushid {
 
 MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
   if (flags.samples == 0) return std::nullopt;
-  if (Given("observed")) {
+  gflags::CommandLineFlagInfo observed;  // not of every program
+  if (gflags::GetCommandLineFlagInfo("observed", &observed) && !observed.is_default) {
     return Error{
         "--samples draws futures from frame 0 on, and --observed predicts from later: leave one "
         "out"};

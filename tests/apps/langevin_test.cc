@@ -67,7 +67,7 @@ TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
   ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
   const nlohmann::ordered_json mean = Json(scores).at("futures").at("mean");
   for (const char* key :
-       {"inside90_x_1", "crps_x_m", "energy_m", "deviance_nats", "energy_standard_error_m"}) {
+       {"inside90_x_1", "crps_x_m", "energy_m", "deviance_1", "energy_standard_error_m"}) {
     EXPECT_TRUE(mean.contains(key)) << key;
   }
 

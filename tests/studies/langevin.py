@@ -86,7 +86,7 @@ def horizons():
 
 CANDIDATES = [("diagonal", "diagonal"), ("full", "full"), ("diagonal, speed", "diagonal,speed"),
               ("full, speed", "full,speed")]
-METRICS = [("deviance_nats", "-2 log L a number"), ("inside50_x_1", "inside 50 %, x"), ("inside90_x_1", "inside 90 %, x"),
+METRICS = [("deviance_1", "-2 log L a number"), ("inside50_x_1", "inside 50 %, x"), ("inside90_x_1", "inside 90 %, x"),
            ("inside90_y_1", "90 %, y"), ("inside90_theta_1", "90 %, theta"), ("crps_x_m", "CRPS x, m"),
            ("energy_m", "energy score, m")]
 
