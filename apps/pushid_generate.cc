@@ -90,6 +90,42 @@ Result<size_t> FindWindow(const std::vector<ForecastWindow>& windows, const std:
                "; --window and --target_window count them from 0 on"};
 }
 
+// The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
+MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
+                      const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+  scene->title += ", towards the end of window " + std::to_string(flags.target_window);
+  if (flags.samples == 0) {
+    const Result<MinimizedPath> path =
+        PathToPose(generator, {scene->observed}, kForecastFrames, target);
+    if (!path.ok()) return path.error();
+    const MinimizedPath& found = path.value();
+    (*json)["path"] = {{"distance_m", found.distance},
+                       {"log_likelihood", found.log_likelihood},
+                       {"log_likelihood_of_forecast", found.of_forecast},
+                       {"iterations", found.iterations}};
+    std::printf(
+        "the most probable path to the end of window %d, %s m from it: %s nats below the forecast "
+        "(%d iterations)\n",
+        flags.target_window, Rounded(found.distance, 3).c_str(),
+        Rounded(found.of_forecast - found.log_likelihood, 4).c_str(), found.iterations);
+    scene->forecast = found.motion;
+    return std::nullopt;
+  }
+  const Result<PathChoice> path =
+      MostProbablePath(scene->futures, target, flags.target_distance, scene->layout);
+  if (!path.ok()) return path.error();
+  const PathChoice& choice = path.value();
+  (*json)["path"] = {{"future", choice.future + 1},
+                     {"near", choice.near},
+                     {"distance_m", choice.distance},
+                     {"log_likelihood", choice.log_likelihood}};
+  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
+              choice.near, flags.samples, flags.target_window, choice.future + 1,
+              Rounded(choice.distance, 3).c_str());
+  scene->forecast = scene->futures[choice.future].motion;
+  return std::nullopt;
+}
+
 // The window's forecast and futures; of a search its outcome goes to `json`.
 Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
                               const std::vector<ForecastWindow>& windows, Json* json) {
@@ -113,20 +149,8 @@ Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags
   if (flags.target_window < 0) return scene;
   const Result<size_t> target = FindWindow(windows, flags.action, flags.target_window);
   if (!target.ok()) return target.error();
-  const Result<PathChoice> path =
-      MostProbablePath(scene.futures, windows[target.value()].future.rightCols(1),
-                       flags.target_distance, scene.layout);
-  if (!path.ok()) return path.error();
-  const PathChoice& choice = path.value();
-  (*json)["path"] = {{"future", choice.future + 1},
-                     {"near", choice.near},
-                     {"distance_m", choice.distance},
-                     {"log_likelihood", choice.log_likelihood}};
-  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
-              choice.near, flags.samples, flags.target_window, choice.future + 1,
-              Rounded(choice.distance, 3).c_str());
-  scene.title += ", towards the end of window " + std::to_string(flags.target_window);
-  scene.forecast = scene.futures[choice.future].motion;
+  const Eigen::VectorXf end = windows[target.value()].future.rightCols(1);
+  if (MaybeError error = SearchPath(*loaded.generator, flags, end, &scene, json)) return *error;
   return scene;
 }
 

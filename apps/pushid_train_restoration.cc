@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
 #include "apps/support/training_line.h"
@@ -112,6 +113,7 @@ int Run() {
   const Result<std::vector<BodyRecording>> bodies =
       MakeBodyRecordings(recordings.value(), options.fit.mapping);
   if (!bodies.ok()) return Fail(bodies.error());
+  if (MaybeError error = CheckObservedFlag(PendulumsOf(bodies.value()))) return Fail(*error);
   if (MaybeError error = AddMoreRecordings(flags.more_settings, recordings.value(), &options)) {
     return Fail(*error);
   }

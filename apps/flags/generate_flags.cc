@@ -39,10 +39,11 @@ DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show,
 DEFINE_string(id, "", "pushes: the recording to show");
 DEFINE_int32(person, kFlags.person, "pushes: which person of it");
 DEFINE_int32(target_window, kFlags.target_window,
-             "cmu: show the most probable sampled future that ends like this window of the action; "
-             "-1: no search");
+             "cmu: show the most probable path that ends like this window of the action: with "
+             "--samples among those, otherwise by minimization; -1: no search");
 DEFINE_double(target_distance, kFlags.target_distance,
-              "--target_window: what counts as ending there, mean distance of joints, m");
+              "--target_window with --samples: what counts as ending there, mean distance of "
+              "joints, m");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
@@ -79,8 +80,8 @@ MaybeError CheckData(const GenerateFlags& flags) {
     for (const char* flag : {"id", "person", "recordings", "setting"}) {
       if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=pushes"};
     }
-    if (flags.target_window >= 0 && flags.samples == 0) {
-      return Error{"--target_window searches among sampled futures; give --samples"};
+    if (Given("target_distance") && (flags.target_window < 0 || flags.samples == 0)) {
+      return Error{"--target_distance chooses among --samples that end like --target_window"};
     }
     return Require("folder", FLAGS_folder, "name the folder of the clips");
   }

@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "ident/results/result_json.h"
 #include "models/self_network.h"
@@ -59,6 +60,9 @@ MaybeError CheckFlags() {
   } else if (FLAGS_crossvalidate < 2) {
     return Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
+  if (ObservedFrames() > 0 && FLAGS_crossvalidate == 0) {
+    return Error{"--observed goes with --crossvalidate: a training sees whole recordings"};
+  }
   if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
   if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
     return Error{"--held_out must lie above 0 and not above 0.5"};
@@ -89,6 +93,7 @@ Result<RestorationRunOptions> RunOptions() {
   options.held_out = FLAGS_held_out;
   options.predicted_pendulums = FLAGS_predicted_pendulums;
   options.mirrored = FLAGS_mirrored;
+  options.observed = ObservedFrames();
   options.training.kind = *RestorationKindFromName(FLAGS_kind);
   options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
   options.training.effort = FLAGS_effort;

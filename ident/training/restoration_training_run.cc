@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "ident/bodies/simlpe_files.h"
+#include "ident/prediction/online_predictor.h"
+#include "ident/results/recording_effect.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {
@@ -15,8 +17,9 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::vector<int> Picked(const std::vector<int>& from, const std::vector<int>& positions) {
-  std::vector<int> picked;
+template <typename Value>
+std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
+  std::vector<Value> picked;
   for (int k : positions) picked.push_back(from[k]);
   return picked;
 }
@@ -38,7 +41,7 @@ std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vecto
 
 // A restoration beside its baselines; siMLPe alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
-                                const PostprocessOptions& postprocess,
+                                const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
   BodyScores scores;
   if (file.kind == RestorationKind::kSimlpe) {
@@ -49,7 +52,8 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
   }
   const auto restoration = MakeRestoration(file, "");
   if (!restoration.ok()) return restoration.error();
-  ScoreRestoration(model, *restoration.value(), postprocess, recording, &scores);
+  ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
+                   options.observed);
   return scores;
 }
 
@@ -112,15 +116,19 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     const auto told = [&](const std::string& step, double done) {
       if (progress) progress(fold.name + ", " + step, done);
     };
-    const std::optional<IdentifiedModel> model = FitTo(pendulums, train, options.fit);
+    std::optional<IdentifiedModel> model = FitTo(pendulums, train, options.fit);
     if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
+    if (options.observed > 0) {
+      model->recording_effect = FitRecordingEffect(*model, Picked(pendulums, train));
+      if (MaybeError error = CheckLearnsFromFrames(*model)) return *error;
+    }
     const double before = Now();
     Result<TrainedRestoration> trained = TrainFromRecordings(recordings, train, options, told);
     if (!trained.ok()) return trained.error();
     validation.training_seconds.push_back(Now() - before);
     for (int i : fold.held_out) {
       const Result<BodyScores> scores =
-          ScoreTrained(trained.value().file, *model, options.postprocess, recordings[i]);
+          ScoreTrained(trained.value().file, *model, options, recordings[i]);
       if (!scores.ok()) return scores.error();
       for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }

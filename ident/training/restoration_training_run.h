@@ -19,6 +19,7 @@ struct RestorationRunOptions {
   int inner_folds = 4;     // of the out-of-fold predictions
   double held_out = 0.15;  // share of the recordings that stop the training early
   bool predicted_pendulums = true, mirrored = true;
+  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h)
   // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
   std::vector<BodyRecording> more;
 };
@@ -36,7 +37,8 @@ struct ChainValidation {
   BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
   std::vector<double> training_seconds;  // of the restoration, by fold
 };
-// Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum.
+// Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
+// learn from first frames where some are to be seen.
 Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
                                            const RestorationRunOptions& options, int folds,
                                            uint64_t seed, const RunProgress& progress = nullptr);

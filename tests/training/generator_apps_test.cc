@@ -104,6 +104,11 @@ TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
   const AppRun far = Generate({"--samples=50", "--target_window=3", "--target_distance=0"});
   EXPECT_EQ(far.exit_code, 1);
   EXPECT_TRUE(Contains(far.err, "raise --samples or --target_distance"));
+  const AppRun least = Generate({"--target_window=3", "--json_out=" + Path("least.json")});
+  ASSERT_EQ(least.exit_code, 0) << least.err;
+  EXPECT_TRUE(Contains(least.out, "the most probable path to the end of window 3"));
+  EXPECT_LT(Json("least.json")["path"]["log_likelihood"].get<double>(),
+            Json("least.json")["path"]["log_likelihood_of_forecast"].get<double>());
 }
 
 TEST_F(GeneratorAppTest, MistakesAreNamed) {
@@ -118,7 +123,7 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
-  EXPECT_TRUE(Refused(Generate({"--target_window=3"}), {"give --samples"}));
+  EXPECT_TRUE(Refused(Generate({"--target_window=3", "--target_distance=1"}), {"chooses among --samples"}));
   EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
   EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
 }
