@@ -70,8 +70,9 @@ TEST(PathToPose, IsAnOptimum) {
   EXPECT_LT(path.value().distance, 0.3 * before);
   Random random(5);
   int nearer_and_likelier = 0;
-  for (const SampledFuture& other :
-       generator.Sample({seen}, kFrames, 200, [&random] { return random.Normal(); }).front()) {
+  const auto sampled =
+      generator.Sample({seen}, kFrames, 200, [&random] { return random.Normal(); });
+  for (const SampledFuture& other : sampled.front()) {
     const double away = MeanDistance(other.motion.rightCols(1), target, FourParticles())(0);
     nearer_and_likelier +=
         away <= path.value().distance && other.log_likelihood > path.value().log_likelihood;
