@@ -104,10 +104,11 @@ MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& fla
                        {"log_likelihood_of_forecast", found.of_forecast},
                        {"iterations", found.iterations}};
     std::printf(
-        "the most probable path to the end of window %d, %s m from it: %s nats below the forecast "
-        "(%d iterations)\n",
+        "the most probable path to the end of window %d, %s m from it: log likelihood %s, of the "
+        "forecast %s (%d iterations)\n",
         flags.target_window, Rounded(found.distance, 3).c_str(),
-        Rounded(found.of_forecast - found.log_likelihood, 4).c_str(), found.iterations);
+        Rounded(found.log_likelihood, 4).c_str(), Rounded(found.of_forecast, 4).c_str(),
+        found.iterations);
     scene->forecast = found.motion;
     return std::nullopt;
   }

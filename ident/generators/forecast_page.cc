@@ -25,7 +25,7 @@ function project(p){const x=p[a]-centre[a],y=p[b]-centre[b],z=p[up]-centre[up],c
 function line(p,q){const u=project(p),v=project(q);pen.beginPath();pen.moveTo(...u);pen.lineTo(...v);pen.stroke();}
 const at=(f,j)=>f.slice(3*j,3*j+3);
 function body(f,colour,width,alpha){if(!f)return;pen.strokeStyle=colour;pen.lineWidth=width;pen.globalAlpha=alpha;
- data.parents.forEach((p,j)=>{if(p===-2)return;line(p===-1?data.fixed[j]:at(f,p),at(f,j));});pen.globalAlpha=1;}
+ data.parents.forEach((p,j)=>{if(p===-2)return;line(p===-1?data.fixed[j]:at(f,p),at(f,j));if(p===-1)line([0,0,0],data.fixed[j]);});pen.globalAlpha=1;}
 function trail(motion,until,colour,alpha){pen.strokeStyle=colour;pen.lineWidth=1.5;pen.globalAlpha=alpha;
  for(const j of data.ends){let before=at(data.observed_motion[data.observed-1],j);
   for(let t=0;t<=until&&t<motion.length;t++){const here=at(motion[t],j);line(before,here);before=here;}}pen.globalAlpha=1;}
