@@ -66,6 +66,9 @@ std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
                                         ? Eigen::Vector3f(scene.layout.fixed.col(i))
                                         : Eigen::Vector3f(motion.col(t).segment<3>(3 * parent));
       svg.Line(x(start), y(start), x(end), y(end), look);
+      // All fixed points hang on the root, which is the origin.
+      const Eigen::Vector3f root = Eigen::Vector3f::Zero();
+      if (parent == kFixedPoint) svg.Line(x(root), y(root), x(start), y(start), look);
     }
   };
   const int observed = scene.num_observed(), last = scene.num_frames() - 1;
