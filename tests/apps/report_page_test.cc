@@ -2,29 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "tests/apps/app_fixture.h"
+#include "tests/apps/browser.h"
 
 namespace pushid {
 namespace {
-
-// Empty where there is none.
-std::string Browser() {
-  const char* path = std::getenv("PATH");
-  std::string folders = path == nullptr ? "" : path;
-  for (size_t from = 0; from < folders.size();) {
-    const size_t end = std::min(folders.find(':', from), folders.size());
-    const std::string candidate = folders.substr(from, end - from) + "/chromium";
-    std::error_code ignored;
-    if (std::filesystem::exists(candidate, ignored)) return candidate;
-    from = end + 1;
-  }
-  return "";
-}
 
 // Drives the page as a person would and writes down what happened, as text of a new element.
 constexpr char kProbe[] = R"js(<script>
@@ -54,15 +39,7 @@ constexpr char kProbe[] = R"js(<script>
 })();
 </script></body>)js";
 
-class ReportPage : public AppTest {
- protected:
-  AppRun Browse(const std::string& page) const {
-    return RunProgram(Browser(),
-                      {"--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-                       "--window-size=1000,800", "--user-data-dir=" + Path("browser"), "--dump-dom",
-                       "file://" + page});
-  }
-};
+class ReportPage : public AppTest {};
 
 TEST_F(ReportPage, WorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
@@ -74,7 +51,7 @@ TEST_F(ReportPage, WorksInABrowser) {
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg")) << "opens from disk";
   EXPECT_EQ(page.find("https://"), std::string::npos);
   page.replace(page.find("</body>"), 7, kProbe);
-  const AppRun seen = Browse(WriteText("probed.html", page));
+  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", page));
   ASSERT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
   for (const char* section :

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/apps/app_fixture.h"
+#include "tests/apps/browser.h"
 #include "tests/mocap_support.h"
 
 namespace pushid {
@@ -78,6 +79,42 @@ TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
   EXPECT_EQ(a, b);
 }
 
+// Moves the time, and looks whether other pixels are drawn.
+constexpr char kProbe[] = R"js(<script>
+(function () {
+  const said = [];
+  const picture = () => document.getElementById('view').toDataURL();
+  const time = document.getElementById('time');
+  const at = frame => { time.value = frame; time.dispatchEvent(new Event('input')); return picture(); };
+  said.push('time ' + (at(10) !== at(40) ? 'moves' : 'is dead'));
+  const with_futures = at(40), box = document.getElementById('futures');
+  box.checked = false;
+  box.dispatchEvent(new Event('change'));
+  said.push('futures ' + (picture() !== with_futures ? 'go' : 'stay'));
+  said.push('clock ' + document.getElementById('clock').textContent);
+  said.push('wide ' + (document.documentElement.scrollWidth > window.innerWidth));
+  const note = document.createElement('pre');
+  note.id = 'probe';
+  note.textContent = said.join('; ');
+  document.body.append(note);
+})();
+</script></body>)js";
+
+TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
+  if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
+  ASSERT_EQ(Train("g").exit_code, 0);
+  ASSERT_EQ(Generate({"--samples=19", "--page_out=" + Path("fan.html")}).exit_code, 0);
+  std::string page = ReadText(Path("fan.html"));
+  EXPECT_EQ(page.find("http"), std::string::npos) << "opens from disk";
+  page.replace(page.find("</body>"), 7, kProbe);
+  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", page));
+  ASSERT_EQ(seen.exit_code, 0) << seen.err;
+  EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+  for (const char* expected : {"time moves", "futures go", "0.64 s, forecast", "wide false"}) {
+    EXPECT_TRUE(Contains(seen.out, expected));
+  }
+}
+
 // Killed at a checkpoint, it goes on and ends with the bits of a training that was not disturbed.
 TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
   const std::vector<std::string> longer = {"--steps=100", "--seeds=1", "--checkpoint_seconds=0"};
@@ -122,7 +159,8 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
-  EXPECT_TRUE(Refused(Generate({"--target_window=3", "--target_distance=1"}), {"chooses among --samples"}));
+  EXPECT_TRUE(
+      Refused(Generate({"--target_window=3", "--target_distance=1"}), {"chooses among --samples"}));
   EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
   EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
 }
