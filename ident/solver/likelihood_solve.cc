@@ -23,6 +23,9 @@ constexpr double kSettled = 0.01;    // relative change of a spread
 // rises. Of what transitions leave, measured velocities err too.
 constexpr double kShareOfNoise = 0.1;
 constexpr double kLowMeasurementError = 3e-4;  // m
+// Beside gains that are not its own the likelihood of the noise has two basins: all roughness is
+// force, or most of it errors of measurement.
+constexpr double kMeasurementErrors[] = {kLowMeasurementError, 3e-3};
 
 // Steps of Fisher scoring before BFGS.
 constexpr int kScoringRounds = 3, kScoringSteps = 3;
@@ -95,6 +98,24 @@ bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* optio
     if (stays && start->converged) return true;
   }
   return false;
+}
+
+struct NoiseFit {
+  double cost = std::numeric_limits<double>::infinity();
+  FitPoint at;
+  std::string message;
+};
+
+// The likelihood's maximum over what is not held.
+NoiseFit FitNoise(const FitProblem& problem, const std::vector<int>& held, const FitPoint& from) {
+  NoiseFit fit;
+  fit.at = from;
+  for (int round = 0; round < kMostRounds; ++round) {
+    const double before = fit.cost;
+    fit.cost = SolveByBfgs(problem, held, &fit.at, &fit.message).final_cost;
+    if (!std::isfinite(fit.cost) || std::abs(before - fit.cost) < kSameNoise) break;
+  }
+  return fit;
 }
 
 }  // namespace
@@ -170,16 +191,20 @@ std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, cons
     noise.shared[i] = point.shared[held.size() - 1];  // in table order, with the noise at its end
   }
   for (size_t i = fitted.size(); i < noise.Flat().size(); ++i) held.push_back(static_cast<int>(i));
-  double cost = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kMostRounds; ++round) {
-    std::string message;
-    const SolveStage stage = SolveByBfgs(problem, held, &noise, &message);
-    if (!std::isfinite(stage.final_cost)) {
-      return "the process noise is not estimated: " + message;
+  NoiseFit best;
+  for (double error : kMeasurementErrors) {
+    FitPoint from = noise;
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      const ParameterSpec& spec = own.table[fitted[i].parameter];
+      if (IsMeasurementError(spec.id) && spec.nominal == kLowMeasurementError) {
+        from.shared[i] = ToFitted(spec.transform, error);
+      }
     }
-    if (std::abs(cost - stage.final_cost) < kSameNoise) break;
-    cost = stage.final_cost;
+    const NoiseFit fit = FitNoise(problem, held, from);
+    if (std::isfinite(fit.cost) ? fit.cost < best.cost : best.message.empty()) best = fit;
   }
+  if (!std::isfinite(best.cost)) return "the process noise is not estimated: " + best.message;
+  noise = best.at;
   const ParameterSet<double> found = problem.Parameters(noise, "");
   for (const FittedParameter& f : fitted) {
     if (!IsNoiseParameter(f.parameter)) continue;

@@ -100,9 +100,15 @@ def pushes():
     rows.append(cells("the first pose held", json["baselines"]["static"]))
     rows.append(cells("constant velocity after the push", json["baselines"]["constant_velocity"]))
     model = studies.fit("single").path
-    restored = studies.on_recordings("pushid-train-restoration", "single", f"--model={model}", "--crossvalidate=4").json
-    rows.append(cells("physics and `rigid` bodies, 1 frame and the push", restored["baselines"]["rigid"]))
-    rows.append(cells("physics and `window` bodies, 1 frame and the push", restored))
+    def restored(*flags):
+        return studies.on_recordings("pushid-train-restoration", "single", f"--model={model}", "--crossvalidate=4",
+                                     *flags).json
+    seen, simlpe, plain = restored("--observed=20"), restored("--kind=simlpe"), restored()
+    rows.append(cells("physics and `window` bodies, 20 frames observed", seen))
+    rows.append(cells("siMLPe, 12 frames observed", simlpe["baselines"]["simlpe"]))
+    rows.append(cells("siMLPe, the frames after those", simlpe["baselines"]["simlpe_after_given"]))
+    rows.append(cells("physics and `rigid` bodies, 1 frame and the push", plain["baselines"]["rigid"]))
+    rows.append(cells("physics and `window` bodies, 1 frame and the push", plain))
     return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"], rows)
 
 

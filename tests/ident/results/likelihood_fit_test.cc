@@ -106,6 +106,21 @@ TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
   }
 }
 
+// Beside gains that are not the noise's own: roughness may be force or errors of measurement.
+TEST(ProcessNoise, IsToldFromErrorsOfMeasurement) {
+  SyntheticOptions study = NoisyStudy(3);
+  study.subjects = 6;
+  study.noise_at_first_frame = true;
+  FitOptions noisy = DefaultFit(study);
+  noisy.model.process_noise = {};
+  noisy.model.process_noise.diagonal = true;
+  const FitResult fit = Fit(MakePendulums(study), noisy);
+  ASSERT_TRUE(fit.ok());
+  EXPECT_NEAR(fit.parameters[kMeasuredHip], 0.002, 2e-4);
+  EXPECT_NEAR(fit.parameters[kMeasuredCart], 0.002 / std::sqrt(2.0), 2e-4);
+  EXPECT_NEAR(fit.parameters[kSigmaX], 12.0, 2.5);
+}
+
 TEST(InnovationFit, ComesBackFromJson) {
   SyntheticOptions study = TinyStudy();
   study.model.process_noise.diagonal = true;
