@@ -105,6 +105,22 @@ TEST_F(RestorationAppTest, CrossValidatesTheWholeChain) {
   EXPECT_GT(json["true_pendulum"]["mean"]["MPJPE_m"].get<double>(), 0.0);
 }
 
+// Shown first frames, bodies err less.
+TEST_F(RestorationAppTest, CrossValidatesAfterFramesThatWereSeen) {
+  const auto error = [&](const std::string& observed) {
+    EXPECT_EQ(RunApp("pushid-train-restoration",
+                     {Recordings(), model_, "--crossvalidate=2", "--effort=0.1", "--quiet",
+                      observed, "--json_out=" + Path("cv.json")})
+                  .exit_code,
+              0);
+    return Json(Path("cv.json"))["mean"]["MPJPE_m"].get<double>();
+  };
+  EXPECT_LT(error("--observed=20"), error("--seed=1"));
+  EXPECT_TRUE(Refused(RunApp("pushid-train-restoration",
+                             {Recordings(), model_, "--observed=20", "--out=" + Path("o")}),
+                      {"--observed goes with --crossvalidate"}));
+}
+
 TEST_F(RestorationAppTest, TheCvaeTrainsAndIsUsed) {
   const AppRun run = Train("v", {"--kind=cvae", "--effort=0.001"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
