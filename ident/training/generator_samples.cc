@@ -23,6 +23,16 @@ std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings
   return people;
 }
 
+std::vector<ObservedGroup> Groups(const std::vector<BodyRecording>& recordings,
+                                  const std::vector<int>& among,
+                                  const std::vector<GroupHips>& pendulums) {
+  std::vector<ObservedGroup> groups;
+  for (int i : among) {
+    groups.push_back(GroupOf(recordings[i], pendulums.empty() ? GroupHips() : pendulums[i]));
+  }
+  return groups;
+}
+
 }  // namespace
 
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
@@ -48,7 +58,7 @@ GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
 
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
-                           int observed) {
+                           int observed, const std::vector<GroupHips>& pendulums) {
   GeneratorSamples samples;
   GeneratorSettings& settings = samples.settings;
   settings.data = GeneratorData::kPushes;
@@ -57,6 +67,8 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
   settings.layout = PushLayout(recordings.front().joint_names);
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
+  samples.groups = Groups(recordings, among, pendulums);
+  samples.held_groups = Groups(recordings, held, pendulums);
   int longest = observed + 1;
   for (const auto& motion : samples.learnt) {
     longest = std::max(longest, static_cast<int>(motion.motion.cols()));
@@ -67,6 +79,7 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options) {
   const GeneratorSettings& settings = samples.settings;
+  options->diffusion.dt = 1.0 / settings.rate;
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;

@@ -14,8 +14,6 @@ constexpr float kFramesUnit = 15.0f;
 
 using Columns = Eigen::Matrix3Xf;
 
-Columns HipPath(const Trajectories& frames) { return frames.topRows(3); }
-
 // Joints seen from the hip; the hip's own rows are its place.
 Trajectories FromHip(const Trajectories& frames) {
   Trajectories seen = frames;
@@ -138,14 +136,14 @@ GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointSc
 std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
                                     const GroupChange& change) {
   const float side = change.mirrored ? -1.0f : 1.0f;
-  const Eigen::Matrix3f turn =
-      static_cast<float>(change.size) * TurnAboutZ(change.turn).cast<float>() *
-      Eigen::Vector3f(1.0f, side, 1.0f).asDiagonal();
+  const Eigen::Matrix3f turn = static_cast<float>(change.size) *
+                               TurnAboutZ(change.turn).cast<float>() *
+                               Eigen::Vector3f(1.0f, side, 1.0f).asDiagonal();
   // theta leans towards +x, phi towards -y; the push itself is not of another size.
   Eigen::Matrix4f of_push = Eigen::Matrix4f::Zero();
   const Eigen::Matrix2f flat = turn.topLeftCorner<2, 2>() / static_cast<float>(change.size);
-  const Eigen::Matrix2f lean = Eigen::Vector2f(1.0f, -1.0f).asDiagonal() * flat *
-                               Eigen::Vector2f(1.0f, -1.0f).asDiagonal();
+  const Eigen::Matrix2f lean =
+      Eigen::Vector2f(1.0f, -1.0f).asDiagonal() * flat * Eigen::Vector2f(1.0f, -1.0f).asDiagonal();
   of_push << flat, Eigen::Matrix2f::Zero(), Eigen::Matrix2f::Zero(), lean;
   std::vector<ObservedMotion> changed = group;
   for (size_t n = 0; n < group.size(); ++n) {

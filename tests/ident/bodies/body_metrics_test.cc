@@ -143,6 +143,8 @@ TEST(BodyReportTest, KeysAreTheAgreedOnesAndJoinThoseOfThePendulum) {
 TEST(BodyReportTest, GroupsHaveMetricsOfTheirOwn) {
   BodyRecording group = Standing(30), alone = Standing(30, "b");
   group.bodies.push_back(BodyMotion(30, Placed(StandingPose(), 0.0, {0.6, 0, 0})));
+  group.pendulum.hip.push_back(group.pendulum.hip[0]);
+  group.pendulum.states.push_back(group.pendulum.states[0]);
   for (int t = 10; t < 30; ++t) {
     group.bodies[0][t] = Placed(StandingPose(), 0.0, {0.015 * (t - 9), 0, 0});
   }
