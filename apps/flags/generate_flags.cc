@@ -15,7 +15,8 @@ const pushid::GenerateFlags kFlags;
 
 DEFINE_string(model, "", "folder that pushid-train-generator --out wrote");
 DEFINE_string(dataset, pushid::NameOf(kFlags.data),
-              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings)");
+              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings, "
+              "which says so by itself)");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json in it or one higher");
 DEFINE_string(protocol, pushid::NameOf(kFlags.protocol),
               "cmu: which windows: test (eight drawn per clip, of test/ where there is one), "
@@ -147,6 +148,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
         ParseName("--sampler", FLAGS_sampler, &flags.changes.diffusion.sampler), CheckRanges()}) {
     if (error) return *error;
   }
+  if (!Given("dataset") && Given("recordings")) flags.data = GeneratorData::kPushes;
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
   if (FLAGS_ridge_share >= 0.0) flags.changes.ridge_share = FLAGS_ridge_share;

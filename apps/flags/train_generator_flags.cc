@@ -29,7 +29,8 @@ DEFINE_string(kind, pushid::NameOf(kOptions.kind),
               "diffusion (whole groups, who see each other)");
 DEFINE_string(
     dataset, pushid::NameOf(kFlags.data),
-    "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings)");
+    "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings; "
+    "diffusion learns from nothing else)");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: learn from the validation clips too, which then judge nothing");
@@ -145,6 +146,9 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
     return Error{"--blend needs to know which pendulum: give --physics"};
   }
+  if (!FLAGS_physics.empty() && !(FLAGS_blend > 0.0)) {
+    return Error{"--physics is what forecasts are blended with: give --blend"};
+  }
   return std::nullopt;
 }
 
@@ -191,6 +195,9 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
     if (error) return *error;
+  }
+  if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
+    flags.data = GeneratorData::kPushes;
   }
   if (MaybeError error = CheckData(flags.options.kind, flags.data)) return *error;
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;

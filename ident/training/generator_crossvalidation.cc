@@ -16,34 +16,63 @@ double Now() {
 
 constexpr int kShown = 20;  // frames, of generator_shown_20
 
-// Where a fold's physics have everybody; nothing without physics.
-Result<GroupHips> HipsOf(const std::optional<IdentifiedModel>& model,
-                         const BodyRecording& recording, int observed) {
-  if (!model) return GroupHips();
-  const Result<Prediction> predicted =
-      PredictFrom(*model, recording.pendulum, observed > 1 ? observed : 0);
-  if (!predicted.ok()) return predicted.error();
-  if (!predicted.value().status.ok) {
-    return Error{"recording " + recording.pendulum.id + ": physics " +
-                 OutsideText(predicted.value().status)};
-  }
-  return PendulumHips(recording, predicted.value().path);
-}
-
 // What one fold scores its recordings by.
-struct FoldJudge {
-  const GeneratorValidationOptions& validation;
-  const TrainedNetworks& trained;
-  const std::optional<IdentifiedModel>& model;
+class FoldJudge {
+ public:
+  FoldJudge(const GeneratorValidationOptions& validation, const TrainedNetworks& trained,
+            const std::optional<IdentifiedModel>& model)
+      : validation_(validation), trained_(trained), model_(model) {}
+
+  MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
+    const GeneratorChanges& changes = validation_.changes;
+    if (MaybeError error = Add("generator", recording, validation_.observed, changes, scores)) {
+      return error;
+    }
+    GeneratorChanges alone = changes;
+    alone.diffusion.blend = 0.0;
+    MaybeError error;
+    if (changes.diffusion.blend > 0.0) {
+      error = Add("generator_unblended", recording, validation_.observed, alone, scores);
+    }
+    if (!error && trained_.kind() == GeneratorKind::kDiffusion && validation_.observed != kShown &&
+        recording.num_frames() > kShown) {
+      error = Add("generator_shown_20", recording, kShown, alone, scores);
+    }
+    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording));
+    (*scores)["constant_velocity"] = ScoreBodies(recording, ConstantVelocityBodies(recording));
+    return error;
+  }
+
+ private:
+  // Where the fold's physics have everybody; nothing without physics.
+  Result<GroupHips> Hips(const BodyRecording& recording, int observed,
+                         std::map<std::string, BodyScore>* scores) const {
+    if (!model_) return GroupHips();
+    const Result<Prediction> predicted =
+        PredictFrom(*model_, recording.pendulum, observed > 1 ? observed : 0);
+    if (!predicted.ok()) return predicted.error();
+    if (!predicted.value().status.ok) {
+      return Error{"recording " + recording.pendulum.id + ": physics " +
+                   OutsideText(predicted.value().status)};
+    }
+    const RolloutPath<double>& path = predicted.value().path;
+    (*scores)["rigid"] =
+        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, path)));
+    return PendulumHips(recording, path);
+  }
 
   MaybeError Add(const std::string& name, const BodyRecording& recording, int observed,
                  const GeneratorChanges& changes, std::map<std::string, BodyScore>* scores) const {
-    GeneratorSettings settings = trained.settings;
+    GeneratorSettings settings = trained_.settings;
     settings.observed = observed;
-    const Result<GroupHips> hips = HipsOf(model, recording, observed);
-    if (!hips.ok()) return hips.error();
+    GroupHips hips;
+    if (changes.diffusion.blend > 0.0) {
+      Result<GroupHips> predicted = Hips(recording, observed, scores);
+      if (!predicted.ok()) return predicted.error();
+      hips = std::move(predicted.value());
+    }
     const auto bodies =
-        GenerateBodies(settings, *MakeGenerator(trained, changes), recording, hips.value());
+        GenerateBodies(settings, *MakeGenerator(trained_, changes), recording, hips);
     if (!bodies.ok()) return bodies.error();
     (*scores)[name] = ScoreBodies(recording, bodies.value());
     if (name != "generator") return std::nullopt;
@@ -51,29 +80,9 @@ struct FoldJudge {
     return std::nullopt;
   }
 
-  MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
-    const int observed = validation.observed;
-    if (MaybeError error = Add("generator", recording, observed, validation.changes, scores)) {
-      return error;
-    }
-    if (trained.kind() == GeneratorKind::kDiffusion) {
-      GeneratorChanges alone = validation.changes;
-      alone.diffusion.blend = 0.0;
-      const bool blends = validation.changes.diffusion.blend > 0.0;
-      if (MaybeError error = blends ? Add("generator_unblended", recording, observed, alone, scores)
-                                    : std::nullopt) {
-        return error;
-      }
-      if (observed != kShown && recording.num_frames() > kShown) {
-        const MaybeError error =
-            Add("generator_shown_20", recording, kShown, validation.changes, scores);
-        if (error) return error;
-      }
-    }
-    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording));
-    (*scores)["constant_velocity"] = ScoreBodies(recording, ConstantVelocityBodies(recording));
-    return std::nullopt;
-  }
+  const GeneratorValidationOptions& validation_;
+  const TrainedNetworks& trained_;
+  const std::optional<IdentifiedModel>& model_;
 };
 
 }  // namespace
@@ -108,7 +117,7 @@ Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>&
         });
     if (!trained.ok()) return trained.error();
     result.training_seconds.push_back(Now() - before);
-    const FoldJudge judge = {validation, trained.value().networks, model};
+    const FoldJudge judge(validation, trained.value().networks, model);
     for (int i : fold.held_out) {
       if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
     }

@@ -4,7 +4,8 @@
 //   generator                  the recording as far as it is shown, then the forecast
 //   generator_after_observed   the forecast alone
 //   generator_unblended        without the physics that the forecast is blended with
-//   generator_shown_20         of diffusion, which is trained for it: after 20 frames
+//   rigid                      those physics alone, first poses carried by the rods' tips
+//   generator_shown_20         of diffusion, which is trained for it: shown 20 frames, no physics
 //   static, constant_velocity  as in body_evaluation.h
 #pragma once
 
