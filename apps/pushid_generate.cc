@@ -14,6 +14,7 @@
 #include "ident/bodies/body_report.h"
 #include "ident/generators/forecast_scene.h"
 #include "ident/generators/forecast_spread.h"
+#include "ident/generators/group_spread.h"
 #include "ident/generators/path_search.h"
 #include "ident/generators/push_particles.h"
 
@@ -222,6 +223,12 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   if (!bodies.ok()) return Fail(bodies.error());
   BodyScores scores;
   const BodyRecording* shown = nullptr;
+  for (const BodyRecording& recording : bodies.value()) {
+    if (recording.pendulum.id == flags.id) shown = &recording;
+  }
+  if (flags.Shows() && shown == nullptr) {
+    return Fail(Error{"--id is '" + flags.id + "', no recording of these"});
+  }
   double seconds = 0.0;
   for (const BodyRecording& recording : bodies.value()) {
     const double before = Now();
@@ -232,17 +239,21 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     scores["static"].push_back(ScoreBodies(recording, StaticBodies(recording)));
     scores["constant_velocity"].push_back(
         ScoreBodies(recording, ConstantVelocityBodies(recording)));
-    if (recording.pendulum.id == flags.id) shown = &recording;
   }
   const BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
   std::printf("%s", BodyText(evaluation).c_str());
   if (flags.Shows()) {
-    if (shown == nullptr) return Fail(Error{"--id is '" + flags.id + "', no recording of these"});
     if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value())) return Fail(*error);
+  }
+  GroupSpread spread;
+  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
+    spread = SpreadOf(loaded, bodies.value(), flags.samples, flags.seed);
+    std::printf("\n%s", SpreadText(spread).c_str());
   }
   if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
+  if (spread.samples > 0) json["spread"] = ToJson(spread);
   json["run"] = {{"seconds_per_recording", seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;
@@ -253,7 +264,7 @@ int Run() {
   if (!flags.ok()) return Fail(flags.error());
   Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
   if (!loaded.ok()) return Fail(loaded.error());
-  if (MaybeError error = CheckKindFlags(loaded.value().kind)) return Fail(*error);
+  if (MaybeError error = CheckKindFlags(flags.value(), loaded.value().kind)) return Fail(*error);
   if (flags.value().observed > 0) loaded.value().settings.observed = flags.value().observed;
   const GeneratorData data = loaded.value().settings.data;
   if (data != flags.value().data) {

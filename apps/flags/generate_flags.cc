@@ -26,7 +26,8 @@ DEFINE_int32(stride, kFlags.stride,
              "thousand windows, otherwise 2");
 DEFINE_int32(samples, kFlags.samples,
              "sampled futures of every window: coverage, CRPS, energy score, and the fan in "
-             "pictures; 0: none");
+             "pictures; of groups by diffusion: how often the recorded hips lie among them; 0: "
+             "none");
 DEFINE_uint64(seed, kFlags.seed, "of the sampled futures");
 DEFINE_double(ridge_share, -1.0, "of the linear forecast in the blend; -1: as trained");
 DEFINE_bool(project_bones, kFlags.changes.project_bones,
@@ -108,11 +109,6 @@ MaybeError CheckData(const GenerateFlags& flags) {
        {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
     if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
   }
-  if (flags.samples > 0 && !flags.Shows()) {
-    return Error{
-        "with --dataset=pushes --samples only makes a fan for --poses_out, --strip_out or "
-        "--page_out"};
-  }
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
   }
@@ -124,8 +120,14 @@ MaybeError CheckData(const GenerateFlags& flags) {
 
 }  // namespace
 
-MaybeError CheckKindFlags(GeneratorKind kind) {
+MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   const bool diffuses = kind == GeneratorKind::kDiffusion;
+  const bool pushes = flags.data == GeneratorData::kPushes;
+  if (pushes && !diffuses && flags.samples > 0 && !flags.Shows()) {
+    return Error{
+        "with pushes and particles --samples only makes a fan for --poses_out, --strip_out or "
+        "--page_out"};
+  }
   const std::vector<const char*> foreign =
       diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
                                           "noise_scale", "person"}

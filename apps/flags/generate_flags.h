@@ -35,6 +35,6 @@ struct GenerateFlags {
 Result<GenerateFlags> GenerateFlagsFromCommandLine();
 
 // Flags that say something to generators of the other kind alone.
-MaybeError CheckKindFlags(GeneratorKind kind);
+MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
 
 }  // namespace pushid

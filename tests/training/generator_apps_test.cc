@@ -212,7 +212,12 @@ TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
   EXPECT_GT(json["run"]["seconds_per_recording"].get<double>(), 0.0);
   EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_ + ", diffusion"));
   EXPECT_TRUE(Contains(ReadText(Path("p.csv")), "\n89,")) << "past the recording's end";
-  EXPECT_EQ(Generate({"--observed=20"}).exit_code, 0);
+  ASSERT_EQ(Generate({"--observed=20", "--samples=19", "--json_out=" + Path("e.json")}).exit_code,
+            0);
+  const auto spread = Json(Path("e.json"))["spread"];
+  EXPECT_GE(spread["hip_x_inside"].get<double>(), 0.0);
+  EXPECT_LE(spread["hip_x_inside"].get<double>(), 1.0);
+  EXPECT_GT(spread["hip_x_width_m"].get<double>(), 0.0);
 }
 
 TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
