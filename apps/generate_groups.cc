@@ -15,10 +15,12 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// Of the frames that the generator is shown too; one is the first, which everybody has.
+// From the frames that the generator is shown too (one is the first, which everybody has), but from
+// frame 0 where physics go into the network, as in its training.
 Result<Prediction> PredictBeside(const LoadedGenerator& loaded, const IdentifiedModel& physics,
                                  const BodyRecording& recording, int frames) {
-  const int observed = loaded.settings.observed > 1 ? loaded.settings.observed : 0;
+  const bool shows = loaded.settings.observed > 1 && !loaded.settings.pendulum;
+  const int observed = shows ? loaded.settings.observed : 0;
   Result<Prediction> predicted = PredictFrom(physics, recording.pendulum, observed, frames);
   if (!predicted.ok() || predicted.value().status.ok) return predicted;
   return Error{"recording " + recording.pendulum.id + ": " + OutsideText(predicted.value().status) +

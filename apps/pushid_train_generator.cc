@@ -22,10 +22,11 @@ using Json = nlohmann::ordered_json;
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
-  const Result<ChainValidation> validation = CrossValidateGenerator(
-      recordings, flags.options,
-      {flags.observed, flags.scheme, flags.crossvalidate, flags.physics, flags.changes},
-      [&](const std::string& step, double done) { line.Show(step, done); });
+  const Result<ChainValidation> validation =
+      CrossValidateGenerator(recordings, flags.options,
+                             {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
+                              flags.pendulum_input, flags.changes},
+                             [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
   std::printf("%s", BodyText(validation.value().evaluation).c_str());
@@ -103,7 +104,11 @@ int FromPushes(const TrainGeneratorFlags& flags) {
     SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.particles.seed,
                  &learnt, &held);
   }
-  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed), data);
+  std::vector<GroupHips> hips;
+  if (flags.pendulum_input) {
+    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.diffusion.seed);
+  }
+  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed, hips), data);
 }
 
 int Run() {

@@ -44,10 +44,12 @@ DEFINE_int32(crossvalidate, kFlags.crossvalidate,
 DEFINE_string(scheme, pushid::NameOf(kFlags.scheme),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
               "(every so-manieth of a setting)");
-DEFINE_string(
-    physics, "",
-    "diffusion, --crossvalidate: model that pushid-fit --model_out wrote; its pendulum is "
-    "fitted in every fold, for --blend");
+DEFINE_string(physics, "",
+              "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
+              "the recordings learnt from, for --pendulum_input and --blend");
+DEFINE_bool(pendulum_input, kFlags.pendulum_input,
+            "diffusion: told where the pendulum of --physics (fitted to other recordings) has the "
+            "hips, it learns what that leaves over");
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
     "diffusion, --crossvalidate: share of the way from the forecast hip to the pendulum's");
@@ -135,19 +137,20 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
                : refuse({"folder", "with_validation", "ridge_share", "ridge_penalty"}, cmu),
-        diffuses ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
-                           "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
-                          particles)
-                 : refuse({"pooling", "bystanders", "physics", "blend"}, diffusion),
-        FLAGS_crossvalidate > 0 ? MaybeError()
-                                : refuse({"scheme", "physics", "blend"}, "--crossvalidate")}) {
+        diffuses
+            ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
+                      "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
+                     particles)
+            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input"}, diffusion),
+        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"scheme", "blend"}, "--crossvalidate")}) {
     if (error) return error;
   }
-  if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
-    return Error{"--blend needs to know which pendulum: give --physics"};
+  const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
+  if (uses_physics && FLAGS_physics.empty()) {
+    return Error{"--blend and --pendulum_input need to know which pendulum: give --physics"};
   }
-  if (!FLAGS_physics.empty() && !(FLAGS_blend > 0.0)) {
-    return Error{"--physics is what forecasts are blended with: give --blend"};
+  if (!uses_physics && !FLAGS_physics.empty()) {
+    return Error{"--physics is there for --pendulum_input and --blend: give one of them"};
   }
   return std::nullopt;
 }
@@ -235,6 +238,7 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   if (!physics.ok()) return physics.error();
   flags.physics = physics.value().fit.options;
   flags.physics->num_threads = FLAGS_num_threads;
+  flags.pendulum_input = FLAGS_pendulum_input;
   return flags;
 }
 

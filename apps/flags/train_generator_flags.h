@@ -18,7 +18,8 @@ struct TrainGeneratorFlags {
   std::string out;               // folder of the generator
   int crossvalidate = 0;         // folds, instead of writing a generator; 0: off
   FoldScheme scheme = FoldScheme::kStratified;
-  std::optional<FitOptions> physics;  // of the pendulum, in every fold
+  std::optional<FitOptions> physics;  // of the pendulum
+  bool pendulum_input = false;        // it goes into diffusion
   GeneratorChanges changes;           // how held-out recordings are forecast
   std::string json_out;               // scores of the cross-validation; empty: none
 };

@@ -73,11 +73,9 @@ ParticleLayout LayoutFrom(const Json& json) {
 
 Json SettingsJson(const TrainedNetworks& trained) {
   const GeneratorSettings& settings = trained.settings;
-  Json json = {{"data", NameOf(settings.data)},
-               {"observed", settings.observed},
-               {"predicted", settings.predicted},
-               {"rate_hz", settings.rate},
-               {"layout", LayoutJson(settings.layout)}};
+  Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
+               {"predicted", settings.predicted}, {"rate_hz", settings.rate},
+               {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
   std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
   return json;
 }
@@ -90,6 +88,7 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.observed = json.at("observed");
   settings.predicted = json.at("predicted");
   settings.rate = json.at("rate_hz");
+  settings.pendulum = json.value("pendulum", false);  // files from before have none
   settings.layout = LayoutFrom(json.at("layout"));
   settings.training = folder.training;
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,

@@ -24,9 +24,10 @@ constexpr EnumNames<GeneratorData, 2> Names(GeneratorData) {
 
 struct GeneratorSettings {
   GeneratorData data = GeneratorData::kCmu;
-  int observed = 25;   // frames that it is given
-  int predicted = 25;  // frames that it was trained to forecast
-  double rate = 25.0;  // Hz
+  int observed = 25;      // frames that it is given
+  int predicted = 25;     // frames that it was trained to forecast
+  double rate = 25.0;     // Hz
+  bool pendulum = false;  // whether it must be told where physics have the hips
   ParticleLayout layout;
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
 };

@@ -33,9 +33,7 @@ Json KindJson(const TrainedParticles& trained) {
 
 Json KindJson(const TrainedDiffusion& trained) {
   const DiffusionStructure& structure = trained.members.front().structure;
-  return {{"members", trained.members.size()},
-          {"pooling", NameOf(structure.pooling)},
-          {"pendulum", structure.pendulum}};
+  return {{"members", trained.members.size()}, {"pooling", NameOf(structure.pooling)}};
 }
 
 void AddTensors(const TrainedParticles& trained, TensorList* tensors) {
@@ -86,7 +84,7 @@ TrainedDiffusion ReadDiffusion(const Json& json, const GeneratorSettings& settin
   TrainedDiffusion trained;
   DiffusionStructure structure;
   ParseSetting(json, "pooling", &structure.pooling);
-  structure.pendulum = json.at("pendulum");
+  structure.pendulum = settings.pendulum;
   const int members = ReadMembers(json);
   for (int m = 0; m < members; ++m) {
     trained.members.push_back(TakeDiffusion(MemberName(m), structure, reader));

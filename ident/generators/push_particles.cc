@@ -97,6 +97,9 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
                  " frames; the generator is given " + std::to_string(observed) +
                  " and has nothing to forecast"};
   }
+  if (settings.pendulum && hips.empty()) {
+    return Error{"this generator corrects physics; give their model by --physics"};
+  }
   std::vector<ObservedMotion> people = GroupOf(recording, hips);
   for (ObservedMotion& person : people) {
     person.frames = Trajectories(person.frames.leftCols(observed));

@@ -48,8 +48,10 @@ class FoldJudge {
   Result<GroupHips> Hips(const BodyRecording& recording, int observed,
                          std::map<std::string, BodyScore>* scores) const {
     if (!model_) return GroupHips();
+    // Physics that go into the network start at frame 0, as in its training.
+    const bool shows_physics = observed > 1 && !trained_.settings.pendulum;
     const Result<Prediction> predicted =
-        PredictFrom(*model_, recording.pendulum, observed > 1 ? observed : 0);
+        PredictFrom(*model_, recording.pendulum, shows_physics ? observed : 0);
     if (!predicted.ok()) return predicted.error();
     if (!predicted.value().status.ok) {
       return Error{"recording " + recording.pendulum.id + ": physics " +
@@ -66,7 +68,7 @@ class FoldJudge {
     GeneratorSettings settings = trained_.settings;
     settings.observed = observed;
     GroupHips hips;
-    if (changes.diffusion.blend > 0.0) {
+    if (changes.diffusion.blend > 0.0 || trained_.settings.pendulum) {
       Result<GroupHips> predicted = Hips(recording, observed, scores);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
@@ -106,7 +108,11 @@ Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>&
       model = FitTo(pendulums, among, *validation.physics);
       if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
     }
-    const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed);
+    std::vector<GroupHips> hips;
+    if (validation.pendulum_input) {
+      hips = OutOfFoldHips(recordings, among, *validation.physics, options.diffusion.seed);
+    }
+    const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed, hips);
     GeneratorTrainingOptions of_fold = options;
     SetForData(samples, &of_fold);
     const double before = Now();

@@ -24,6 +24,7 @@ struct GeneratorValidationOptions {
   FoldScheme scheme = FoldScheme::kStratified;
   int folds = 0;
   std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
+  bool pendulum_input = false;        // the pendulum goes into diffusion
   GeneratorChanges changes;           // as in its use
 };
 

@@ -36,9 +36,14 @@ struct GeneratorSamples {
 // otherwise only show how the training goes.
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
 
+// Where physics have everybody who were fitted to other recordings of `among`, by recording;
+// nothing of recordings that are not among them, or whose rollout failed.
+std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<int>& among, const FitOptions& physics,
+                                     uint64_t seed);
+
 // Every person of the recordings `among`, whole; those of `held` show how the training goes.
-// pendulums: where physics that have not seen a recording have its people's hips, by recording
-// (PendulumHips); or empty.
+// pendulums: OutOfFoldHips, of which diffusion leaves out recordings without any; or empty.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
                            int observed, const std::vector<GroupHips>& pendulums = {});

@@ -236,6 +236,21 @@ TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
   EXPECT_EQ(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}).exit_code, 0);
 }
 
+// Physics go in, and must be there whenever such a generator is used.
+TEST_F(DiffusionAppTest, CorrectsPhysics) {
+  const std::string physics = "--physics=" + Path("m.json");
+  ASSERT_EQ(RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")}).exit_code, 0);
+  const AppRun train = Train({"--out=" + Path("g"), physics, "--pendulum_input"});
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  const AppRun run = Generate({physics, "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_LT(Json(Path("e.json"))["mean"]["hipADE_m"].get<double>(), 0.06)
+      << "hardly trained, it leaves the hips where physics have them";
+  const AppRun alone = Generate({});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_TRUE(Contains(alone.err, "--physics"));
+}
+
 TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--dataset=cmu"}), {"give --dataset=pushes"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--jitter=1"}),
@@ -244,6 +259,8 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend goes with --crossvalidate"}));
   EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"give --physics"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}),
+                      {"--pendulum_input and --blend"}));
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"give --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
