@@ -93,9 +93,9 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
   const int observed = settings.observed, recorded = recording.num_frames();
   if (frames == 0) frames = recorded;
   if (std::min(frames, recorded) <= observed) {
-    return Error{"recording " + recording.pendulum.id + " has " + std::to_string(recorded) +
-                 " frames; the generator is given " + std::to_string(observed) +
-                 " and has nothing to forecast"};
+    return Error{"of recording " + recording.pendulum.id + " there are " +
+                 std::to_string(std::min(frames, recorded)) + " frames; the generator is given " +
+                 std::to_string(observed) + " and has nothing to forecast"};
   }
   if (settings.pendulum && hips.empty()) {
     return Error{"this generator corrects physics; give their model by --physics"};
