@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/generate_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/generate_groups.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
@@ -13,6 +14,7 @@
 #include "ident/bodies/body_report.h"
 #include "ident/generators/forecast_scene.h"
 #include "ident/generators/forecast_spread.h"
+#include "ident/generators/group_spread.h"
 #include "ident/generators/path_search.h"
 #include "ident/generators/push_particles.h"
 
@@ -223,7 +225,22 @@ Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags
   return scene;
 }
 
+// One recording as it is shown: a person of it and what particles make of that, or the whole group.
+MaybeError ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                    const BodyRecording& recording, const std::optional<IdentifiedModel>& physics) {
+  if (loaded.kind == GeneratorKind::kDiffusion) {
+    const Result<std::vector<std::string>> files = ShowGroup(loaded, flags, recording, physics);
+    if (!files.ok()) return files.error();
+    for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
+    return std::nullopt;
+  }
+  const Result<ForecastScene> scene = SceneOf(loaded, flags, recording);
+  return scene.ok() ? Show(scene.value(), flags) : MaybeError(scene.error());
+}
+
 int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
+  const Result<std::optional<IdentifiedModel>> physics = LoadPhysics(flags.physics);
+  if (!physics.ok()) return Fail(physics.error());
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<std::vector<BodyRecording>> bodies =
@@ -232,25 +249,37 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   BodyScores scores;
   const BodyRecording* shown = nullptr;
   for (const BodyRecording& recording : bodies.value()) {
-    const auto generated = GenerateBodies(loaded.settings, *loaded.generator, recording);
+    if (recording.pendulum.id == flags.id) shown = &recording;
+  }
+  if (flags.Shows() && shown == nullptr) {
+    return Fail(Error{"--id is '" + flags.id + "', no recording of these"});
+  }
+  double seconds = 0.0;
+  for (const BodyRecording& recording : bodies.value()) {
+    const double before = Now();
+    const auto generated = GenerateWith(loaded, recording, physics.value());
     if (!generated.ok()) return Fail(generated.error());
+    seconds += (Now() - before) / static_cast<double>(bodies.value().size());
     scores["generator"].push_back(ScoreBodies(recording, generated.value()));
     scores["static"].push_back(ScoreBodies(recording, StaticBodies(recording)));
     scores["constant_velocity"].push_back(
         ScoreBodies(recording, ConstantVelocityBodies(recording)));
-    if (recording.pendulum.id == flags.id) shown = &recording;
   }
   const BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
   std::printf("%s", BodyText(evaluation).c_str());
   if (flags.Shows()) {
-    if (shown == nullptr) return Fail(Error{"--id is '" + flags.id + "', no recording of these"});
-    const Result<ForecastScene> scene = SceneOf(loaded, flags, *shown);
-    if (!scene.ok()) return Fail(scene.error());
-    if (MaybeError error = Show(scene.value(), flags)) return Fail(*error);
+    if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value())) return Fail(*error);
+  }
+  GroupSpread spread;
+  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
+    spread = SpreadOf(loaded, bodies.value(), flags.samples, flags.seed);
+    std::printf("\n%s", SpreadText(spread).c_str());
   }
   if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
+  if (spread.samples > 0) json["spread"] = ToJson(spread);
+  json["run"] = {{"seconds_per_recording", seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;
 }
@@ -258,8 +287,10 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
 int Run() {
   const Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
-  const Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
+  Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
   if (!loaded.ok()) return Fail(loaded.error());
+  if (MaybeError error = CheckKindFlags(flags.value(), loaded.value().kind)) return Fail(*error);
+  if (flags.value().observed > 0) loaded.value().settings.observed = flags.value().observed;
   const GeneratorData data = loaded.value().settings.data;
   if (data != flags.value().data) {
     return Fail(

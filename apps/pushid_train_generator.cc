@@ -23,7 +23,9 @@ using Json = nlohmann::ordered_json;
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
   const Result<ChainValidation> validation =
-      CrossValidateGenerator(recordings, flags.options, flags.observed, flags.crossvalidate,
+      CrossValidateGenerator(recordings, flags.options,
+                             {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
+                              flags.pendulum_input, flags.changes},
                              [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
@@ -54,7 +56,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
       });
   line.Finish();
   if (!trained.ok()) return Fail(trained.error());
-  GeneratorSettings& settings = trained.value().particles.settings;
+  GeneratorSettings& settings = trained.value().networks.settings;
   settings.training = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   settings.training["data"] = data;
   settings.training["curve"] = CurveJson(trained.value().curve);
@@ -64,7 +66,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
                                              TrainingCurveSvg(trained.value().curve, title))) {
     return Fail(*error);
   }
-  if (MaybeError error = WriteGenerator(flags.out, trained.value().particles)) return Fail(*error);
+  if (MaybeError error = WriteGenerator(flags.out, trained.value().networks)) return Fail(*error);
   std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
               Rounded(line.Seconds(), 3).c_str(),
               trained.value().resumed ? " (resumed from a checkpoint)" : "",
@@ -102,7 +104,11 @@ int FromPushes(const TrainGeneratorFlags& flags) {
     SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.particles.seed,
                  &learnt, &held);
   }
-  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed), data);
+  std::vector<GroupHips> hips;
+  if (flags.pendulum_input) {
+    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.diffusion.seed);
+  }
+  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed, hips), data);
 }
 
 int Run() {

@@ -14,8 +14,9 @@ const pushid::CrossvalidateFlags kDefaults;
 
 DEFINE_string(scheme, pushid::NameOf(kDefaults.scheme),
               "what is held out: stratified (folds by setting, strength and subject), "
+              "interleaved (every so-manieth of a setting), "
               "subject or setting (one at a time), strong (all strong pushes)");
-DEFINE_int32(folds, kDefaults.folds, "folds of the stratified scheme");
+DEFINE_int32(folds, kDefaults.folds, "folds of the stratified and the interleaved scheme");
 DEFINE_int32(repeats, kDefaults.repeats, "repeats of the stratified scheme, each with new folds");
 DEFINE_string(compare, "",
               "further candidates, semicolon-separated: name: --flag=value ... added to the flags "

@@ -15,7 +15,8 @@ const pushid::GenerateFlags kFlags;
 
 DEFINE_string(model, "", "folder that pushid-train-generator --out wrote");
 DEFINE_string(dataset, pushid::NameOf(kFlags.data),
-              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings)");
+              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings, "
+              "which says so by itself)");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json in it or one higher");
 DEFINE_string(protocol, pushid::NameOf(kFlags.protocol),
               "cmu: which windows: test (eight drawn per clip, of test/ where there is one), "
@@ -25,7 +26,8 @@ DEFINE_int32(stride, kFlags.stride,
              "thousand windows, otherwise 2");
 DEFINE_int32(samples, kFlags.samples,
              "sampled futures of every window: coverage, CRPS, energy score, and the fan in "
-             "pictures; 0: none");
+             "pictures; of groups by diffusion: how often the recorded hips lie among them; 0: "
+             "none");
 DEFINE_uint64(seed, kFlags.seed, "of the sampled futures");
 DEFINE_double(ridge_share, -1.0, "of the linear forecast in the blend; -1: as trained");
 DEFINE_bool(project_bones, kFlags.changes.project_bones,
@@ -34,10 +36,25 @@ DEFINE_double(noise_memory, kFlags.changes.noise_memory,
               "of sampled futures: correlation of the noise of one frame with the next");
 DEFINE_double(noise_scale, kFlags.changes.noise_scale,
               "of sampled futures: multiplies the noise that was learned");
+DEFINE_int32(observed, kFlags.observed,
+             "diffusion: frames that it is shown, 1 for the first poses and the push; 0: as it was "
+             "made for");
+DEFINE_int32(averaged, kFlags.changes.diffusion.averaged,
+             "diffusion: samples that a forecast is the mean of");
+DEFINE_string(sampler, pushid::NameOf(kFlags.changes.diffusion.sampler),
+              "diffusion: way back from noise: renoised, ddpm or ddim");
+DEFINE_int32(sampling_steps, kFlags.changes.diffusion.steps, "diffusion: steps of the way back");
+DEFINE_string(physics, "",
+              "diffusion: model that pushid-fit --model_out wrote, to blend with, and to show");
+DEFINE_double(blend, kFlags.changes.diffusion.blend,
+              "diffusion: share of the way from the forecast hip to that of --physics");
+DEFINE_int32(frames, kFlags.frames,
+             "diffusion: frames of the motion that is shown, also past the recording's end; 0: as "
+             "many as the recording has");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
-DEFINE_int32(person, kFlags.person, "pushes: which person of it");
+DEFINE_int32(person, kFlags.person, "pushes, particles: which person of it");
 DEFINE_int32(target_window, kFlags.target_window,
              "cmu: show the most probable path that ends like this window of the action: with "
              "--samples among those, otherwise by minimization; -1: no search");
@@ -69,6 +86,10 @@ MaybeError CheckRanges() {
         CheckRange("person", FLAGS_person, 0, 1e6), CheckRange("poses", FLAGS_poses, 2, 40),
         CheckRange("target_window", FLAGS_target_window, -1, 1e9),
         CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
+        CheckRange("observed", FLAGS_observed, 0, 1000),
+        CheckRange("averaged", FLAGS_averaged, 1, 1000),
+        CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("frames", FLAGS_frames, 0, 10000),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
     if (error) return error;
   }
@@ -89,33 +110,61 @@ MaybeError CheckData(const GenerateFlags& flags) {
        {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
     if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
   }
-  if (flags.samples > 0 && !flags.Shows()) {
-    return Error{
-        "with --dataset=pushes --samples only makes a fan for --poses_out, --strip_out or "
-        "--page_out"};
-  }
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
+  }
+  if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
+    return Error{"--blend needs to know with what: give --physics"};
   }
   return CheckRecordingFlags();
 }
 
 }  // namespace
 
+MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
+  const bool diffuses = kind == GeneratorKind::kDiffusion;
+  const bool pushes = flags.data == GeneratorData::kPushes;
+  if (pushes && !diffuses && flags.samples > 0 && !flags.Shows()) {
+    return Error{
+        "with pushes and particles --samples only makes a fan for --poses_out, --strip_out or "
+        "--page_out"};
+  }
+  const std::vector<const char*> foreign =
+      diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
+                                          "noise_scale", "person"}
+               : std::vector<const char*>{"observed", "averaged", "sampler", "sampling_steps",
+                                          "physics",  "blend",    "frames"};
+  for (const char* flag : foreign) {
+    if (!Given(flag)) continue;
+    return Error{std::string("--") + flag + " says nothing to a generator of " + NameOf(kind),
+                 FLAGS_model};
+  }
+  return std::nullopt;
+}
+
 Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   GenerateFlags flags;
   for (const MaybeError& error :
        {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges()}) {
+        ParseName("--protocol", FLAGS_protocol, &flags.protocol),
+        ParseName("--sampler", FLAGS_sampler, &flags.changes.diffusion.sampler), CheckRanges()}) {
     if (error) return *error;
   }
+  if (!Given("dataset") && Given("recordings")) flags.data = GeneratorData::kPushes;
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
   if (FLAGS_ridge_share >= 0.0) flags.changes.ridge_share = FLAGS_ridge_share;
   flags.changes.project_bones = FLAGS_project_bones;
   flags.changes.noise_memory = FLAGS_noise_memory;
   flags.changes.noise_scale = FLAGS_noise_scale;
+  flags.changes.diffusion.steps = FLAGS_sampling_steps;
+  flags.changes.diffusion.averaged = FLAGS_averaged;
+  flags.changes.diffusion.blend = FLAGS_blend;
+  flags.changes.seed = FLAGS_seed;
+  flags.observed = FLAGS_observed;
+  flags.frames = FLAGS_frames;
+  flags.physics = FLAGS_physics;
   flags.stride = FLAGS_stride;
   flags.samples = FLAGS_samples;
   flags.seed = FLAGS_seed;

@@ -22,6 +22,9 @@ struct GenerateFlags {
   int window = 0;                 // which of the action's
   std::string id;                 // of the recording to show
   int person = 0;                 // of that recording
+  int observed = 0;               // frames shown to diffusion; 0: as it was made for
+  int frames = 0;                 // of the shown motion in all; 0: as many as the recording
+  std::string physics;            // file of a model; empty: none
   int target_window = -1;         // whose end is the target of the path search; -1: none
   double target_distance = 0.05;  // m; what counts as near it
   std::string json_out, poses_out, strip_out, page_out;
@@ -30,5 +33,8 @@ struct GenerateFlags {
   bool Shows() const { return !poses_out.empty() || !strip_out.empty() || !page_out.empty(); }
 };
 Result<GenerateFlags> GenerateFlagsFromCommandLine();
+
+// Flags that say something to generators of the other kind alone.
+MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
 
 }  // namespace pushid

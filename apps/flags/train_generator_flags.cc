@@ -6,36 +6,66 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "ident/parameters/option_names.h"
+#include "ident/results/result_json.h"
 
 namespace {
 const pushid::TrainGeneratorFlags kFlags;
 const pushid::GeneratorTrainingOptions kOptions;
 const pushid::ParticleTrainingOptions kParticles;
+const pushid::DiffusionTrainingOptions kDiffusion;
+const char* const kOfKind = "0: what suits the kind";
+std::string OfKind(const std::string& what) { return what + "; " + kOfKind; }
+const std::string kObserved = OfKind(
+    "pushes: frames that the generator is shown (diffusion: when it is used and judged); 1: the "
+    "first pose, and the push");
+const std::string kSeeds = OfKind("networks of different seeds that are averaged");
+const std::string kSteps = OfKind("training steps (particles: of the drift), for every seed");
+const std::string kBatch = OfKind("windows, or groups of people, of a step");
+const std::string kRate = OfKind("the largest learning rate, after the warm-up");
 }  // namespace
 
 DEFINE_string(kind, pushid::NameOf(kOptions.kind),
-              "what is trained: particles (displacements that follow learned drift and noise)");
+              "what is trained: particles (displacements that follow learned drift and noise) or "
+              "diffusion (whole groups, who see each other)");
 DEFINE_string(
     dataset, pushid::NameOf(kFlags.data),
-    "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings)");
+    "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings; "
+    "diffusion learns from nothing else)");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: learn from the validation clips too, which then judge nothing");
-DEFINE_int32(observed, kFlags.observed,
-             "pushes: frames that the generator is shown; 1: the first pose, and the push");
+DEFINE_int32(observed, 0, kObserved.c_str());
 DEFINE_double(held_out, kFlags.held_out,
               "pushes: share of the recordings that only show how the training goes");
 DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg");
 DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "pushes: folds; instead of writing a generator, train in every fold and score the "
              "recordings held out; 0: off");
+DEFINE_string(scheme, pushid::NameOf(kFlags.scheme),
+              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
+              "(every so-manieth of a setting)");
+DEFINE_string(physics, "",
+              "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
+              "the recordings learnt from, for --pendulum_input and --blend");
+DEFINE_bool(pendulum_input, kFlags.pendulum_input,
+            "diffusion: told where the pendulum of --physics (fitted to other recordings) has the "
+            "hips, it learns what that leaves over");
+DEFINE_double(
+    blend, kFlags.changes.diffusion.blend,
+    "diffusion, --crossvalidate: share of the way from the forecast hip to the pendulum's");
+DEFINE_string(
+    pooling, pushid::NameOf(kDiffusion.structure.pooling),
+    "diffusion: how people see each other: local (by distance, ahead and behind), mean (all "
+    "alike), attention, none");
+DEFINE_double(bystanders, kDiffusion.bystanders,
+              "diffusion: share of the groups that people are put beside who stand far off");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
-DEFINE_int32(seeds, kOptions.seeds, "networks of different seeds that are averaged");
-DEFINE_int32(steps, kParticles.steps, "training steps of the drift, for every seed");
+DEFINE_int32(seeds, 0, kSeeds.c_str());
+DEFINE_int32(steps, 0, kSteps.c_str());
 DEFINE_int32(noise_steps, kParticles.noise_steps,
              "training steps of the noise; 0: no noise learned");
-DEFINE_int32(batch, kParticles.batch, "windows of a step");
-DEFINE_double(learning_rate, kParticles.learning_rate, "the largest, after the warm-up");
+DEFINE_int32(batch, 0, kBatch.c_str());
+DEFINE_double(learning_rate, 0.0, kRate.c_str());
 DEFINE_double(jitter, kParticles.jitter, "of the pose that goes in, in its standard deviations");
 DEFINE_string(cell, pushid::NameOf(kParticles.structure.cell), "memory of the network: gru, lstm");
 DEFINE_bool(skip, kParticles.structure.skip,
@@ -65,12 +95,16 @@ DEFINE_int32(num_threads, kParticles.num_threads,
 namespace pushid {
 namespace {
 
+constexpr int kShownToDiffusion = 1;  // frames
+
 MaybeError CheckRanges() {
   for (const MaybeError& error :
-       {CheckRange("seeds", FLAGS_seeds, 1, 20), CheckRange("steps", FLAGS_steps, 1, 1e6),
+       {CheckRange("seeds", FLAGS_seeds, 0, 20), CheckRange("steps", FLAGS_steps, 0, 1e6),
         CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6),
-        CheckRange("batch", FLAGS_batch, 1, 4096), CheckRange("observed", FLAGS_observed, 1, 1000),
-        CheckRange("learning_rate", FLAGS_learning_rate, 1e-8, 1.0),
+        CheckRange("batch", FLAGS_batch, 0, 4096), CheckRange("observed", FLAGS_observed, 0, 1000),
+        CheckRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0),
+        CheckRange("bystanders", FLAGS_bystanders, 0.0, 1.0),
         CheckRange("jitter", FLAGS_jitter, 0.0, 100.0),
         CheckRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6),
         CheckRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6),
@@ -85,21 +119,44 @@ MaybeError CheckRanges() {
   return std::nullopt;
 }
 
-// Flags of the other data would do nothing.
-MaybeError CheckForeign(GeneratorData data) {
-  const bool is_cmu = data == GeneratorData::kCmu;
-  for (const char* flag : {"recordings", "setting", "observed", "held_out"}) {
-    if (is_cmu && Given(flag))
-      return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+// Flags of the other data, or of the other kind, would do nothing.
+MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
+  const bool is_cmu = data == GeneratorData::kCmu, diffuses = kind == GeneratorKind::kDiffusion;
+  const auto refuse = [](std::initializer_list<const char*> flags,
+                         const std::string& goes_with) -> MaybeError {
+    for (const char* flag : flags) {
+      if (Given(flag)) return Error{std::string("--") + flag + " goes with " + goes_with};
+    }
+    return std::nullopt;
+  };
+  if (is_cmu && diffuses) {
+    return Error{"--kind=diffusion learns groups that are pushed; give --dataset=pushes"};
   }
-  for (const char* flag : {"folder", "with_validation", "ridge_share", "ridge_penalty"}) {
-    if (!is_cmu && Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
+  const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
+  const std::string particles = "--kind=particles", diffusion = "--kind=diffusion";
+  for (const MaybeError& error :
+       {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
+               : refuse({"folder", "with_validation", "ridge_share", "ridge_penalty"}, cmu),
+        diffuses
+            ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
+                      "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
+                     particles)
+            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input"}, diffusion),
+        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"scheme", "blend"}, "--crossvalidate")}) {
+    if (error) return error;
+  }
+  const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
+  if (uses_physics && FLAGS_physics.empty()) {
+    return Error{"--blend and --pendulum_input need to know which pendulum: give --physics"};
+  }
+  if (!uses_physics && !FLAGS_physics.empty()) {
+    return Error{"--physics is there for --pendulum_input and --blend: give one of them"};
   }
   return std::nullopt;
 }
 
-MaybeError CheckData(GeneratorData data) {
-  if (MaybeError error = CheckForeign(data)) return error;
+MaybeError CheckData(GeneratorKind kind, GeneratorData data) {
+  if (MaybeError error = CheckForeign(kind, data)) return error;
   if (data == GeneratorData::kCmu) {
     if (FLAGS_crossvalidate != 0) {
       return Error{
@@ -119,6 +176,15 @@ MaybeError CheckData(GeneratorData data) {
   return std::nullopt;
 }
 
+void SetDiffusion(DiffusionTrainingOptions* diffusion) {
+  if (FLAGS_steps > 0) diffusion->steps = FLAGS_steps;
+  if (FLAGS_batch > 0) diffusion->groups = FLAGS_batch;
+  if (FLAGS_learning_rate > 0.0) diffusion->learning_rate = FLAGS_learning_rate;
+  diffusion->bystanders = FLAGS_bystanders;
+  diffusion->seed = FLAGS_seed;
+  diffusion->num_threads = FLAGS_num_threads;
+}
+
 }  // namespace
 
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
@@ -127,36 +193,52 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   for (const MaybeError& error :
        {ParseName("--kind", FLAGS_kind, &flags.options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--scheme", FLAGS_scheme, &flags.scheme),
+        ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
     if (error) return *error;
   }
-  if (MaybeError error = CheckData(flags.data)) return *error;
+  if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
+    flags.data = GeneratorData::kPushes;
+  }
+  if (MaybeError error = CheckData(flags.options.kind, flags.data)) return *error;
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
   flags.folder = FLAGS_folder;
   flags.with_validation = FLAGS_with_validation;
-  flags.observed = FLAGS_observed;
+  const bool diffuses = flags.options.kind == GeneratorKind::kDiffusion;
+  if (diffuses) flags.observed = kShownToDiffusion;
+  if (FLAGS_observed > 0) flags.observed = FLAGS_observed;
   flags.held_out = FLAGS_held_out;
   flags.out = FLAGS_out;
   flags.crossvalidate = FLAGS_crossvalidate;
   flags.json_out = FLAGS_json_out;
-  flags.options.seeds = FLAGS_seeds;
+  flags.changes.diffusion.blend = FLAGS_blend;
+  if (diffuses) flags.options.seeds = 1;
+  if (FLAGS_seeds > 0) flags.options.seeds = FLAGS_seeds;
+  SetDiffusion(&flags.options.diffusion);
   flags.options.ridge_share = FLAGS_ridge_share;
   flags.options.ridge_penalty = FLAGS_ridge_penalty;
   flags.options.checkpoint_seconds = FLAGS_checkpoint_seconds;
   particles.structure.skip = FLAGS_skip;
   particles.structure.pose_operator = FLAGS_pose_operator;
   particles.structure.particles = FLAGS_particles;
-  particles.steps = FLAGS_steps;
+  if (FLAGS_steps > 0) particles.steps = FLAGS_steps;
   particles.noise_steps = FLAGS_noise_steps;
-  particles.batch = FLAGS_batch;
-  particles.learning_rate = FLAGS_learning_rate;
+  if (FLAGS_batch > 0) particles.batch = FLAGS_batch;
+  if (FLAGS_learning_rate > 0.0) particles.learning_rate = FLAGS_learning_rate;
   particles.jitter = FLAGS_jitter;
   particles.squared = FLAGS_squared_weight;
   particles.bones = FLAGS_bone_weight;
   particles.critic = FLAGS_critic_weight;
   particles.seed = FLAGS_seed;
   particles.num_threads = FLAGS_num_threads;
+  if (FLAGS_physics.empty()) return flags;
+  const Result<FittedModel> physics = ReadFittedModel(FLAGS_physics);
+  if (!physics.ok()) return physics.error();
+  flags.physics = physics.value().fit.options;
+  flags.physics->num_threads = FLAGS_num_threads;
+  flags.pendulum_input = FLAGS_pendulum_input;
   return flags;
 }
 

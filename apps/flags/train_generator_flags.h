@@ -1,9 +1,10 @@
 // apps: the flags of pushid-train-generator.
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "ident/training/generator_training.h"
+#include "ident/training/generator_crossvalidation.h"
 
 namespace pushid {
 
@@ -16,7 +17,11 @@ struct TrainGeneratorFlags {
   double held_out = 0.15;        // share of the recordings that only show how the training goes
   std::string out;               // folder of the generator
   int crossvalidate = 0;         // folds, instead of writing a generator; 0: off
-  std::string json_out;          // scores of the cross-validation; empty: none
+  FoldScheme scheme = FoldScheme::kStratified;
+  std::optional<FitOptions> physics;  // of the pendulum
+  bool pendulum_input = false;        // it goes into diffusion
+  GeneratorChanges changes;           // how held-out recordings are forecast
+  std::string json_out;               // scores of the cross-validation; empty: none
 };
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine();
 

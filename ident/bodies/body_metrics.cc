@@ -30,6 +30,19 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted,
   return sum;
 }
 
+std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<BodyScore>& scores) {
+  std::vector<GroupMotion> recorded, predicted;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    if (scores[i].predicted.empty()) continue;
+    const PendulumRecording& pendulum = recordings[i].pendulum;
+    recorded.push_back({recordings[i].bodies, pendulum.scene.dt, pendulum.pushed_person});
+    predicted.push_back({scores[i].predicted, pendulum.scene.dt, pendulum.pushed_person});
+  }
+  if (recorded.empty()) return std::nullopt;
+  return CompareGroups(recorded, predicted);
+}
+
 using Scores = std::vector<const BodyScore*>;
 
 BodyMean Mean(const Scores& scores, bool by_frames) {
@@ -91,6 +104,7 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
     ++touching;
   }
   score.value[kFse] /= std::max(1, touching);
+  if (people > 1) score.predicted = predicted;
   return score;
 }
 
@@ -109,6 +123,7 @@ BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
     subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
     setting[recording.setting].push_back(&score);
   }
+  summary.groups = GroupsOf(recordings, summary.recordings);
   summary.mean = Mean(all, false);
   summary.frame_weighted = Mean(all, true);
   for (const auto& [key, group] : magnitude) summary.by_magnitude[key] = Mean(group, false);

@@ -21,6 +21,7 @@
 
 #include "ident/bodies/body_recording.h"
 #include "ident/figures/metric.h"
+#include "ident/validation/group_metrics.h"
 
 namespace pushid {
 
@@ -54,7 +55,8 @@ struct BodyScore {
   std::string id;
   int frames = 0;
   BodyMetrics value{};
-  std::string failure;  // why there is no score; such a recording is in no mean
+  std::string failure;                     // why there is no score; such a recording is in no mean
+  std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
 };
 
 // predicted: one motion per person, with as many frames as the recording. first_frame: the first
@@ -74,6 +76,7 @@ struct BodySummary {
   std::vector<BodyScore> recordings;
   BodyMean mean, frame_weighted;
   std::map<std::string, BodyMean> by_magnitude, by_subject, by_setting;
+  std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
 };
 
 // scores in the order of recordings. By subject: the pushed person.

@@ -75,6 +75,24 @@ std::string Spaced(std::string name) {
   return name;
 }
 
+// How groups move, where there are any.
+std::string GroupsText(const BodyEvaluation& evaluation) {
+  std::vector<std::string> header = GroupMetricsHeader();
+  header.insert(header.begin(), "groups");
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  TextTable table(header, left);
+  bool any = false;
+  for (const auto& [name, summary] : evaluation) {
+    if (!summary.groups) continue;
+    std::vector<std::string> row = GroupMetricsRow(*summary.groups);
+    row.insert(row.begin(), Spaced(name));
+    table.Add(row);
+    any = true;
+  }
+  return any ? "\n" + table.ToString() : "";
+}
+
 }  // namespace
 
 Json ToJson(const BodySummary& summary, bool with_recordings) {
@@ -96,6 +114,7 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
   json["by_magnitude"] = GroupsJson(summary.by_magnitude);
   json["by_subject"] = GroupsJson(summary.by_subject);
   json["by_setting"] = GroupsJson(summary.by_setting);
+  if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
   return json;
 }
 
@@ -124,7 +143,7 @@ std::string BodyText(const BodyEvaluation& evaluation) {
   for (const auto& [name, summary] : evaluation) {
     if (name != "restoration") table.Add(Row(Spaced(name), summary.mean));
   }
-  text += table.ToString();
+  text += table.ToString() + GroupsText(evaluation);
   if (!restores) return text;
   text += "\n";
   TextTable groups = NewTable("restoration by");

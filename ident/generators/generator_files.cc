@@ -3,6 +3,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/bodies/tensor_folder.h"
+#include "ident/generators/generator_kinds.h"
 #include "ident/parameters/option_names.h"
 
 namespace pushid {
@@ -11,7 +12,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr TensorFolderKind kGeneratorFolder = {"generator", "--model",
                                                "pushid-train-generator --out", 1};
-constexpr int kMostMembers = 100, kMostParticles = 1000;
+constexpr int kMostParticles = 1000;
 
 std::string KindNames() {
   std::string names;
@@ -43,11 +44,6 @@ Json LayoutJson(const ParticleLayout& layout) {
           {"particles", particles}};
 }
 
-// The readers below throw nlohmann's exceptions and Error's text where something does not fit.
-void Demand(bool holds, const std::string& what) {
-  if (!holds) throw std::runtime_error(what);
-}
-
 ParticleLayout LayoutFrom(const Json& json) {
   ParticleLayout layout;
   layout.joints = json.at("joints");
@@ -75,94 +71,53 @@ ParticleLayout LayoutFrom(const Json& json) {
   return layout;
 }
 
-Json SettingsJson(const TrainedParticles& trained) {
+Json SettingsJson(const TrainedNetworks& trained) {
   const GeneratorSettings& settings = trained.settings;
-  const ParticleStructure& structure = trained.members.front().structure;
-  return {{"data", NameOf(settings.data)},
-          {"observed", settings.observed},
-          {"predicted", settings.predicted},
-          {"rate_hz", settings.rate},
-          {"layout", LayoutJson(settings.layout)},
-          {"members", trained.members.size()},
-          {"cell", NameOf(structure.cell)},
-          {"skip", structure.skip},
-          {"pose_operator", structure.pose_operator},
-          {"particles", structure.particles},
-          {"controls", structure.controls},
-          {"jitter", trained.jitter},
-          {"ridge_share", trained.ridge_share}};
+  Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
+               {"predicted", settings.predicted}, {"rate_hz", settings.rate},
+               {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
+  std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
+  return json;
 }
 
-TrainedParticles Read(const TensorFolder& folder, TensorReader* reader) {
+TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   const Json& json = folder.settings;
-  TrainedParticles trained;
+  TrainedNetworks trained;
   GeneratorSettings& settings = trained.settings;
-  const auto parse = [&json](const char* key, auto* value) {
-    const MaybeError error = ParseName(key, json.at(key).get<std::string>(), value);
-    if (error) throw std::runtime_error(error->message);
-  };
-  parse("data", &settings.data);
+  ParseSetting(json, "data", &settings.data);
   settings.observed = json.at("observed");
   settings.predicted = json.at("predicted");
   settings.rate = json.at("rate_hz");
+  settings.pendulum = json.value("pendulum", false);  // files from before have none
   settings.layout = LayoutFrom(json.at("layout"));
   settings.training = folder.training;
-  ParticleStructure structure;
-  parse("cell", &structure.cell);
-  structure.skip = json.at("skip");
-  structure.pose_operator = json.at("pose_operator");
-  structure.particles = json.at("particles");
-  structure.controls = json.at("controls");
-  const int members = json.at("members");
-  trained.jitter = json.at("jitter");
-  trained.ridge_share = json.at("ridge_share");
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
          "observed, predicted and rate_hz must be positive");
-  Demand(members >= 1 && members <= kMostMembers && structure.controls >= 0 &&
-             structure.controls <= kMostParticles,
-         "members must be 1 to 100, and controls not negative");
-  Demand(trained.jitter >= 0.0, "jitter must not be negative");
-  Demand(trained.ridge_share >= 0.0 && trained.ridge_share <= 1.0,
-         "ridge_share must lie between 0 and 1");
-  const int size = settings.layout.num_coordinates();
-  for (int m = 0; m < members; ++m) {
-    trained.members.push_back(TakeParticles("member" + std::to_string(m), structure, size, reader));
+  if (folder.kind == NameOf(GeneratorKind::kDiffusion)) {
+    trained.of_kind = ReadDiffusion(json, settings, reader);
+  } else {
+    trained.of_kind = ReadParticles(json, settings, reader);
   }
-  if (trained.ridge_share <= 0.0) return trained;
-  Demand(settings.observed > kRidgeDisplacements, "the ridge needs more observed frames");
-  const DenseLayer ridge =
-      TakeLayer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted, reader);
-  trained.ridge = {ridge.weights, ridge.bias};
   return trained;
 }
 
 }  // namespace
 
-MaybeError WriteGenerator(const std::string& folder, const TrainedParticles& trained) {
+MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
   TensorFolder content;
-  content.kind = NameOf(GeneratorKind::kParticles);
+  content.kind = NameOf(trained.kind());
   content.settings = SettingsJson(trained);
   content.training = trained.settings.training;
-  for (size_t m = 0; m < trained.members.size(); ++m) {
-    AddTensors("member" + std::to_string(m), trained.members[m], &content.tensors);
-  }
-  if (trained.ridge_share > 0.0) {
-    AddTensors("ridge", DenseLayer{trained.ridge.weights, trained.ridge.bias}, &content.tensors);
-  }
+  std::visit([&content](const auto& of_kind) { AddTensors(of_kind, &content.tensors); },
+             trained.of_kind);
   return WriteTensorFolder(kGeneratorFolder, folder, content);
 }
 
-std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedParticles& trained,
+std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
                                                const GeneratorChanges& changes) {
-  ParticleGeneratorOptions options;
-  options.project_bones = changes.project_bones;
-  options.jitter = trained.jitter;
-  options.noise_memory = changes.noise_memory;
-  options.noise_scale = changes.noise_scale;
-  options.ridge_share =
-      trained.ridge_share > 0.0 ? changes.ridge_share.value_or(trained.ridge_share) : 0.0;
-  return std::make_unique<ParticleGenerator>(trained.settings.layout, trained.members,
-                                             trained.ridge, options);
+  return std::visit(
+      [&](const auto& of_kind) { return MakeOfKind(trained.settings, of_kind, changes); },
+      trained.of_kind);
 }
 
 Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes) {
@@ -170,7 +125,7 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!read.ok()) return read.error();
   const std::string path = JsonFileOf(kGeneratorFolder, folder);
   TensorReader reader(read.value().tensors);
-  TrainedParticles trained;
+  TrainedNetworks trained;
   try {
     trained = Read(read.value(), &reader);
   } catch (const std::exception& problem) {
@@ -180,10 +135,11 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!reader.problem().empty()) {
     return Error{reader.problem() + "; train again with this version", path};
   }
-  if (changes.ridge_share.value_or(0.0) > 0.0 && trained.ridge_share <= 0.0) {
+  const auto* particles = std::get_if<TrainedParticles>(&trained.of_kind);
+  if (particles && changes.ridge_share.value_or(0.0) > 0.0 && particles->ridge_share <= 0.0) {
     return Error{"this generator was trained without a ridge; leave out --ridge_share", path};
   }
-  return LoadedGenerator{trained.settings, MakeGenerator(trained, changes)};
+  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes)};
 }
 
 }  // namespace pushid

@@ -8,8 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "datasets/files/error.h"
+#include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 
 namespace pushid {
@@ -22,35 +24,48 @@ constexpr EnumNames<GeneratorData, 2> Names(GeneratorData) {
 
 struct GeneratorSettings {
   GeneratorData data = GeneratorData::kCmu;
-  int observed = 25;   // frames that it is given
-  int predicted = 25;  // frames that it was trained to forecast
-  double rate = 25.0;  // Hz
+  int observed = 25;      // frames that it is given
+  int predicted = 25;     // frames that it was trained to forecast
+  double rate = 25.0;     // Hz
+  bool pendulum = false;  // whether it must be told where physics have the hips
   ParticleLayout layout;
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
 };
 
-// The networks of a generator of particles.
+// The networks of a generator of particles, and of one of diffusion.
 struct TrainedParticles {
-  GeneratorSettings settings;
   std::vector<ParticleNetwork> members;  // of one structure
   RidgeForecast ridge;                   // empty where ridge_share is 0
   double ridge_share = 0.0;
   double jitter = 0.0;  // of the pose in training, and in sampled futures
 };
+struct TrainedDiffusion {
+  std::vector<DiffusionNetwork> members;  // of one structure
+};
 
-MaybeError WriteGenerator(const std::string& folder, const TrainedParticles& trained);
+struct TrainedNetworks {
+  GeneratorSettings settings;
+  std::variant<TrainedParticles, TrainedDiffusion> of_kind;  // in the order of GeneratorKind
+
+  GeneratorKind kind() const { return static_cast<GeneratorKind>(of_kind.index()); }
+};
+
+MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
 
 struct LoadedGenerator {
+  GeneratorKind kind = GeneratorKind::kParticles;
   GeneratorSettings settings;
   std::unique_ptr<MotionGenerator> generator;
 };
 
-// What may differ from the training; unset: as trained.
+// What may differ from the training; unset: as trained. Each kind has its own.
 struct GeneratorChanges {
   std::optional<double> ridge_share;
   bool project_bones = ParticleGeneratorOptions{}.project_bones;
   double noise_memory = ParticleGeneratorOptions{}.noise_memory;
   double noise_scale = ParticleGeneratorOptions{}.noise_scale;
+  DiffusionGeneratorOptions diffusion = {};
+  uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
 };
 
 // Errors: no such folder, settings or tensors that are missing or do not fit.
@@ -58,7 +73,7 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder,
                                       const GeneratorChanges& changes = {});
 
 // The same of what was just trained.
-std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedParticles& trained,
+std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
                                                const GeneratorChanges& changes = {});
 
 }  // namespace pushid

@@ -1,6 +1,7 @@
 // ident: bodies to particles and back.
 #include "ident/generators/push_particles.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
@@ -34,6 +35,8 @@ PushedParticles ParticlesOf(const BodyRecording& recording, int person) {
   }
   particles.motion.controls = Eigen::MatrixXf::Zero(kPushControls, frames);
   const Scene& scene = recording.pendulum.scene;
+  particles.motion.place = particles.origin.head<2>().cast<float>();
+  particles.motion.mass = static_cast<float>(scene.people[person].body.mass);
   for (const ScenePush& push : scene.pushes) {
     if (push.person != person) continue;
     for (int t = push.start_frame; t < std::min(frames, push.EndFrame()); ++t) {
@@ -42,6 +45,30 @@ PushedParticles ParticlesOf(const BodyRecording& recording, int person) {
     }
   }
   return particles;
+}
+
+GroupHips PendulumHips(const BodyRecording& recording, const RolloutPath<double>& path) {
+  GroupHips hips;
+  for (const RestorationInput& person : PredictedPeople(recording, path)) {
+    const Pose& first = person.first_pose;
+    const Eigen::Vector3d origin(first(0, kBodyHip), first(1, kBodyHip), 0.0);
+    Eigen::Matrix3Xf hip(3, person.q.size());
+    for (size_t t = 0; t < person.q.size(); ++t) {
+      const int frame = static_cast<int>(t);
+      hip.col(frame) = (TipAt(person, frame) - origin).cast<float>();
+    }
+    hips.push_back(std::move(hip));
+  }
+  return hips;
+}
+
+std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips) {
+  std::vector<ObservedMotion> group;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    group.push_back(ParticlesOf(recording, n).motion);
+    if (!hips.empty()) group.back().pendulum = hips[n];
+  }
+  return group;
 }
 
 BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin) {
@@ -55,33 +82,35 @@ BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& 
 
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
-                                               const BodyRecording& recording) {
+                                               const BodyRecording& recording,
+                                               const GroupHips& hips, int frames) {
   const double rate = 1.0 / recording.pendulum.scene.dt;
   if (std::abs(rate - settings.rate) > 0.01 * settings.rate) {
     return Error{"recording " + recording.pendulum.id + " has " + Rounded(rate, 3) +
                  " frames a second; the generator was trained at " + Rounded(settings.rate, 3) +
                  ": resample the recording"};
   }
-  const int frames = recording.num_frames(), observed = settings.observed;
-  if (frames <= observed) {
-    return Error{"recording " + recording.pendulum.id + " has " + std::to_string(frames) +
-                 " frames; the generator is given " + std::to_string(observed) +
-                 " and has nothing to forecast"};
+  const int observed = settings.observed, recorded = recording.num_frames();
+  if (frames == 0) frames = recorded;
+  if (std::min(frames, recorded) <= observed) {
+    return Error{"of recording " + recording.pendulum.id + " there are " +
+                 std::to_string(std::min(frames, recorded)) + " frames; the generator is given " +
+                 std::to_string(observed) + " and has nothing to forecast"};
   }
-  std::vector<BodyMotion> bodies;
-  std::vector<ObservedMotion> people;
-  std::vector<Eigen::Vector3d> origins;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    PushedParticles particles = ParticlesOf(recording, n);
-    particles.motion.frames = Trajectories(particles.motion.frames.leftCols(observed));
-    people.push_back(std::move(particles.motion));
-    origins.push_back(particles.origin);
+  if (settings.pendulum && hips.empty()) {
+    return Error{"this generator corrects physics; give their model by --physics"};
+  }
+  std::vector<ObservedMotion> people = GroupOf(recording, hips);
+  for (ObservedMotion& person : people) {
+    person.frames = Trajectories(person.frames.leftCols(observed));
   }
   const std::vector<Trajectories> forecasts = generator.Forecast(people, frames - observed);
+  std::vector<BodyMotion> bodies;
   for (size_t n = 0; n < people.size(); ++n) {
     Trajectories whole(people[n].frames.rows(), frames);
     whole << people[n].frames, forecasts[n];
-    bodies.push_back(BodyFromParticles(whole, origins[n]));
+    const Eigen::Vector2d place = people[n].place.cast<double>();
+    bodies.push_back(BodyFromParticles(whole, {place.x(), place.y(), 0.0}));
   }
   return bodies;
 }

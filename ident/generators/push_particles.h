@@ -25,13 +25,21 @@ struct PushedParticles {
 };
 PushedParticles ParticlesOf(const BodyRecording& recording, int person);
 
+// Where a prediction has everybody's hip, in the coordinates of their particles.
+using GroupHips = std::vector<Eigen::Matrix3Xf>;
+GroupHips PendulumHips(const BodyRecording& recording, const RolloutPath<double>& path);
+
+// Everybody of a recording, for generators whose people see each other; hips: or empty.
+std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips = {});
+
 BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin);
 
 // What a generator makes of a recording whose first `observed` frames it is shown: those, then its
-// forecast to the recording's end. Errors: a recording that is not at the generator's rate, or too
-// short.
+// forecast to the recording's end, or for `frames` frames in all. Errors: a recording that is not
+// at the generator's rate, or too short; no hips where settings.pendulum asks for them.
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
-                                               const BodyRecording& recording);
+                                               const BodyRecording& recording,
+                                               const GroupHips& hips = {}, int frames = 0);
 
 }  // namespace pushid

@@ -47,16 +47,36 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
   return folds;
 }
 
+// Position within the setting, modulo the number of folds.
+Result<std::vector<Fold>> InterleavedFolds(const std::vector<PendulumRecording>& recordings,
+                                           int num_folds) {
+  std::vector<Fold> folds(num_folds);
+  std::map<std::string, int> position;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const int fold = position[recordings[i].setting]++ % num_folds;
+    folds[fold].held_out.push_back(static_cast<int>(i));
+  }
+  if (folds[1].held_out.empty()) {
+    return Error{
+        "--scheme=interleaved takes every so-manieth recording of a setting, and here no "
+        "setting has two; --scheme=stratified makes folds of any recordings"};
+  }
+  while (folds.back().held_out.empty()) folds.pop_back();
+  for (size_t f = 0; f < folds.size(); ++f) folds[f].name = "fold " + std::to_string(f + 1);
+  return folds;
+}
+
 }  // namespace
 
 Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
   const int total = static_cast<int>(recordings.size());
-  if (scheme == FoldScheme::kStratified) {
+  if (scheme == FoldScheme::kStratified || scheme == FoldScheme::kInterleaved) {
     if (num_folds < 2 || num_folds > total) {
       return Error{"--folds is " + std::to_string(num_folds) + "; it must lie between 2 and the " +
                    std::to_string(total) + " recordings"};
     }
+    if (scheme == FoldScheme::kInterleaved) return InterleavedFolds(recordings, num_folds);
     if (repeats < 1) return Error{"--repeats must be at least 1"};
     return StratifiedFolds(recordings, num_folds, repeats, seed);
   }

@@ -1,8 +1,9 @@
 // ident: which recordings are held out together.
 //
 // Stratified by setting, strength and subject, so that every fold holds out its share of each,
-// repeated with new shuffles; leave-one-subject-out and leave-one-setting-out; the strong pushes
-// held out together.
+// repeated with new shuffles; every so-manieth recording of a setting, in the manifest's order,
+// which other programs can repeat; leave-one-subject-out and leave-one-setting-out; the strong
+// pushes held out together.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,10 @@
 
 namespace pushid {
 
-enum class FoldScheme { kStratified, kSubject, kStrong, kSetting };
-constexpr EnumNames<FoldScheme, 4> Names(FoldScheme) {
+enum class FoldScheme { kStratified, kInterleaved, kSubject, kStrong, kSetting };
+constexpr EnumNames<FoldScheme, 5> Names(FoldScheme) {
   return {{{"stratified", FoldScheme::kStratified},
+           {"interleaved", FoldScheme::kInterleaved},
            {"subject", FoldScheme::kSubject},
            {"strong", FoldScheme::kStrong},
            {"setting", FoldScheme::kSetting}}};
@@ -28,7 +30,8 @@ struct Fold {
   std::vector<int> held_out;
 };
 
-// For kStratified: num_folds folds, `repeats` times. For the others the arguments are not used.
+// For kStratified: num_folds folds, `repeats` times; for kInterleaved num_folds folds. For the
+// others the arguments are not used.
 // Errors: fewer recordings or subjects than the scheme needs, no strong push.
 Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed);

@@ -1,11 +1,11 @@
 // ident: generators by folds.
 #include "ident/training/generator_crossvalidation.h"
 
-#include <algorithm>
 #include <chrono>
 
-#include "ident/generators/push_particles.h"
-#include "ident/problem/folds.h"
+#include "ident/prediction/online_predictor.h"
+#include "ident/results/model_rollout.h"
+#include "ident/validation/crossvalidation.h"
 
 namespace pushid {
 namespace {
@@ -14,36 +14,105 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-MaybeError Score(const TrainedParticles& trained, const BodyRecording& recording,
-                 std::map<std::string, BodyScore>* scores) {
-  const auto bodies = GenerateBodies(trained.settings, *MakeGenerator(trained), recording);
-  if (!bodies.ok()) return bodies.error();
-  (*scores)["generator"] = ScoreBodies(recording, bodies.value());
-  (*scores)["generator_after_observed"] =
-      ScoreBodies(recording, bodies.value(), trained.settings.observed);
-  (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording));
-  (*scores)["constant_velocity"] = ScoreBodies(recording, ConstantVelocityBodies(recording));
-  return std::nullopt;
-}
+constexpr int kShown = 20;  // frames, of generator_shown_20
+
+// What one fold scores its recordings by.
+class FoldJudge {
+ public:
+  FoldJudge(const GeneratorValidationOptions& validation, const TrainedNetworks& trained,
+            const std::optional<IdentifiedModel>& model)
+      : validation_(validation), trained_(trained), model_(model) {}
+
+  MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
+    const GeneratorChanges& changes = validation_.changes;
+    if (MaybeError error = Add("generator", recording, validation_.observed, changes, scores)) {
+      return error;
+    }
+    GeneratorChanges alone = changes;
+    alone.diffusion.blend = 0.0;
+    MaybeError error;
+    if (changes.diffusion.blend > 0.0) {
+      error = Add("generator_unblended", recording, validation_.observed, alone, scores);
+    }
+    if (!error && trained_.kind() == GeneratorKind::kDiffusion && validation_.observed != kShown &&
+        recording.num_frames() > kShown) {
+      error = Add("generator_shown_20", recording, kShown, alone, scores);
+    }
+    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording));
+    (*scores)["constant_velocity"] = ScoreBodies(recording, ConstantVelocityBodies(recording));
+    return error;
+  }
+
+ private:
+  // Where the fold's physics have everybody; nothing without physics.
+  Result<GroupHips> Hips(const BodyRecording& recording, int observed,
+                         std::map<std::string, BodyScore>* scores) const {
+    if (!model_) return GroupHips();
+    // Physics that go into the network start at frame 0, as in its training.
+    const bool shows_physics = observed > 1 && !trained_.settings.pendulum;
+    const Result<Prediction> predicted =
+        PredictFrom(*model_, recording.pendulum, shows_physics ? observed : 0);
+    if (!predicted.ok()) return predicted.error();
+    if (!predicted.value().status.ok) {
+      return Error{"recording " + recording.pendulum.id + ": physics " +
+                   OutsideText(predicted.value().status)};
+    }
+    const RolloutPath<double>& path = predicted.value().path;
+    (*scores)["rigid"] =
+        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, path)));
+    return PendulumHips(recording, path);
+  }
+
+  MaybeError Add(const std::string& name, const BodyRecording& recording, int observed,
+                 const GeneratorChanges& changes, std::map<std::string, BodyScore>* scores) const {
+    GeneratorSettings settings = trained_.settings;
+    settings.observed = observed;
+    GroupHips hips;
+    if (changes.diffusion.blend > 0.0 || trained_.settings.pendulum) {
+      Result<GroupHips> predicted = Hips(recording, observed, scores);
+      if (!predicted.ok()) return predicted.error();
+      hips = std::move(predicted.value());
+    }
+    const auto bodies =
+        GenerateBodies(settings, *MakeGenerator(trained_, changes), recording, hips);
+    if (!bodies.ok()) return bodies.error();
+    (*scores)[name] = ScoreBodies(recording, bodies.value());
+    if (name != "generator") return std::nullopt;
+    (*scores)["generator_after_observed"] = ScoreBodies(recording, bodies.value(), observed);
+    return std::nullopt;
+  }
+
+  const GeneratorValidationOptions& validation_;
+  const TrainedNetworks& trained_;
+  const std::optional<IdentifiedModel>& model_;
+};
 
 }  // namespace
 
 Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
                                                const GeneratorTrainingOptions& options,
-                                               int observed, int folds,
+                                               const GeneratorValidationOptions& validation,
                                                const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const auto made =
-      MakeFolds(PendulumsOf(recordings), FoldScheme::kStratified, folds, 1, options.particles.seed);
+      MakeFolds(pendulums, validation.scheme, validation.folds, 1, options.particles.seed);
   if (!made.ok()) return made.error();
   const int total = static_cast<int>(recordings.size());
-  ChainValidation validation;
+  ChainValidation result;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
-    std::vector<int> among;
-    for (int i = 0; i < total; ++i) {
-      if (!std::binary_search(fold.held_out.begin(), fold.held_out.end(), i)) among.push_back(i);
+    const std::vector<int> among = Others(fold.held_out, total);
+    std::optional<IdentifiedModel> model;
+    if (validation.physics) {
+      if (progress) progress(fold.name + ", physics", 0.0);
+      model = FitTo(pendulums, among, *validation.physics);
+      if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
     }
-    const GeneratorSamples samples = SamplesOf(recordings, among, {}, observed);
+    std::vector<GroupHips> hips;
+    if (validation.pendulum_input) {
+      hips = OutOfFoldHips(recordings, among, *validation.physics, options.diffusion.seed);
+    }
+    const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed, hips);
     GeneratorTrainingOptions of_fold = options;
     SetForData(samples, &of_fold);
     const double before = Now();
@@ -53,18 +122,18 @@ Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>&
           progress(fold.name + ", " + point.stage + ", step " + std::to_string(point.epoch), done);
         });
     if (!trained.ok()) return trained.error();
-    validation.training_seconds.push_back(Now() - before);
+    result.training_seconds.push_back(Now() - before);
+    const FoldJudge judge(validation, trained.value().networks, model);
     for (int i : fold.held_out) {
-      const MaybeError error = Score(trained.value().particles, recordings[i], &by_recording[i]);
-      if (error) return *error;
+      if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
     }
   }
   BodyScores all;
   for (const auto& scores : by_recording) {
     for (const auto& [name, score] : scores) all[name].push_back(score);
   }
-  validation.evaluation = SummarizeAll(recordings, all);
-  return validation;
+  result.evaluation = SummarizeAll(recordings, all);
+  return result;
 }
 
 }  // namespace pushid

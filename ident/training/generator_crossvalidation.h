@@ -3,22 +3,36 @@
 //
 //   generator                  the recording as far as it is shown, then the forecast
 //   generator_after_observed   the forecast alone
+//   generator_unblended        without the physics that the forecast is blended with
+//   rigid                      those physics alone, first poses carried by the rods' tips
+//   generator_shown_20         of diffusion, which is trained for it: shown 20 frames, no physics
 //   static, constant_velocity  as in body_evaluation.h
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
+#include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
 #include "ident/training/restoration_training_run.h"
 
 namespace pushid {
 
-// observed: frames that the generator is shown; 1: the first pose, and the push. Errors: folds that
-// cannot be made, recordings that are too short.
+struct GeneratorValidationOptions {
+  int observed = 20;  // frames that the generator is shown; 1: the first pose, and the push
+  FoldScheme scheme = FoldScheme::kStratified;
+  int folds = 0;
+  std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
+  bool pendulum_input = false;        // the pendulum goes into diffusion
+  GeneratorChanges changes;           // as in its use
+};
+
+// Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
+// optimum.
 Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
                                                const GeneratorTrainingOptions& options,
-                                               int observed, int folds,
+                                               const GeneratorValidationOptions& validation,
                                                const RunProgress& progress = nullptr);
 
 }  // namespace pushid

@@ -5,6 +5,7 @@
 #include "datasets/loading/forecast_windows.h"
 #include "ident/generators/push_particles.h"
 #include "ident/training/generator_training.h"
+#include "ident/training/restoration_data.h"
 
 namespace pushid {
 namespace {
@@ -21,6 +22,17 @@ std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings
     }
   }
   return people;
+}
+
+std::vector<ObservedGroup> Groups(const std::vector<BodyRecording>& recordings,
+                                  const std::vector<int>& among,
+                                  const std::vector<GroupHips>& pendulums) {
+  std::vector<ObservedGroup> groups;
+  for (int i : among) {
+    if (!pendulums.empty() && pendulums[i].empty()) continue;
+    groups.push_back(GroupOf(recordings[i], pendulums.empty() ? GroupHips() : pendulums[i]));
+  }
+  return groups;
 }
 
 }  // namespace
@@ -46,17 +58,33 @@ GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
   return samples;
 }
 
+std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<int>& among, const FitOptions& physics,
+                                     uint64_t seed) {
+  constexpr int kInnerFolds = 4;
+  std::vector<GroupHips> hips(recordings.size());
+  const auto paths = PredictOutOfFold(PendulumsOf(recordings), among, physics, kInnerFolds, seed);
+  for (size_t k = 0; k < among.size(); ++k) {
+    if (paths[k].num_frames() == 0) continue;
+    hips[among[k]] = PendulumHips(recordings[among[k]], paths[k]);
+  }
+  return hips;
+}
+
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
-                           int observed) {
+                           int observed, const std::vector<GroupHips>& pendulums) {
   GeneratorSamples samples;
   GeneratorSettings& settings = samples.settings;
   settings.data = GeneratorData::kPushes;
   settings.observed = observed;
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
+  settings.pendulum = !pendulums.empty();
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
+  samples.groups = Groups(recordings, among, pendulums);
+  samples.held_groups = Groups(recordings, held, pendulums);
   int longest = observed + 1;
   for (const auto& motion : samples.learnt) {
     longest = std::max(longest, static_cast<int>(motion.motion.cols()));
@@ -67,6 +95,8 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options) {
   const GeneratorSettings& settings = samples.settings;
+  options->diffusion.dt = 1.0 / settings.rate;
+  options->diffusion.structure.pendulum = settings.pendulum;
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "datasets/loading/mocap_folder.h"
-#include "ident/generators/generator_files.h"
+#include "ident/generators/push_particles.h"
 #include "ident/training/restoration_training.h"
+#include "models/generators/diffusion_trainer.h"
 #include "models/generators/particle_trainer.h"
 
 namespace pushid {
@@ -16,7 +17,8 @@ namespace pushid {
 struct GeneratorTrainingOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
   ParticleTrainingOptions particles;  // of every seed; seed is the first one's
-  int seeds = 3;                      // networks that are averaged
+  DiffusionTrainingOptions diffusion;
+  int seeds = 3;  // networks that are averaged
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double ridge_penalty = 1e-2;  // m^2
   std::string checkpoint;       // file, one per seed beside it; empty: none
@@ -26,23 +28,31 @@ struct GeneratorTrainingOptions {
 struct GeneratorSamples {
   GeneratorSettings settings;
   std::vector<LearntParticles> learnt, held;
-  std::vector<Trajectories> ridge;  // what the linear forecast learns from
+  std::vector<ObservedGroup> groups, held_groups;  // of diffusion
+  std::vector<Trajectories> ridge;                 // what the linear forecast learns from
 };
 
 // Both phases of all clips but those below test/; with_validation: also the validation clips, which
 // otherwise only show how the training goes.
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
 
+// Where physics have everybody who were fitted to other recordings of `among`, by recording;
+// nothing of recordings that are not among them, or whose rollout failed.
+std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<int>& among, const FitOptions& physics,
+                                     uint64_t seed);
+
 // Every person of the recordings `among`, whole; those of `held` show how the training goes.
+// pendulums: OutOfFoldHips, of which diffusion leaves out recordings without any; or empty.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
-                           int observed);
+                           int observed, const std::vector<GroupHips>& pendulums = {});
 
-// Options that the data decide: frames of a window, where it starts, controls.
+// Options that the data decide: frames of a window, where it starts, controls, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
 struct TrainedGenerator {
-  TrainedParticles particles;
+  TrainedNetworks networks;
   std::vector<TrainingPoint> curve;  // stages "seed 1, drift", ...
   bool resumed = false;
 };

@@ -16,15 +16,19 @@
 
 namespace pushid {
 
-enum class GeneratorKind { kParticles };
-constexpr EnumNames<GeneratorKind, 1> Names(GeneratorKind) {
-  return {{{"particles", GeneratorKind::kParticles}}};
+enum class GeneratorKind { kParticles, kDiffusion };
+constexpr EnumNames<GeneratorKind, 2> Names(GeneratorKind) {
+  return {{{"particles", GeneratorKind::kParticles}, {"diffusion", GeneratorKind::kDiffusion}}};
 }
 
 // What is seen of a person, and what acts on them.
 struct ObservedMotion {
   Trajectories frames;
   Eigen::MatrixXf controls = {};  // a column per frame, observed and to come; or empty
+  // What people who see each other are told of one another, and what physics say of the hip.
+  Eigen::Vector2f place = Eigen::Vector2f::Zero();  // of the frames' origin, m, world
+  float mass = 0.0f;                                // kg
+  Eigen::MatrixXf pendulum = {};  // where physics have the hip, as in frames; or empty
 };
 
 struct SampledFuture {

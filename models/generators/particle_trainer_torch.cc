@@ -172,8 +172,7 @@ std::string ParticleTrainer::State() const {
     archive.write("critic", critic);
     archive.write("critics", critics);
   }
-  archive.write("step", torch::tensor(torch_->step));
-  archive.write("random", at::detail::getDefaultCPUGenerator().get_state());
+  WriteProgress(torch_->step, &archive);
   return Archived(archive);
 }
 
@@ -194,12 +193,7 @@ bool ParticleTrainer::Resume(const std::string& state) {
     torch_->module->load(module);
     torch_->drift->load(drift);
     torch_->noise->load(noise);
-    torch::Tensor step, random;
-    archive.read("step", step);
-    archive.read("random", random);
-    auto generator = at::detail::getDefaultCPUGenerator();
-    generator.set_state(random);
-    torch_->step = step.item<int>();
+    torch_->step = ReadProgress(&archive);
     return true;
   } catch (const std::exception&) {
     return false;

@@ -18,6 +18,7 @@ inline constexpr std::array<int, kBodyJoints> kBodyParents = {
 
 enum BodyJoint {
   kBodyHip = 0,
+  kUpperSpine = 3,
   kBodyHead = 5,
   kRightShoulder = 7,
   kRightWrist = 9,

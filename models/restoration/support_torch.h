@@ -57,4 +57,18 @@ inline std::string Archived(const torch::serialize::OutputArchive& archive) {
   return stream.str();
 }
 
+// How far a training is, and where its random numbers are.
+inline void WriteProgress(int step, torch::serialize::OutputArchive* archive) {
+  archive->write("step", torch::tensor(step));
+  archive->write("random", at::detail::getDefaultCPUGenerator().get_state());
+}
+inline int ReadProgress(torch::serialize::InputArchive* archive) {
+  torch::Tensor step, random;
+  archive->read("step", step);
+  archive->read("random", random);
+  auto generator = at::detail::getDefaultCPUGenerator();
+  generator.set_state(random);
+  return step.item<int>();
+}
+
 }  // namespace pushid

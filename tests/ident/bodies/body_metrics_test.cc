@@ -139,5 +139,34 @@ TEST(BodyReportTest, KeysAreTheAgreedOnesAndJoinThoseOfThePendulum) {
   EXPECT_EQ(json["recordings"][0]["fell"], false);
 }
 
+// Groups are judged together; a recording of one person says nothing of groups.
+TEST(BodyReportTest, GroupsHaveMetricsOfTheirOwn) {
+  BodyRecording group = Standing(30), alone = Standing(30, "b");
+  group.bodies.push_back(BodyMotion(30, Placed(StandingPose(), 0.0, {0.6, 0, 0})));
+  group.pendulum.hip.push_back(group.pendulum.hip[0]);
+  group.pendulum.states.push_back(group.pendulum.states[0]);
+  for (int t = 10; t < 30; ++t) {
+    group.bodies[0][t] = Placed(StandingPose(), 0.0, {0.015 * (t - 9), 0, 0});
+  }
+  BodyScores scores;
+  for (const BodyRecording* recording : {&group, &alone}) {
+    scores["recorded"].push_back(ScoreBodies(*recording, recording->bodies));
+    scores["static"].push_back(ScoreBodies(*recording, StaticBodies(*recording)));
+  }
+  const BodyEvaluation evaluation = SummarizeAll({group, alone}, scores);
+  nlohmann::ordered_json json;
+  AddBodyJson(evaluation, &json);
+  const nlohmann::ordered_json& recorded = json["recorded"]["group_metrics"];
+  EXPECT_EQ(recorded["recordings"], 1);
+  EXPECT_EQ(recorded["pushed_named"], 1);
+  EXPECT_EQ(recorded["sscp"], 0.0);
+  EXPECT_NEAR(recorded["ndms"].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(json["baselines"]["static"]["group_metrics"]["missed_movers"], 1);
+  EXPECT_NE(BodyText(evaluation).find("pushed named"), std::string::npos);
+  const BodyEvaluation of_one = SummarizeAll({alone}, {{"static", {scores["static"][1]}}});
+  EXPECT_FALSE(of_one.at("static").groups.has_value());
+  EXPECT_EQ(BodyText(of_one).find("pushed named"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pushid

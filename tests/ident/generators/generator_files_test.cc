@@ -16,12 +16,13 @@ class GeneratorFilesTest : public TempDirTest {
     trained_.settings.predicted = 6;
     trained_.settings.layout = FourParticles();
     trained_.settings.training["note"] = "of a test";
-    trained_.members = {RandomParticles(1), RandomParticles(2)};
+    TrainedParticles& particles = Particles();
+    particles.members = {RandomParticles(1), RandomParticles(2)};
     RidgeFit fit;
     fit.Add(SwayingMotion(100, 0.0f), 12, 6);
-    trained_.ridge = fit.Solve(1e-3);
-    trained_.ridge_share = 0.3;
-    trained_.jitter = 0.7;
+    particles.ridge = fit.Solve(1e-3);
+    particles.ridge_share = 0.3;
+    particles.jitter = 0.7;
   }
   std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
     const auto loaded = LoadGenerator(folder, changes);
@@ -36,7 +37,8 @@ class GeneratorFilesTest : public TempDirTest {
     WriteText("g/generator.json", text.replace(at, from.size(), to));
     return ErrorOf(Path("g"));
   }
-  TrainedParticles trained_;
+  TrainedParticles& Particles() { return std::get<TrainedParticles>(trained_.of_kind); }
+  TrainedNetworks trained_;
   const std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
 };
 
@@ -63,10 +65,10 @@ TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   const auto loaded = LoadGenerator(Path("g"), changes);
   ASSERT_TRUE(loaded.ok());
   EXPECT_LT((loaded.value().generator->Forecast(people_, 6)[0] -
-             trained_.ridge.Forecast(people_[0].frames))
+             Particles().ridge.Forecast(people_[0].frames))
                 .norm(),
             1e-5f);
-  trained_.ridge_share = 0.0;
+  Particles().ridge_share = 0.0;
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without a ridge"));
 }
@@ -76,7 +78,7 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
                        "--model names the folder that "
                        "pushid-train-generator --out wrote"));
   EXPECT_TRUE(Contains(ErrorAfter("\"kind\": \"particles\"", "\"kind\": \"waves\""),
-                       "kind is 'waves'; it must be particles"));
+                       "kind is 'waves'; it must be particles, diffusion"));
   EXPECT_TRUE(Contains(ErrorAfter("\"format\": 1", "\"format\": 2"), "format 2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"rnn\""), "cell is 'rnn'"));
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));

@@ -83,6 +83,25 @@ TEST(Folds, SeedDecides) {
   EXPECT_NE(held(1), held(2));
 }
 
+// Two settings whose recordings take turns: the position counts within the setting.
+TEST(Folds, InterleavedCountWithinTheSetting) {
+  std::vector<PendulumRecording> recordings = Labels();
+  recordings.resize(9);
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    recordings[i].setting = i % 2 == 0 ? "row" : "group";
+  }
+  const auto folds = MakeFolds(recordings, FoldScheme::kInterleaved, 3, 1, 1);
+  ASSERT_TRUE(folds.ok());
+  ASSERT_EQ(folds.value().size(), 3u);
+  EXPECT_EQ(folds.value()[0].held_out, (std::vector<int>{0, 1, 6, 7}));
+  EXPECT_EQ(folds.value()[1].held_out, (std::vector<int>{2, 3, 8}));
+  EXPECT_EQ(folds.value()[2].held_out, (std::vector<int>{4, 5}));
+  recordings.resize(2);
+  const auto none = MakeFolds(recordings, FoldScheme::kInterleaved, 2, 1, 1);
+  ASSERT_FALSE(none.ok());
+  EXPECT_NE(none.error().message.find("no setting has two"), std::string::npos);
+}
+
 TEST(Folds, SubjectsAndStrongPushes) {
   const std::vector<PendulumRecording> recordings = Labels();
   const auto subjects = MakeFolds(recordings, FoldScheme::kSubject, 0, 0, 0);

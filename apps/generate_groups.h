@@ -1,0 +1,29 @@
+// apps: groups that diffusion forecasts, with physics to blend with, and as pictures and files.
+#pragma once
+
+#include <optional>
+
+#include "apps/flags/generate_flags.h"
+#include "ident/generators/push_particles.h"
+#include "ident/results/identified_model.h"
+
+namespace pushid {
+
+// The model of --physics; nothing where none is named.
+Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
+
+// A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
+// physics that see as many frames are told to the generator.
+Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
+                                             const BodyRecording& recording,
+                                             const std::optional<IdentifiedModel>& physics,
+                                             int frames = 0);
+
+// What --poses_out, --strip_out and --page_out ask for: everybody recorded, forecast, and the
+// pendulums of the physics beside them. Returns the files' names.
+Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
+                                           const GenerateFlags& flags,
+                                           const BodyRecording& recording,
+                                           const std::optional<IdentifiedModel>& physics);
+
+}  // namespace pushid

@@ -1,0 +1,170 @@
+// ident: groups compared.
+#include "ident/validation/group_metrics.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "datasets/files/number_text.h"
+#include "models/restoration/cvae_features.h"
+#include "models/restoration/motion_words.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kWholeFrame = 0.1;  // frames; rates are rounded
+constexpr int kNever = -1;
+
+// Transitions and words are those of 60 frames a second.
+std::vector<BodyMotion> AtWordRate(const GroupMotion& group) {
+  std::vector<BodyMotion> people;
+  for (const BodyMotion& person : group.people) {
+    const double seconds = (static_cast<double>(person.size()) - 1.0) * group.dt;
+    const int frames = 1 + static_cast<int>(seconds * kWordRate + kWholeFrame);
+    people.push_back(Resampled(person, group.dt, 1.0 / kWordRate, frames));
+  }
+  return people;
+}
+
+std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
+  std::vector<Symbols> all;
+  for (const GroupMotion& group : groups) {
+    for (Symbols& symbols : states.of(AtWordRate(group), 1.0 / kWordRate)) {
+      all.push_back(std::move(symbols));
+    }
+  }
+  return all;
+}
+
+std::vector<BodyMotion> PeopleOf(const std::vector<GroupMotion>& groups) {
+  std::vector<BodyMotion> all;
+  for (const GroupMotion& group : groups) {
+    for (BodyMotion& person : AtWordRate(group)) all.push_back(std::move(person));
+  }
+  return all;
+}
+
+// Whether a begins before b: people who never move come last.
+bool Before(int a, int b) { return a != kNever && (b == kNever || a < b); }
+
+int FirstOf(const std::vector<int>& onsets) {
+  size_t first = 0;
+  for (size_t n = 1; n < onsets.size(); ++n) {
+    if (Before(onsets[n], onsets[first])) first = n;
+  }
+  return onsets[first] == kNever ? kNever : static_cast<int>(first);
+}
+
+std::optional<double> Share(double part, int whole) {
+  return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
+}
+
+nlohmann::ordered_json ToJson(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
+}
+
+std::string Cell(const std::optional<double>& value) {
+  if (!value) return "none";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", *value);
+  return text;
+}
+
+}  // namespace
+
+SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
+                            const std::vector<GroupMotion>& motions, const StateFunction& states) {
+  const std::vector<Symbols> of_recorded = StatesOf(recorded, states);
+  const std::vector<Symbols> of_motions = StatesOf(motions, states);
+  const auto distance = [&](Transitions which) {
+    return JensenShannon(CountTransitions(of_recorded, states.num_symbols, which),
+                         CountTransitions(of_motions, states.num_symbols, which));
+  };
+  return {distance(Transitions::kAll), distance(Transitions::kChanges), std::nullopt};
+}
+
+std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
+                                   const std::vector<GroupMotion>& motions) {
+  const MotionWords words(PeopleOf(recorded));
+  MotionWords::Similarity sum;
+  if (words.size() == 0) return std::nullopt;
+  for (const BodyMotion& person : PeopleOf(motions)) {
+    const MotionWords::Similarity one = words.Compare(person);
+    sum.sum += one.sum;
+    sum.words += one.words;
+  }
+  return Share(sum.sum, sum.words);
+}
+
+std::vector<int> OnsetFrames(const GroupMotion& group) {
+  std::vector<int> onsets;
+  for (const BodyMotion& person : group.people) {
+    int onset = kNever;
+    for (size_t t = 1; t < person.size() && onset == kNever; ++t) {
+      const double way = (person[t] - person[0]).col(kBodyHip).norm();
+      if (way > kOnsetWay) onset = static_cast<int>(t);
+    }
+    onsets.push_back(onset);
+  }
+  return onsets;
+}
+
+void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics) {
+  const std::vector<int> truth = OnsetFrames(recorded), onsets = OnsetFrames(predicted);
+  ++metrics->recordings;
+  if (FirstOf(onsets) == recorded.pushed_person) ++metrics->pushed_named;
+  for (size_t a = 0; a < truth.size(); ++a) {
+    for (size_t b = 0; b < truth.size(); ++b) {
+      if (truth[a] == kNever || truth[b] == kNever || truth[a] >= truth[b]) continue;
+      ++metrics->pairs;
+      if (Before(onsets[a], onsets[b])) ++metrics->in_order;
+    }
+    if (truth[a] == kNever && onsets[a] != kNever) ++metrics->false_movers;
+    if (truth[a] != kNever && onsets[a] == kNever) ++metrics->missed_movers;
+    if (truth[a] == kNever || onsets[a] == kNever) continue;
+    ++metrics->movers;
+    metrics->error_sum += std::abs(onsets[a] - truth[a]) * recorded.dt;
+  }
+}
+
+GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
+                           const std::vector<GroupMotion>& predicted) {
+  GroupMetrics metrics;
+  metrics.social = CompareStates(recorded, predicted);
+  metrics.social.ndms = CompareWords(recorded, predicted);
+  for (size_t i = 0; i < recorded.size(); ++i) {
+    AddOnsets(recorded[i], predicted[i], &metrics.onsets);
+  }
+  return metrics;
+}
+
+nlohmann::ordered_json ToJson(const GroupMetrics& metrics) {
+  const OnsetMetrics& onsets = metrics.onsets;
+  return {{"sscp", ToJson(metrics.social.sscp)},
+          {"sscp_changes", ToJson(metrics.social.sscp_changes)},
+          {"ndms", ToJson(metrics.social.ndms)},
+          {"recordings", onsets.recordings},
+          {"pushed_named", onsets.pushed_named},
+          {"onset_order", ToJson(Share(onsets.in_order, onsets.pairs))},
+          {"onset_error_s", ToJson(Share(onsets.error_sum, onsets.movers))},
+          {"false_movers", onsets.false_movers},
+          {"missed_movers", onsets.missed_movers}};
+}
+
+std::vector<std::string> GroupMetricsHeader() {
+  return {"SSCP",        "changes",        "NDMS",         "pushed named",
+          "onset order", "onset error, s", "false movers", "missed movers"};
+}
+
+std::vector<std::string> GroupMetricsRow(const GroupMetrics& metrics) {
+  const OnsetMetrics& onsets = metrics.onsets;
+  return {Cell(metrics.social.sscp),
+          Cell(metrics.social.sscp_changes),
+          Cell(metrics.social.ndms),
+          std::to_string(onsets.pushed_named) + " of " + std::to_string(onsets.recordings),
+          Cell(Share(onsets.in_order, onsets.pairs)),
+          Cell(Share(onsets.error_sum, onsets.movers)),
+          std::to_string(onsets.false_movers),
+          std::to_string(onsets.missed_movers)};
+}
+
+}  // namespace pushid

@@ -1,0 +1,68 @@
+// ident: how well the motion of groups is predicted beyond the distance of joints: whether people
+// do what people do, and whether a push goes through the group as it did.
+//
+//   sscp           Jensen and Shannon's distance of the transitions between social states
+//   sscp_changes   the same of changes of state alone; no value where nothing ever changes
+//   ndms           how alike words of motion are to the nearest recorded ones, 1 for the same
+//   pushed_named   recordings whose pushed person moves first
+//   onset_order    share of pairs of people who begin to move in the recorded order
+//   onset_error    |begin - recorded begin| in the mean over people who move in both, s
+//   false_movers, missed_movers   people who begin to move in one of the two alone
+//
+// A person begins to move when the hip is more than 2 cm from its place at frame 0. What these can
+// see and cannot: validation/README.md.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "models/restoration/social_states.h"
+
+namespace pushid {
+
+struct GroupMotion {
+  std::vector<BodyMotion> people;
+  double dt = 1.0 / 60.0;
+  int pushed_person = 0;
+};
+
+// Of what people do, of any number of groups against any others; the three of them are symmetric
+// but for ndms, whose words are those of `motions`.
+struct SocialMetrics {
+  std::optional<double> sscp, sscp_changes, ndms;
+};
+SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
+                            const std::vector<GroupMotion>& motions,
+                            const StateFunction& states = SocialStateFunction());
+std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
+                                   const std::vector<GroupMotion>& motions);
+
+// The frame at which each person begins to move; -1: never.
+inline constexpr double kOnsetWay = 0.02;  // m
+std::vector<int> OnsetFrames(const GroupMotion& group);
+
+struct OnsetMetrics {
+  int recordings = 0, pushed_named = 0;
+  int pairs = 0, in_order = 0;  // of people who begin in the recording, at different frames
+  int movers = 0;               // people who begin in both
+  double error_sum = 0.0;       // s, over the movers
+  int false_movers = 0, missed_movers = 0;
+};
+void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics);
+
+struct GroupMetrics {
+  SocialMetrics social;
+  OnsetMetrics onsets;
+};
+// predicted: of each recorded group, in the same order.
+GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
+                           const std::vector<GroupMotion>& predicted);
+
+nlohmann::ordered_json ToJson(const GroupMetrics& metrics);
+// A heading and a row for a table of predictors.
+std::vector<std::string> GroupMetricsHeader();
+std::vector<std::string> GroupMetricsRow(const GroupMetrics& metrics);
+
+}  // namespace pushid

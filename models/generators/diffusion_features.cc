@@ -1,0 +1,162 @@
+// models: groups to features and back.
+#include "models/generators/diffusion_features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+constexpr float kLeastHipScale = 0.05f, kLeastJointScale = 0.02f;  // m
+constexpr float kForceUnit = 10.0f;                                // N/kg
+constexpr float kMassUnit = 80.0f;                                 // kg
+constexpr float kFramesUnit = 15.0f;
+
+using Columns = Eigen::Matrix3Xf;
+
+// Joints seen from the hip; the hip's own rows are its place.
+Trajectories FromHip(const Trajectories& frames) {
+  Trajectories seen = frames;
+  for (int j = 1; j < kBodyJoints; ++j) seen.middleRows(3 * j, 3) -= frames.topRows(3);
+  return seen;
+}
+
+// Since frame 0; m.
+Trajectories Moved(const ObservedMotion& person, bool pendulum) {
+  Trajectories moved = FromHip(person.frames);
+  moved.colwise() -= Eigen::VectorXf(moved.col(0));
+  if (!pendulum) return moved;
+  const Columns physics = person.pendulum.leftCols(moved.cols());
+  moved.topRows(3) -= physics.colwise() - Eigen::Vector3f(physics.col(0));
+  return moved;
+}
+
+Eigen::VectorXf ByCoordinate(const JointScales& scales) {
+  return scales.transpose().replicate<3, 1>().reshaped();
+}
+
+bool IsPushed(const ObservedMotion& person) {
+  return person.controls.size() > 0 && (person.controls.array() != 0.0f).any();
+}
+
+// Where the push comes from: the pushed people's place, or the middle where nobody is pushed.
+Eigen::Vector2f Source(const std::vector<ObservedMotion>& group) {
+  Eigen::Vector2f pushed = Eigen::Vector2f::Zero(), all = pushed;
+  int count = 0;
+  for (const ObservedMotion& person : group) {
+    all += person.place / static_cast<float>(group.size());
+    if (!IsPushed(person)) continue;
+    pushed += person.place;
+    ++count;
+  }
+  return count > 0 ? Eigen::Vector2f(pushed / static_cast<float>(count)) : all;
+}
+
+Eigen::MatrixXf PushOf(const std::vector<ObservedMotion>& group, int frames) {
+  Eigen::MatrixXf push = Eigen::MatrixXf::Zero(kPushRows, frames);
+  for (const ObservedMotion& person : group) {
+    if (person.controls.size() == 0) continue;
+    const Eigen::Index count = std::min<Eigen::Index>(frames, person.controls.cols());
+    push.leftCols(count) += person.controls.leftCols(count);
+  }
+  return push;
+}
+
+}  // namespace
+
+JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
+  JointScales squares = JointScales::Zero();
+  float frames = 0.0f;
+  for (const auto& group : groups) {
+    for (const ObservedMotion& person : group) {
+      const Trajectories moved = Moved(person, false);
+      for (int j = 0; j < kBodyJoints; ++j) {
+        squares[j] += moved.middleRows(3 * j, 3).squaredNorm() / 3.0f;
+      }
+      frames += static_cast<float>(moved.cols());
+    }
+  }
+  JointScales scales = (squares / std::max(1.0f, frames)).cwiseSqrt().cwiseMax(kLeastJointScale);
+  scales[kBodyHip] = std::max(scales[kBodyHip], kLeastHipScale);
+  return scales;
+}
+
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const JointScales& scales, bool pendulum) {
+  return ByCoordinate(scales).cwiseInverse().asDiagonal() * Moved(person, pendulum);
+}
+
+Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
+                            const JointScales& scales, bool pendulum) {
+  Trajectories frames = ByCoordinate(scales).asDiagonal() * rows;
+  if (pendulum) {
+    const Columns physics = person.pendulum.leftCols(rows.cols());
+    frames.topRows(3) += physics.colwise() - Eigen::Vector3f(physics.col(0));
+  }
+  frames.colwise() += Eigen::VectorXf(FromHip(person.frames.leftCols(1)));
+  for (int j = 1; j < kBodyJoints; ++j) frames.middleRows(3 * j, 3) += frames.topRows(3);
+  return frames;
+}
+
+GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointScales& scales,
+                         int observed, int frames, double dt, bool pendulum) {
+  GroupFeatures features;
+  features.people = static_cast<int>(group.size());
+  features.frames = frames;
+  features.given = Eigen::MatrixXf::Zero(GivenRows(pendulum), features.people * frames);
+  features.statics.resize(kStaticRows, features.people);
+  features.places.resize(2, features.people);
+  const Eigen::MatrixXf push = PushOf(group, frames);
+  const Eigen::Vector2f source = Source(group);
+  const Eigen::Vector4f impulse = push.rowwise().sum() * static_cast<float>(dt);
+  const float pushed_frames =
+      static_cast<float>((push.array() != 0.0f).colwise().any().count()) / kFramesUnit;
+  for (int n = 0; n < features.people; ++n) {
+    const ObservedMotion& person = group[n];
+    auto given = features.given.middleCols(n * frames, frames);
+    if (observed > 0) {
+      given.topLeftCorner(kMotionRows, observed) =
+          MotionRows(person, scales, pendulum).leftCols(observed);
+      given.row(kMotionRows).head(observed).setOnes();
+    }
+    given.middleRows(kMotionRows + 1, kPushRows) = push / kForceUnit;
+    if (pendulum) {
+      const Columns physics = person.pendulum.leftCols(frames);
+      given.bottomRows(3) =
+          (physics.colwise() - Eigen::Vector3f(physics.col(0))) / scales[kBodyHip];
+    }
+    const Trajectories first = FromHip(person.frames.leftCols(1));
+    const Eigen::Vector2f from_source = person.place - source;
+    features.statics.col(n) << first.bottomRows(kMotionRows - 3), from_source, first(2, 0),
+        person.mass / kMassUnit, IsPushed(person) ? 1.0f : 0.0f, impulse, pushed_frames;
+    features.places.col(n) = person.place;
+  }
+  return features;
+}
+
+std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
+                                    const GroupChange& change) {
+  const float side = change.mirrored ? -1.0f : 1.0f;
+  const Eigen::Matrix3f turn = static_cast<float>(change.size) *
+                               TurnAboutZ(change.turn).cast<float>() *
+                               Eigen::Vector3f(1.0f, side, 1.0f).asDiagonal();
+  // theta leans towards +x, phi towards -y; the push itself is not of another size.
+  Eigen::Matrix4f of_push = Eigen::Matrix4f::Zero();
+  const Eigen::Matrix2f flat = turn.topLeftCorner<2, 2>() / static_cast<float>(change.size);
+  const Eigen::Matrix2f lean =
+      Eigen::Vector2f(1.0f, -1.0f).asDiagonal() * flat * Eigen::Vector2f(1.0f, -1.0f).asDiagonal();
+  of_push << flat, Eigen::Matrix2f::Zero(), Eigen::Matrix2f::Zero(), lean;
+  std::vector<ObservedMotion> changed = group;
+  for (size_t n = 0; n < group.size(); ++n) {
+    const ObservedMotion& person = group[n];
+    for (int j = 0; j < kBodyJoints; ++j) {
+      const int from = change.mirrored ? MirroredJoint(j) : j;
+      changed[n].frames.middleRows(3 * j, 3) = turn * person.frames.middleRows(3 * from, 3);
+    }
+    changed[n].place = turn.topLeftCorner<2, 2>() * person.place;
+    if (person.controls.size() > 0) changed[n].controls = of_push * person.controls;
+    if (person.pendulum.size() > 0) changed[n].pendulum = turn * person.pendulum;
+  }
+  return changed;
+}
+
+}  // namespace pushid

@@ -1,0 +1,56 @@
+// models: a group of people as the diffusion network sees them, and back.
+//
+//   motion    66 rows: hip(t) - hip(0), then (joint - hip)(t) - (joint - hip)(0), each over the
+//             joint's scale; no rotation is taken out: all face the way of the push
+//   given     a row of each: the observed motion (0 where nothing was seen), 1 where it was, the
+//             push on the group over 10 m of the pushed, and where physics have the hip
+//   statics   of a person: joints seen from the hip at frame 0, place seen from the pushed,
+//             height of the hip, mass, whether pushed, the push's impulse per mass, its length
+//
+// Columns of motion and given: the frames of the first person, then those of the next.
+#pragma once
+
+#include <vector>
+
+#include "models/generators/motion_generator.h"
+#include "models/restoration/body.h"
+
+namespace pushid {
+
+inline constexpr int kMotionRows = 3 * kBodyJoints;
+inline constexpr int kPushRows = 4;
+inline constexpr int kStaticRows = 3 * (kBodyJoints - 1) + 2 + 1 + 1 + 1 + kPushRows + 1;
+inline int GivenRows(bool pendulum) { return kMotionRows + 1 + kPushRows + (pendulum ? 3 : 0); }
+
+// m, by joint: what a unit of a motion's row is.
+using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;
+JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+
+struct GroupFeatures {
+  int people = 0, frames = 0;
+  Eigen::MatrixXf given;    // GivenRows x (people * frames)
+  Eigen::MatrixXf statics;  // kStaticRows x people
+  Eigen::Matrix2Xf places;  // m
+};
+
+// observed: the frames of each person that are shown, frames: of the whole motion. The push is that
+// of all people together.
+GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointScales& scales,
+                         int observed, int frames, double dt, bool pendulum);
+
+// Rows of a motion: with physics the hip is what they leave over.
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const JointScales& scales, bool pendulum);
+// The motion that begins as the person's does; rows as above.
+Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
+                            const JointScales& scales, bool pendulum);
+
+// A group as it may as well have been: in the mirror, turned about z, of another size.
+struct GroupChange {
+  bool mirrored = false;
+  double turn = 0.0;  // rad
+  double size = 1.0;
+};
+std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
+                                    const GroupChange& change);
+
+}  // namespace pushid

@@ -1,0 +1,149 @@
+// models: groups sampled and finished.
+#include "models/generators/diffusion_generator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace pushid {
+namespace {
+
+// Who comes first, second, ... from the left to the right, and from the back to the front.
+std::vector<int> ByPlace(const std::vector<ObservedMotion>& people) {
+  std::vector<int> order(people.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&people](int a, int b) {
+    const Eigen::Vector2f &p = people[a].place, &q = people[b].place;
+    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+  });
+  return order;
+}
+
+void Draw(const std::vector<int>& order, const NormalSource& normal, Eigen::MatrixXf* noise) {
+  const Eigen::Index frames = noise->cols() / static_cast<Eigen::Index>(order.size());
+  for (const int n : order) {
+    for (float& value : noise->middleCols(n * frames, frames).reshaped()) {
+      value = static_cast<float>(normal());
+    }
+  }
+}
+
+Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
+  return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
+}
+
+int ObservedFrames(const std::vector<ObservedMotion>& people) {
+  return static_cast<int>(people.front().frames.cols());
+}
+
+}  // namespace
+
+DiffusionGenerator::DiffusionGenerator(ParticleLayout layout, std::vector<DiffusionNetwork> members,
+                                       double dt, const DiffusionGeneratorOptions& options,
+                                       std::function<NormalSource()> noise)
+    : layout_(std::move(layout)),
+      members_(std::move(members)),
+      dt_(dt),
+      options_(options),
+      noise_(std::move(noise)) {}
+
+Eigen::MatrixXf DiffusionGenerator::SampleRows(const std::vector<ObservedMotion>& people,
+                                               const DiffusionNetwork& network,
+                                               const GroupDenoiser& denoise, int frames,
+                                               const NormalSource& normal) const {
+  const int count = static_cast<int>(people.size());
+  const int seen = ObservedFrames(people);
+  std::vector<Eigen::MatrixXf> past;
+  for (const ObservedMotion& person : people) {
+    past.push_back(MotionRows(person, network.scales, network.structure.pendulum));
+  }
+  const std::vector<int> order = ByPlace(people);
+  Eigen::MatrixXf fresh(kMotionRows, count * frames), estimate;
+  Draw(order, normal, &fresh);
+  Eigen::MatrixXf noisy = fresh;
+  for (int k = 0;; ++k) {
+    const double step = static_cast<double>(kDiffusionTime) / options_.steps;
+    const double t = kDiffusionTime - k * step;
+    const double u = k + 1 == options_.steps ? 0.0 : t - step;
+    estimate = denoise.Estimate(noisy, t);
+    // The last estimate keeps what it makes of the frames seen: the seam is what it misses there.
+    if (u <= 0.0) return estimate;
+    for (int n = 0; n < count; ++n) estimate.middleCols(n * frames, seen) = past[n];
+    const BackwardStep back = StepBack(options_.sampler, t, u);
+    noisy = static_cast<float>(back.estimate) * estimate + static_cast<float>(back.noisy) * noisy;
+    if (back.noise <= 0.0) continue;
+    Draw(order, normal, &fresh);
+    noisy += static_cast<float>(back.noise) * fresh;
+  }
+}
+
+std::vector<std::vector<Trajectories>> DiffusionGenerator::Samples(
+    const std::vector<ObservedMotion>& people, int frames, int count,
+    const NormalSource& normal) const {
+  std::vector<std::vector<Trajectories>> samples;
+  for (size_t m = 0; m < members_.size(); ++m) {
+    const DiffusionNetwork& network = members_[m];
+    const bool pendulum = network.structure.pendulum;
+    const GroupDenoiser denoise(
+        network, FeaturesOf(people, network.scales, ObservedFrames(people), frames, dt_, pendulum));
+    for (size_t k = m; k < static_cast<size_t>(count); k += members_.size()) {
+      const Eigen::MatrixXf rows = SampleRows(people, network, denoise, frames, normal);
+      samples.emplace_back();
+      for (size_t n = 0; n < people.size(); ++n) {
+        samples.back().push_back(
+            FromMotionRows(rows.middleCols(static_cast<Eigen::Index>(n) * frames, frames),
+                           people[n], network.scales, pendulum));
+      }
+    }
+  }
+  return samples;
+}
+
+Trajectories DiffusionGenerator::Finished(const ObservedMotion& person, Trajectories motion) const {
+  const Eigen::Index seen = person.frames.cols();
+  if (person.pendulum.size() > 0 && options_.blend > 0.0) {
+    const Eigen::MatrixXf way = static_cast<float>(options_.blend) *
+                                (person.pendulum.leftCols(motion.cols()) - motion.topRows(3));
+    motion += way.replicate<kBodyJoints, 1>();
+  }
+  RestorationInput body;
+  body.first_pose = PoseOf(person.frames, 0);
+  body.dt = dt_;
+  for (Eigen::Index t = 0; t < seen && seen > 1; ++t) body.seen.push_back(PoseOf(person.frames, t));
+  BodyMotion poses;
+  for (Eigen::Index t = 0; t < motion.cols(); ++t) poses.push_back(PoseOf(motion, t));
+  Finish(body, options_.postprocess, &poses);
+  for (Eigen::Index t = 0; t < motion.cols(); ++t) {
+    motion.col(t) = poses[static_cast<size_t>(t)].reshaped().cast<float>();
+  }
+  return motion.rightCols(motion.cols() - seen);
+}
+
+std::vector<Trajectories> DiffusionGenerator::Forecast(const std::vector<ObservedMotion>& people,
+                                                       int frames) const {
+  if (people.empty()) return {};
+  const auto samples =
+      Samples(people, ObservedFrames(people) + frames, options_.averaged, noise_());
+  std::vector<Trajectories> mean = samples.front();
+  for (size_t n = 0; n < people.size(); ++n) {
+    for (size_t k = 1; k < samples.size(); ++k) mean[n] += samples[k][n];
+    mean[n] = Finished(people[n], mean[n] / static_cast<float>(samples.size()));
+  }
+  return mean;
+}
+
+std::vector<std::vector<SampledFuture>> DiffusionGenerator::Sample(
+    const std::vector<ObservedMotion>& people, int frames, int count,
+    const NormalSource& normal) const {
+  std::vector<std::vector<SampledFuture>> futures(people.size());
+  if (people.empty()) return futures;
+  for (auto& sample : Samples(people, ObservedFrames(people) + frames, count, normal)) {
+    for (size_t n = 0; n < people.size(); ++n) {
+      futures[n].push_back({Finished(people[n], std::move(sample[n]))});
+    }
+  }
+  return futures;
+}
+
+}  // namespace pushid

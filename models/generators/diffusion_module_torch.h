@@ -1,0 +1,193 @@
+// models: the diffusion network as a LibTorch module. Included by *_torch.cc files alone.
+//
+// Tensors are [person, channel, frame], the people of all groups of a step one after the other, so
+// that groups of any size need no padding.
+#pragma once
+
+#include "models/generators/diffusion_network.h"
+#include "models/restoration/support_torch.h"
+
+namespace pushid {
+
+struct DiffusionBatch {
+  torch::Tensor truth;                            // [person, motion row, frame]; x_0
+  torch::Tensor given;                            // [person, given row, frame]
+  torch::Tensor weights;                          // [person, 1, frame], of the loss
+  torch::Tensor statics;                          // [person, static row]
+  std::vector<int64_t> sizes;                     // of the groups
+  std::vector<std::vector<torch::Tensor>> views;  // [group][view], as PoolingWeights
+};
+
+class DiffusionConvolution : public torch::nn::Module {
+ public:
+  DiffusionConvolution(int64_t inputs, int64_t outputs, int64_t taps, int64_t stride, double size)
+      : taps_(taps), stride_(stride) {
+    const double bound = size / std::sqrt(static_cast<double>(inputs * taps));
+    weight_ =
+        register_parameter("weight", (2.0 * torch::rand({outputs, inputs, taps}) - 1.0) * bound);
+    bias_ = register_parameter("bias", torch::zeros({outputs}));
+  }
+  torch::Tensor operator()(const torch::Tensor& x) const {
+    const torch::Tensor padded = taps_ > 1 ? torch::constant_pad_nd(x, {taps_ - 1, 0}) : x;
+    return torch::conv1d(padded, weight_, bias_, stride_);
+  }
+  DenseLayer Layer() const {
+    return {ToMatrix(weight_.permute({0, 2, 1}).flatten(1)), ToVector(bias_)};
+  }
+
+ private:
+  int64_t taps_, stride_;
+  torch::Tensor weight_, bias_;
+};
+
+class DiffusionModule : public torch::nn::Module {
+ public:
+  DiffusionModule(const DiffusionStructure& structure, double dropout)
+      : structure_(structure), dropout_(dropout) {
+    first_static_ = Linear("static0", kStaticRows, kStaticWidth);
+    second_static_ = Linear("static1", kStaticWidth, kStaticWidth);
+    for (int b = 0; b < kDiffusionBlocks; ++b) AddBlock(b);
+    for (int p = 0; p <= kDiffusionLevels && structure.Pools(); ++p) AddPool(p);
+    out_ = Convolution("out", 3, 1, kDownWidths[0], kMotionRows, 1.0);
+    direct_ = Convolution("direct", 1, 1, structure.NumInputs(), kMotionRows, 1.0);
+  }
+
+  // time: [person, time feature]
+  torch::Tensor Estimate(const torch::Tensor& noisy, const torch::Tensor& time,
+                         const DiffusionBatch& batch) {
+    const torch::Tensor input = torch::cat({noisy, batch.given}, 1);
+    const torch::Tensor hidden =
+        torch::dropout(torch::silu(first_static_->forward(batch.statics)), dropout_, is_training());
+    const torch::Tensor conditions = torch::cat({time, second_static_->forward(hidden)}, 1);
+    std::vector<torch::Tensor> levels = {input};
+    for (int b = 0; b < kDiffusionLevels; ++b) {
+      levels.push_back(Pooled(b, Apply(b, levels.back(), conditions), batch));
+    }
+    torch::Tensor at =
+        Pooled(kDiffusionLevels, Apply(kDiffusionLevels, levels.back(), conditions), batch);
+    for (int b = kDiffusionLevels + 1; b < kDiffusionBlocks; ++b) {
+      at = Apply(b, torch::cat({Doubled(at), levels[kDiffusionBlocks - b]}, 1), conditions);
+    }
+    return (*out_)(Doubled(at)) + (*direct_)(input);
+  }
+
+  DiffusionNetwork Network(const JointScales& scales) const {
+    DiffusionNetwork network;
+    network.structure = structure_;
+    network.scales = scales;
+    network.first_static = ToLayer(first_static_);
+    network.second_static = ToLayer(second_static_);
+    for (const Block& block : blocks_) {
+      network.blocks.push_back(
+          {block.first->Layer(), block.second->Layer(), block.skip->Layer(), ToLayer(block.film)});
+    }
+    for (const Pool& pool : pools_) {
+      network.pools.push_back({pool.join->Layer(), {}, {}});
+      if (!pool.query) continue;
+      network.pools.back().query = pool.query->Layer();
+      network.pools.back().key = pool.key->Layer();
+    }
+    network.out = out_->Layer();
+    network.direct = direct_->Layer();
+    return network;
+  }
+
+ private:
+  using ConvolutionPointer = std::shared_ptr<DiffusionConvolution>;
+  struct Block {
+    ConvolutionPointer first, second, skip;
+    torch::nn::Linear film{nullptr};
+  };
+  struct Pool {
+    ConvolutionPointer join, query, key;
+  };
+  static constexpr double kSmallStart = 0.3;  // of what is added to a block's way around
+
+  torch::nn::Linear Linear(const std::string& name, int inputs, int outputs) {
+    return register_module(name, torch::nn::Linear(inputs, outputs));
+  }
+  ConvolutionPointer Convolution(const std::string& name, int taps, int stride, int inputs,
+                                 int outputs, double size) {
+    return register_module(
+        name, std::make_shared<DiffusionConvolution>(inputs, outputs, taps, stride, size));
+  }
+
+  void AddBlock(int b) {
+    const BlockWidths widths = WidthsOf(b, structure_);
+    const std::string name = "block" + std::to_string(b);
+    const int stride = b < kDiffusionLevels ? 2 : 1;
+    Block block;
+    block.first = Convolution(name + "_first", 3, stride, widths.in, widths.out, 1.0);
+    block.second = Convolution(name + "_second", 3, 1, widths.out, widths.out, kSmallStart);
+    block.skip = Convolution(name + "_skip", 1, stride, widths.in, widths.out, 1.0);
+    block.film = Linear(name + "_film", kTimeWidth + kStaticWidth, 2 * widths.out);
+    torch::nn::init::zeros_(block.film->weight);
+    torch::nn::init::zeros_(block.film->bias);
+    blocks_.push_back(block);
+  }
+  void AddPool(int p) {
+    const int width = WidthsOf(p, structure_).out;
+    const std::string name = "pool" + std::to_string(p);
+    Pool pool;
+    pool.join =
+        Convolution(name + "_join", 1, 1, structure_.NumViews() * width, width, kSmallStart);
+    if (structure_.pooling == SocialPooling::kAttention) {
+      pool.query = Convolution(name + "_query", 1, 1, width, kAttentionWidth, 1.0);
+      pool.key = Convolution(name + "_key", 1, 1, width, kAttentionWidth, 1.0);
+    }
+    pools_.push_back(pool);
+  }
+
+  torch::Tensor Apply(int b, const torch::Tensor& x, const torch::Tensor& conditions) {
+    Block& block = blocks_[b];
+    const std::vector<torch::Tensor> film =
+        block.film->forward(conditions).unsqueeze(2).chunk(2, 1);
+    const torch::Tensor inner = torch::silu((*block.first)(x)) * (1.0 + film[0]) + film[1];
+    return torch::silu((*block.second)(inner)) + (*block.skip)(x);
+  }
+
+  torch::Tensor Pooled(int p, const torch::Tensor& y, const DiffusionBatch& batch) const {
+    if (!structure_.Pools()) return y;
+    const Pool& pool = pools_[p];
+    const std::vector<torch::Tensor> groups = y.split_with_sizes(batch.sizes, 0);
+    std::vector<torch::Tensor> seen;
+    for (size_t g = 0; g < groups.size(); ++g) {
+      if (structure_.pooling == SocialPooling::kAttention) {
+        seen.push_back(Attended(pool, groups[g]));
+        continue;
+      }
+      std::vector<torch::Tensor> sums;
+      for (const torch::Tensor& view : batch.views[g]) {
+        sums.push_back(torch::matmul(view, groups[g].flatten(1)).view_as(groups[g]));
+      }
+      seen.push_back(torch::cat(sums, 1));
+    }
+    return y + (*pool.join)(torch::cat(seen, 0));
+  }
+
+  // A softmax over the others, frame by frame; people alone see nothing.
+  static torch::Tensor Attended(const Pool& pool, const torch::Tensor& y) {
+    if (y.size(0) == 1) return torch::zeros_like(y);
+    const torch::Tensor queries = (*pool.query)(y).permute({2, 0, 1});
+    const torch::Tensor keys = (*pool.key)(y).permute({2, 1, 0});
+    const double scale = 1.0 / std::sqrt(static_cast<double>(kAttentionWidth));
+    const torch::Tensor self = torch::eye(y.size(0), torch::kBool);
+    const torch::Tensor scores = (scale * torch::matmul(queries, keys)).masked_fill(self, -1e9);
+    const torch::Tensor weights = torch::softmax(scores, 2);
+    return torch::matmul(weights, y.permute({2, 0, 1})).permute({1, 2, 0}).contiguous();
+  }
+
+  static torch::Tensor Doubled(const torch::Tensor& x) {
+    const torch::Tensor before = torch::cat({x.narrow(2, 0, 1), x.narrow(2, 0, x.size(2) - 1)}, 2);
+    return torch::stack({0.5 * (before + x), x}, 3).flatten(2);
+  }
+
+  DiffusionStructure structure_;
+  double dropout_;
+  torch::nn::Linear first_static_{nullptr}, second_static_{nullptr};
+  std::vector<Block> blocks_;
+  std::vector<Pool> pools_;
+  ConvolutionPointer out_, direct_;
+};
+
+}  // namespace pushid

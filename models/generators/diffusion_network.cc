@@ -1,0 +1,222 @@
+// models: forward through the diffusion network.
+#include "models/generators/diffusion_network.h"
+
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody
+constexpr int kTaps = 3;
+
+Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf result(layer.weights.rows(), values.cols());
+  result.noalias() = layer.weights * values;
+  result.colwise() += layer.bias;
+  return result;
+}
+
+void ApplySilu(Eigen::MatrixXf* values) {
+  auto v = values->array();
+  v /= 1.0f + (-v).exp();
+}
+
+// The three frames that a convolution sees below one another; every `stride`-th of them.
+Eigen::MatrixXf Unfolded(const Eigen::MatrixXf& values, int frames, int stride) {
+  const Eigen::Index channels = values.rows(), people = values.cols() / frames;
+  const int count = frames / stride;
+  Eigen::MatrixXf unfolded(kTaps * channels, people * count);
+  for (Eigen::Index n = 0; n < people; ++n) {
+    for (int k = 0; k < count; ++k) {
+      for (int tap = 0; tap < kTaps; ++tap) {
+        const int t = stride * k + tap - (kTaps - 1);
+        auto to = unfolded.col(n * count + k).segment(tap * channels, channels);
+        if (t < 0) {
+          to.setZero();
+        } else {
+          to = values.col(n * frames + t);
+        }
+      }
+    }
+  }
+  return unfolded;
+}
+
+Eigen::MatrixXf EverySecond(const Eigen::MatrixXf& values) {
+  return values(Eigen::all, Eigen::seq(0, Eigen::last, 2));
+}
+
+Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
+  Eigen::MatrixXf both(a.rows() + b.rows(), a.cols());
+  both << a, b;
+  return both;
+}
+
+int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
+
+}  // namespace
+
+BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
+  const int* down = kDownWidths;
+  const int deepest = down[kDiffusionLevels - 1];
+  if (block == 0) return {structure.NumInputs(), down[0]};
+  if (block < kDiffusionLevels) return {down[block - 1], down[block]};
+  if (block == kDiffusionLevels) return {deepest, deepest};
+  // Up from the level below, beside what the level had on the way down.
+  const int level = kDiffusionBlocks - 1 - block;
+  const int below = block == kDiffusionLevels + 1 ? deepest : down[level + 1];
+  return {below + down[level], down[level]};
+}
+
+std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places) {
+  const Eigen::Index people = places.cols();
+  if (pooling == SocialPooling::kMean) {
+    Eigen::MatrixXf others = Eigen::MatrixXf::Ones(people, people);
+    others.diagonal().setZero();
+    return {others / static_cast<float>(std::max<Eigen::Index>(1, people - 1))};
+  }
+  if (pooling != SocialPooling::kLocal) return {};
+  Eigen::MatrixXf ahead = Eigen::MatrixXf::Zero(people, people), behind = ahead;
+  for (Eigen::Index i = 0; i < people; ++i) {
+    for (Eigen::Index j = 0; j < people; ++j) {
+      if (i == j) continue;
+      const Eigen::Vector2f d = places.col(j) - places.col(i);
+      const float near = std::exp(-d.squaredNorm() / (kNear * kNear));
+      const float in_front = 1.0f / (1.0f + std::exp(-d.x() / kSide));
+      ahead(i, j) = near * in_front;
+      behind(i, j) = near * (1.0f - in_front);
+    }
+  }
+  for (Eigen::MatrixXf* view : {&ahead, &behind}) {
+    const Eigen::VectorXf sums = view->rowwise().sum().array() + kAlone;
+    *view = sums.cwiseInverse().asDiagonal() * *view;
+  }
+  return {ahead, behind};
+}
+
+Eigen::VectorXf TimeFeatures(double t) {
+  constexpr int kHalf = kTimeWidth / 2;
+  constexpr double kSlowest = 1e4;
+  Eigen::VectorXf features(kTimeWidth);
+  for (int i = 0; i < kHalf; ++i) {
+    const double angle = t * std::pow(kSlowest, -static_cast<double>(i) / kHalf);
+    features[i] = static_cast<float>(std::sin(angle));
+    features[kHalf + i] = static_cast<float>(std::cos(angle));
+  }
+  return features;
+}
+
+GroupDenoiser::GroupDenoiser(const DiffusionNetwork& network, GroupFeatures features)
+    : network_(network),
+      features_(std::move(features)),
+      frames_((features_.frames + kDiffusionFrames - 1) / kDiffusionFrames * kDiffusionFrames) {
+  Eigen::MatrixXf hidden = Applied(network.first_static, features_.statics);
+  ApplySilu(&hidden);
+  statics_ = Applied(network.second_static, hidden);
+  views_ = PoolingWeights(network.structure.pooling, features_.places);
+}
+
+GroupDenoiser::Values GroupDenoiser::Block(int index, const Values& in,
+                                           const Eigen::MatrixXf& conditions) const {
+  const DiffusionBlock& block = network_.blocks[index];
+  const int stride = StrideOf(index), frames = in.frames / stride;
+  Values out{Applied(block.first, Unfolded(in.data, in.frames, stride)), frames};
+  ApplySilu(&out.data);
+  const Eigen::MatrixXf film = Applied(block.film, conditions);
+  const Eigen::Index width = out.data.rows();
+  for (int n = 0; n < features_.people; ++n) {
+    auto person = out.data.middleCols(n * frames, frames).array();
+    person.colwise() *= 1.0f + film.col(n).head(width).array();
+    person.colwise() += film.col(n).tail(width).array();
+  }
+  out.data = Applied(block.second, Unfolded(out.data, frames, 1));
+  ApplySilu(&out.data);
+  out.data += Applied(block.skip, stride == 2 ? EverySecond(in.data) : in.data);
+  return out;
+}
+
+void GroupDenoiser::Attend(const DiffusionPool& pool, const Values& values,
+                           Eigen::MatrixXf* seen) const {
+  const int people = features_.people;
+  const Eigen::MatrixXf queries = Applied(pool.query, values.data);
+  const Eigen::MatrixXf keys = Applied(pool.key, values.data);
+  const float scale = 1.0f / std::sqrt(static_cast<float>(kAttentionWidth));
+  for (int i = 0; i < people && people > 1; ++i) {
+    for (int t = 0; t < values.frames; ++t) {
+      Eigen::VectorXf weights(people);
+      for (int j = 0; j < people; ++j) {
+        weights[j] =
+            scale * queries.col(i * values.frames + t).dot(keys.col(j * values.frames + t));
+      }
+      weights[i] = -INFINITY;
+      weights = (weights.array() - weights.maxCoeff()).exp();
+      weights /= weights.sum();
+      for (int j = 0; j < people; ++j) {
+        seen->col(i * values.frames + t) += weights[j] * values.data.col(j * values.frames + t);
+      }
+    }
+  }
+}
+
+void GroupDenoiser::Pool(int index, Values* values) const {
+  if (!network_.structure.Pools()) return;
+  const DiffusionPool& pool = network_.pools[index];
+  const Eigen::Index width = values->data.rows(), size = width * values->frames;
+  Eigen::MatrixXf seen =
+      Eigen::MatrixXf::Zero(network_.structure.NumViews() * width, values->data.cols());
+  if (network_.structure.pooling == SocialPooling::kAttention) {
+    Attend(pool, *values, &seen);
+  } else {
+    // A person's frames below one another, a column per person.
+    const Eigen::Map<const Eigen::MatrixXf> all(values->data.data(), size, features_.people);
+    for (size_t v = 0; v < views_.size(); ++v) {
+      const Eigen::MatrixXf sums = all * views_[v].transpose();
+      seen.middleRows(static_cast<Eigen::Index>(v) * width, width) =
+          Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values->data.cols());
+    }
+  }
+  values->data += Applied(pool.join, seen);
+}
+
+GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
+  Values doubled{Eigen::MatrixXf(values.data.rows(), 2 * values.data.cols()), 2 * values.frames};
+  for (Eigen::Index k = 0; k < values.data.cols(); ++k) {
+    const Eigen::Index before = k % values.frames == 0 ? k : k - 1;
+    doubled.data.col(2 * k) = 0.5f * (values.data.col(before) + values.data.col(k));
+    doubled.data.col(2 * k + 1) = values.data.col(k);
+  }
+  return doubled;
+}
+
+Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) const {
+  const int people = features_.people, frames = features_.frames;
+  Values input{Eigen::MatrixXf::Zero(network_.structure.NumInputs(), people * frames_), frames_};
+  for (int n = 0; n < people; ++n) {
+    auto person = input.data.middleCols(n * frames_, frames);
+    person.topRows(kMotionRows) = noisy.middleCols(n * frames, frames);
+    person.bottomRows(features_.given.rows()) = features_.given.middleCols(n * frames, frames);
+  }
+  const Eigen::MatrixXf conditions = Below(TimeFeatures(t).replicate(1, people), statics_);
+  std::vector<Values> levels = {input};
+  for (int b = 0; b < kDiffusionLevels; ++b) {
+    levels.push_back(Block(b, levels.back(), conditions));
+    Pool(b, &levels.back());
+  }
+  Values at = Block(kDiffusionLevels, levels.back(), conditions);
+  Pool(kDiffusionLevels, &at);
+  for (int b = kDiffusionLevels + 1; b < kDiffusionBlocks; ++b) {
+    at = Doubled(at);
+    at.data = Below(at.data, levels[kDiffusionBlocks - b].data);
+    at = Block(b, at, conditions);
+  }
+  at = Doubled(at);
+  Eigen::MatrixXf out = Applied(network_.out, Unfolded(at.data, frames_, 1));
+  out += Applied(network_.direct, input.data);
+  Eigen::MatrixXf estimate(kMotionRows, people * frames);
+  for (int n = 0; n < people; ++n) {
+    estimate.middleCols(n * frames, frames) = out.middleCols(n * frames_, frames);
+  }
+  return estimate;
+}
+
+}  // namespace pushid

@@ -1,0 +1,115 @@
+// models: the network that estimates a group's motion from a noisy one (after Tanke et al., "Social
+// Diffusion", ICCV 2023, called SDM), without its training.
+//
+//   level 0        x_t and what is given, T frames
+//   down 1..4      blocks of 64, 64, 96, 96 channels, each with half the frames
+//   middle         a block of 96
+//   up 3..1        blocks of 96, 64, 64: the frames doubled, beside the level's own of the way down
+//   out            the frames doubled once more: conv3, and a linear map of level 0
+//
+//   block(x)  = SiLU(conv3(FiLM(SiLU(conv3(x))))) + conv1(x)
+//   FiLM(y)   = y (1 + g) + b, [g, b] linear in [sines of t, MLP of the person's statics]
+//   pooled(y) = y + W [sums over the others of a y_other], after every block on the way down and
+//               the middle: all that people see of each other
+//
+// Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling, so that later
+// frames never change earlier ones and a motion may go on past the frames of the training.
+// People are a set: weights `a` depend on the two alone. Rejected: a column of all people's
+// features at once, which fixes their number.
+#pragma once
+
+#include <vector>
+
+#include "models/enum_names.h"
+#include "models/generators/diffusion_features.h"
+#include "models/restoration/tensors.h"
+
+namespace pushid {
+
+// local      exp(-(d / 0.8 m)^2), those ahead and those behind apart (a logistic of dx / 0.1 m),
+//            each over their sum + 0.1; d, dx between the places at frame 0. Far people fade out.
+// mean       all others alike
+// attention  a softmax over the others, frame by frame
+// none       people do not see each other
+enum class SocialPooling { kLocal, kMean, kAttention, kNone };
+constexpr EnumNames<SocialPooling, 4> Names(SocialPooling) {
+  return {{{"local", SocialPooling::kLocal},
+           {"mean", SocialPooling::kMean},
+           {"attention", SocialPooling::kAttention},
+           {"none", SocialPooling::kNone}}};
+}
+
+struct DiffusionStructure {
+  SocialPooling pooling = SocialPooling::kLocal;
+  bool pendulum = false;  // where physics have the hip is given, and what they leave is predicted
+
+  int NumViews() const { return pooling == SocialPooling::kLocal ? 2 : 1; }
+  bool Pools() const { return pooling != SocialPooling::kNone; }
+  int NumInputs() const { return kMotionRows + GivenRows(pendulum); }
+};
+
+inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up
+inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
+inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
+inline constexpr int kTimeWidth = 64, kStaticWidth = 96, kAttentionWidth = 16;
+// Channels in and out of a block.
+struct BlockWidths {
+  int in = 0, out = 0;
+};
+BlockWidths WidthsOf(int block, const DiffusionStructure& structure);
+
+// Weights of a convolution: outputs x (3 inputs), the oldest frame first.
+struct DiffusionBlock {
+  DenseLayer first, second, skip, film;
+};
+struct DiffusionPool {
+  DenseLayer join;        // of the sums, one view after the other
+  DenseLayer query, key;  // attention alone
+};
+
+struct DiffusionNetwork {
+  DiffusionStructure structure;
+  JointScales scales;
+  DenseLayer first_static, second_static;
+  std::vector<DiffusionBlock> blocks;
+  std::vector<DiffusionPool> pools;  // of the blocks down and the middle; none without pooling
+  DenseLayer out, direct;
+};
+
+// How much person i (a row) sees of person j (a column), a matrix for each view; not of attention.
+std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places);
+
+// Sines and cosines of t at 32 frequencies.
+Eigen::VectorXf TimeFeatures(double t);
+
+// One group; what does not depend on t or x_t is computed once.
+class GroupDenoiser {
+ public:
+  GroupDenoiser(const DiffusionNetwork& network, GroupFeatures features);
+  // The estimate of x_0; both kMotionRows x (people * frames).
+  Eigen::MatrixXf Estimate(const Eigen::MatrixXf& noisy, double t) const;
+
+ private:
+  // channels x (people * frames)
+  struct Values {
+    Eigen::MatrixXf data;
+    int frames = 0;
+  };
+  // conditions: of FiLM, a column per person.
+  Values Block(int index, const Values& in, const Eigen::MatrixXf& conditions) const;
+  void Pool(int index, Values* values) const;
+  void Attend(const DiffusionPool& pool, const Values& values, Eigen::MatrixXf* seen) const;
+  Values Doubled(const Values& values) const;
+
+  const DiffusionNetwork& network_;
+  GroupFeatures features_;
+  int frames_;               // padded
+  Eigen::MatrixXf statics_;  // kStaticWidth x people
+  std::vector<Eigen::MatrixXf> views_;
+};
+
+void AddTensors(const std::string& name, const DiffusionNetwork& network, TensorList* tensors);
+DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure& structure,
+                               TensorReader* reader);
+
+}  // namespace pushid

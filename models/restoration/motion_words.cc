@@ -1,0 +1,131 @@
+// models: words of motion, and the nearest of them.
+#include "models/restoration/motion_words.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace pushid {
+namespace {
+
+constexpr double kLeastWay = 1e-7;   // m
+constexpr double kRounding = 1e-12;  // m^2, of the bound by means
+constexpr int kLast = -1;
+
+// Two joints that rest are alike, though they go nowhere.
+double Alike(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
+  const double a = std::max(u.norm(), kLeastWay), b = std::max(v.norm(), kLeastWay);
+  if (a == kLeastWay && b == kLeastWay) return 1.0;
+  return 0.5 * (u.dot(v) / (a * b) + 1.0) * std::min(a, b) / std::max(a, b);
+}
+
+template <typename Word>
+double Score(const Word& a, const Word& b) {
+  double sum = 0.0;
+  for (int t = 1; t < kWordFrames; ++t) {
+    const Eigen::VectorXd u = a.col(t) - a.col(t - 1), v = b.col(t) - b.col(t - 1);
+    for (int i = 0; i < kWordSize; i += 3) sum += Alike(u.segment<3>(i), v.segment<3>(i));
+  }
+  return sum / ((kWordFrames - 1) * static_cast<double>(kWordJoints.size()));
+}
+
+}  // namespace
+
+MotionWords::Word MotionWords::WordAt(const BodyMotion& motion, size_t begin) {
+  const Pose& first = motion[begin];
+  Eigen::Vector3d origin = 0.5 * (first.col(kRightHip) + first.col(kLeftHip));
+  origin.z() = 0.0;
+  const Eigen::Vector3d across = first.col(kLeftHip) - first.col(kRightHip);
+  const Eigen::Matrix3d turn = TurnAboutZ(-std::atan2(across.y(), across.x()));
+  Word word;
+  for (int t = 0; t < kWordFrames; ++t) {
+    for (size_t i = 0; i < kWordJoints.size(); ++i) {
+      word.block<3, 1>(3 * static_cast<int>(i), t) =
+          turn * (motion[begin + t].col(kWordJoints[i]) - origin);
+    }
+  }
+  return word;
+}
+
+MotionWords::MotionWords(const std::vector<BodyMotion>& motions) {
+  std::vector<Word> words;
+  std::vector<int> following;
+  for (const BodyMotion& motion : motions) {
+    for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
+      const bool is_last = t + kWordFrames == motion.size();
+      words.push_back(WordAt(motion, t));
+      following.push_back(is_last ? kLast : static_cast<int>(words.size()));
+    }
+  }
+  Mean centre = Mean::Zero();
+  std::vector<Mean> means;
+  for (const Word& word : words) means.push_back(word.rowwise().mean());
+  for (const Mean& mean : means) centre += mean / static_cast<double>(means.size());
+  Eigen::Matrix<double, kWordSize, kWordSize> spread;
+  spread.setZero();
+  for (const Mean& mean : means) spread += (mean - centre) * (mean - centre).transpose();
+  // Eigenvalues ascend: the widest axis is the last, and is to come first.
+  axes_ = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread)
+              .eigenvectors()
+              .rowwise()
+              .reverse()
+              .transpose();
+  for (Mean& mean : means) mean = axes_ * mean;
+  std::vector<int> order(words.size()), place(words.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&means](int a, int b) { return means[a][0] < means[b][0]; });
+  for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  for (const int i : order) {
+    words_.push_back(words[i]);
+    places_.push_back(means[i]);
+    next_.push_back(following[i] == kLast ? kLast : place[following[i]]);
+  }
+}
+
+int MotionWords::Nearest(const Word& word, int first) const {
+  const Mean at = axes_ * word.rowwise().mean();
+  int nearest = first;
+  double least = (words_[first] - word).squaredNorm();
+  const auto within = [&least](double squared_gap) {
+    return kWordFrames * squared_gap <= least + kRounding;
+  };
+  const auto look = [&](int i) {
+    double gap = 0.0;
+    for (int k = 0; k < kWordSize; ++k) {
+      const double d = places_[i][k] - at[k];
+      gap += d * d;
+      if (k % 4 == 3 && !within(gap)) return;
+    }
+    if (!within(gap)) return;
+    const double distance = (words_[i] - word).squaredNorm();
+    if (distance > least || (distance == least && i >= nearest)) return;
+    least = distance;
+    nearest = i;
+  };
+  const auto less = [](const Mean& mean, double value) { return mean[0] < value; };
+  const int middle = static_cast<int>(
+      std::lower_bound(places_.begin(), places_.end(), at[0], less) - places_.begin());
+  const auto near = [&](int i) { return within(std::pow(places_[i][0] - at[0], 2)); };
+  for (int i = middle; i < size() && near(i); ++i) look(i);
+  for (int i = middle - 1; i >= 0 && near(i); --i) look(i);
+  return nearest;
+}
+
+MotionWords::Similarity MotionWords::Compare(const BodyMotion& motion) const {
+  Similarity similarity;
+  int nearest = kLast;
+  for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
+    const Word word = WordAt(motion, t);
+    // The nearest of the word before, a frame on, is hardly ever far.
+    const int first = nearest == kLast || next_[nearest] == kLast ? 0 : next_[nearest];
+    nearest = Nearest(word, first);
+    similarity.sum += Score(word, words_[nearest]);
+    ++similarity.words;
+  }
+  return similarity;
+}
+
+}  // namespace pushid

@@ -1,0 +1,58 @@
+// models: how natural motions look: normalized directional motion similarity (NDMS, Tanke et al.,
+// "Intention-based long-term human motion anticipation", 3DV 2021; as SDM uses it).
+//
+// A word is 20 frames (at 60 Hz) of 17 joints, seen from the floor below the middle of the hip
+// joints at its first frame and turned to face one way. To every word of a motion belongs the
+// nearest of recorded ones, by the joints' places; its score is how alike both move, the mean over
+// 19 differences of frames and 17 joints of
+//
+//   (cos(u, v) + 1) / 2 * min(|u|, |v|) / max(|u|, |v|),   |.| at least 1e-7 m
+//
+// The nearest are exact: sum over frames of |a - b|^2 >= frames * |mean a - mean b|^2, so that
+// means rule most words out, and of these the principal axes of the recorded means come first.
+#pragma once
+
+#include <vector>
+
+#include "models/restoration/body.h"
+
+namespace pushid {
+
+inline constexpr int kWordFrames = 20;
+inline constexpr double kWordRate = 60.0;  // Hz
+inline constexpr std::array<int, 17> kWordJoints = {1,  2,  3,  4,  5,  7,  8,  9, 11,
+                                                    12, 13, 15, 16, 17, 19, 20, 21};
+inline constexpr int kWordSize = 3 * static_cast<int>(kWordJoints.size());
+
+class MotionWords {
+ public:
+  using Word = Eigen::Matrix<double, kWordSize, kWordFrames>;
+
+  // Every word of the motions; shorter ones have none.
+  explicit MotionWords(const std::vector<BodyMotion>& motions);
+
+  int size() const { return static_cast<int>(words_.size()); }
+  const Word& word(int i) const { return words_[i]; }
+  // Of `motion` from a frame on.
+  static Word WordAt(const BodyMotion& motion, size_t begin);
+  // first: any word, at best one that is near.
+  int Nearest(const Word& word, int first = 0) const;
+
+  // Sum over the words of `motion` of their scores, and how many they are. At least one recorded
+  // word is needed.
+  struct Similarity {
+    double sum = 0.0;
+    int words = 0;
+  };
+  Similarity Compare(const BodyMotion& motion) const;
+
+ private:
+  using Mean = Eigen::Matrix<double, kWordSize, 1>;
+
+  std::vector<Word> words_;  // by their place on the first axis
+  std::vector<int> next_;    // the word that begins a frame later
+  Eigen::Matrix<double, kWordSize, kWordSize> axes_;
+  std::vector<Mean> places_;  // of means, on the axes
+};
+
+}  // namespace pushid

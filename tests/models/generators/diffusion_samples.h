@@ -1,0 +1,69 @@
+// Groups who are pushed, and diffusion networks of random weights, for tests.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "models/generators/diffusion_generator.h"
+#include "tests/models/body_samples.h"
+
+namespace pushid {
+
+// `people` in a line 0.6 m apart; the first is pushed for 6 frames, and each goes forwards, later
+// than the one behind, arms swinging.
+inline std::vector<ObservedMotion> PushedGroup(int people, int frames, float push = 4.0f) {
+  std::vector<ObservedMotion> group(people);
+  for (int n = 0; n < people; ++n) {
+    ObservedMotion& person = group[n];
+    person.place = {0.6f * static_cast<float>(n), 0.05f * static_cast<float>(n % 3)};
+    person.mass = 70.0f + 2.0f * static_cast<float>(n);
+    person.frames.resize(kMotionRows, frames);
+    person.controls = Eigen::MatrixXf::Zero(kPushRows, frames);
+    for (int t = 0; t < frames; ++t) {
+      const double since = std::max(0, t - 4 * n) / 60.0;
+      Pose pose = Placed(StandingPose(), 0.0, {-0.02 + 0.2 * push * since * since, 0, 0});
+      pose.col(kRightWrist).x() += 0.1 * std::sin(3.0 * since);
+      person.frames.col(t) = pose.reshaped().cast<float>();
+    }
+    if (n == 0) person.controls.topLeftCorner(1, std::min(6, frames)).setConstant(push);
+  }
+  return group;
+}
+
+inline DiffusionNetwork RandomDiffusion(uint64_t seed, const DiffusionStructure& structure = {}) {
+  Random random(seed);
+  DiffusionNetwork network;
+  network.structure = structure;
+  network.scales = JointScales::Constant(0.1f);
+  network.first_static = RandomLayer(kStaticRows, kStaticWidth, &random);
+  network.second_static = RandomLayer(kStaticWidth, kStaticWidth, &random);
+  for (int b = 0; b < kDiffusionBlocks; ++b) {
+    const BlockWidths w = WidthsOf(b, structure);
+    network.blocks.push_back({RandomLayer(3 * w.in, w.out, &random),
+                              RandomLayer(3 * w.out, w.out, &random),
+                              RandomLayer(w.in, w.out, &random),
+                              RandomLayer(kTimeWidth + kStaticWidth, 2 * w.out, &random)});
+  }
+  for (int p = 0; p <= kDiffusionLevels && structure.Pools(); ++p) {
+    const int width = WidthsOf(p, structure).out;
+    DiffusionPool pool{RandomLayer(structure.NumViews() * width, width, &random), {}, {}};
+    if (structure.pooling == SocialPooling::kAttention) {
+      pool.query = RandomLayer(width, kAttentionWidth, &random);
+      pool.key = RandomLayer(width, kAttentionWidth, &random);
+    }
+    network.pools.push_back(pool);
+  }
+  network.out = RandomLayer(3 * kDownWidths[0], kMotionRows, &random);
+  network.direct = RandomLayer(structure.NumInputs(), kMotionRows, &random);
+  return network;
+}
+
+inline std::function<NormalSource()> SeededNoise(uint64_t seed = 1) {
+  return [seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+}
+
+}  // namespace pushid

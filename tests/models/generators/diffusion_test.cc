@@ -1,0 +1,275 @@
+// The diffusion network without its training: schedule, features and back, who sees whom, what
+// later frames may change, samples that are finished.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/models/generators/diffusion_samples.h"
+
+namespace pushid {
+namespace {
+
+TEST(DiffusionScheduleTest, FromAllSignalToNone) {
+  EXPECT_EQ(SignalShare(0.0), 1.0);
+  EXPECT_LT(SignalShare(kDiffusionTime), 1e-12);
+  // By hand, t = 500: cos^2(0.508 / 1.008 pi/2) / cos^2(0.008 / 1.008 pi/2).
+  EXPECT_NEAR(SignalShare(500.0), 0.493844, 1e-6);
+  for (int t = 1; t <= kDiffusionTime; ++t) EXPECT_LT(SignalShare(t), SignalShare(t - 1));
+}
+
+// Whatever the way back, x_u of an exact estimate has the share of signal and noise that the way
+// there gives it, and the last step is the estimate itself.
+TEST(DiffusionScheduleTest, StepsBackKeepTheShares) {
+  for (const auto& row : Names(DiffusionSampler{})) {
+    for (const auto& [t, u] : {std::pair(1000.0, 960.0), {500.0, 460.0}, {80.0, 40.0}}) {
+      const double a = SignalShare(t), b = SignalShare(u);
+      const BackwardStep step = StepBack(row.value, t, u);
+      EXPECT_NEAR(step.estimate + step.noisy * std::sqrt(a), std::sqrt(b), 1e-9) << row.name;
+      EXPECT_NEAR(step.noisy * step.noisy * (1.0 - a) + step.noise * step.noise, 1.0 - b, 1e-9)
+          << row.name << " " << t;
+    }
+    const BackwardStep last = StepBack(row.value, 40.0, 0.0);
+    EXPECT_EQ(last.estimate, 1.0);
+    EXPECT_EQ(last.noisy, 0.0);
+    EXPECT_EQ(last.noise, 0.0);
+  }
+}
+
+TEST(DiffusionFeaturesTest, MotionsComeBack) {
+  std::vector<ObservedMotion> group = PushedGroup(3, 40);
+  const JointScales scales = JointScalesOf({group});
+  EXPECT_GE(scales.minCoeff(), 0.02f);
+  EXPECT_GE(scales[kBodyHip], 0.05f);
+  for (ObservedMotion& person : group) {
+    person.pendulum = person.frames.topRows(3).array() + 0.03f;
+    person.pendulum.row(0) *= 1.1f;
+    for (const bool pendulum : {false, true}) {
+      const Eigen::MatrixXf rows = MotionRows(person, scales, pendulum);
+      EXPECT_EQ(rows.col(0).norm(), 0.0f) << "everything counts from frame 0";
+      const Trajectories back = FromMotionRows(rows, person, scales, pendulum);
+      EXPECT_LT((back - person.frames).cwiseAbs().maxCoeff(), 1e-5f);
+    }
+  }
+}
+
+TEST(DiffusionFeaturesTest, EverybodyIsToldOfThePushAndWhereItComesFrom) {
+  const std::vector<ObservedMotion> group = PushedGroup(3, 20);
+  const GroupFeatures features =
+      FeaturesOf(group, JointScales::Constant(0.1f), 2, 20, 1.0 / 60.0, false);
+  for (int n = 0; n < 3; ++n) {
+    const auto given = features.given.middleCols(20 * n, 20);
+    EXPECT_EQ(given(kMotionRows, 1), 1.0f);
+    EXPECT_EQ(given(kMotionRows, 2), 0.0f);
+    EXPECT_EQ(given.topRightCorner(kMotionRows, 18).norm(), 0.0f) << "what was not seen";
+    EXPECT_NEAR(given(kMotionRows + 1, 3), 0.4f, 1e-6f);  // 4 N/kg over 10
+    const auto statics = features.statics.col(n);
+    const int place = kMotionRows - 3;
+    EXPECT_NEAR(statics[place], 0.6f * static_cast<float>(n), 1e-6f);
+    EXPECT_EQ(statics[place + 4], n == 0 ? 1.0f : 0.0f);
+    EXPECT_NEAR(statics[place + 5], 0.4f, 1e-6f);  // 4 N/kg for 6/60 s
+    EXPECT_NEAR(statics[place + 9], 0.4f, 1e-6f);  // 6 of 15 frames
+  }
+}
+
+// Twice in the mirror, there and back again, and a push that turns along.
+TEST(DiffusionFeaturesTest, ChangesAreUndone) {
+  std::vector<ObservedMotion> group = PushedGroup(2, 10);
+  group[0].controls.row(2).setConstant(1.0f);  // leaning forwards
+  const auto same = [&](const std::vector<ObservedMotion>& other, float tolerance) {
+    for (size_t n = 0; n < group.size(); ++n) {
+      EXPECT_LT((other[n].frames - group[n].frames).norm(), tolerance);
+      EXPECT_LT((other[n].controls - group[n].controls).norm(), tolerance);
+      EXPECT_LT((other[n].place - group[n].place).norm(), tolerance);
+    }
+  };
+  same(Changed(Changed(group, {true, 0.0, 1.0}), {true, 0.0, 1.0}), 1e-6f);
+  same(Changed(Changed(group, {false, 0.3, 1.25}), {false, -0.3, 0.8}), 1e-4f);
+  // A quarter to the left: pushed to +y, and leaning to +y is a phi below zero.
+  const auto turned = Changed(group, {false, M_PI_2, 1.0});
+  EXPECT_NEAR(turned[0].controls(1, 0), 4.0f, 1e-5f);
+  EXPECT_NEAR(turned[0].controls(3, 0), -1.0f, 1e-5f);
+  // In the mirror the left wrist is the right one.
+  const auto mirrored = Changed(group, {true, 0.0, 1.0});
+  EXPECT_EQ(mirrored[0].frames(3 * kLeftWrist + 1, 5), -group[0].frames(3 * kRightWrist + 1, 5));
+}
+
+TEST(PoolingWeightsTest, NearPeopleCountAndFarOnesFade) {
+  Eigen::Matrix2Xf places(2, 3);
+  places << 0.0f, 0.5f, 9.0f, 0.0f, 0.0f, 0.0f;
+  const auto local = PoolingWeights(SocialPooling::kLocal, places);
+  ASSERT_EQ(local.size(), 2u);
+  EXPECT_GT(local[0](0, 1), 0.8f) << "ahead of the first stands the second";
+  EXPECT_LT(local[1](0, 1), 0.1f);
+  EXPECT_GT(local[1](1, 0), 0.8f);
+  EXPECT_LT(local[0].row(2).sum() + local[1].row(2).sum(), 1e-6f) << "9 m off one is alone";
+  for (const Eigen::MatrixXf& view : local) EXPECT_EQ(view.diagonal().norm(), 0.0f);
+  const auto mean = PoolingWeights(SocialPooling::kMean, places);
+  EXPECT_EQ(mean[0](2, 0), 0.5f);
+  EXPECT_EQ(PoolingWeights(SocialPooling::kMean, places.leftCols(1))[0](0, 0), 0.0f);
+  EXPECT_TRUE(PoolingWeights(SocialPooling::kNone, places).empty());
+}
+
+Eigen::MatrixXf Noise(Eigen::Index columns) {
+  Random random(5);
+  return RandomMatrix(kMotionRows, static_cast<int>(columns), 1.0, &random);
+}
+
+class DenoiserTest : public ::testing::TestWithParam<SocialPooling> {
+ protected:
+  DiffusionNetwork Network() const { return RandomDiffusion(3, {GetParam(), false}); }
+  static GroupFeatures Features(const std::vector<ObservedMotion>& group, int frames) {
+    return FeaturesOf(group, JointScales::Constant(0.1f), 1, frames, 1.0 / 60.0, false);
+  }
+};
+
+// A motion may go on past the frames of the training, and be cut anywhere.
+TEST_P(DenoiserTest, LaterFramesChangeNoEarlierOnes) {
+  const DiffusionNetwork network = Network();
+  const std::vector<ObservedMotion> group = PushedGroup(1, 90);
+  const Eigen::MatrixXf noise = Noise(90);
+  const Eigen::MatrixXf whole = GroupDenoiser(network, Features(group, 90)).Estimate(noise, 300);
+  for (const int frames : {16, 33, 70}) {
+    // The statics hold the whole push, which is over by then.
+    const Eigen::MatrixXf part =
+        GroupDenoiser(network, Features(group, frames)).Estimate(noise.leftCols(frames), 300);
+    EXPECT_LT((part - whole.leftCols(frames)).cwiseAbs().maxCoeff(), 1e-4f) << frames;
+  }
+}
+
+TEST_P(DenoiserTest, TheOrderOfPeopleMakesNoDifference) {
+  const DiffusionNetwork network = Network();
+  for (const int people : {1, 2, 5, 13}) {
+    const std::vector<ObservedMotion> group = PushedGroup(people, 40);
+    std::vector<ObservedMotion> other(group.rbegin(), group.rend());
+    const Eigen::MatrixXf noise = Noise(40 * people);
+    Eigen::MatrixXf turned(noise.rows(), noise.cols());
+    for (int n = 0; n < people; ++n) {
+      turned.middleCols(40 * n, 40) = noise.middleCols(40 * (people - 1 - n), 40);
+    }
+    const Eigen::MatrixXf a = GroupDenoiser(network, Features(group, 40)).Estimate(noise, 700);
+    const Eigen::MatrixXf b = GroupDenoiser(network, Features(other, 40)).Estimate(turned, 700);
+    for (int n = 0; n < people; ++n) {
+      EXPECT_LT((a.middleCols(40 * n, 40) - b.middleCols(40 * (people - 1 - n), 40))
+                    .cwiseAbs()
+                    .maxCoeff(),
+                1e-4f)
+          << people << " " << n;
+    }
+  }
+}
+
+TEST_P(DenoiserTest, PeopleSeeEachOtherAsTheyShould) {
+  const DiffusionNetwork network = Network();
+  std::vector<ObservedMotion> group = PushedGroup(3, 32);
+  group[2].place.x() = 30.0f;
+  Eigen::MatrixXf noise = Noise(3 * 32);
+  const Eigen::MatrixXf before = GroupDenoiser(network, Features(group, 32)).Estimate(noise, 700);
+  noise.middleCols(32, 32).array() += 1.0f;  // of the second
+  const Eigen::MatrixXf after = GroupDenoiser(network, Features(group, 32)).Estimate(noise, 700);
+  const auto changed = [&](int n) {
+    return (after - before).middleCols(32 * n, 32).cwiseAbs().maxCoeff();
+  };
+  EXPECT_GT(changed(1), 1e-2f);
+  if (GetParam() == SocialPooling::kNone) {
+    EXPECT_EQ(changed(0), 0.0f);
+  } else {
+    EXPECT_GT(changed(0), 1e-3f);
+  }
+  const bool sees_far =
+      GetParam() == SocialPooling::kMean || GetParam() == SocialPooling::kAttention;
+  EXPECT_EQ(changed(2) > 1e-5f, sees_far);
+}
+
+INSTANTIATE_TEST_SUITE_P(Poolings, DenoiserTest,
+                         ::testing::Values(SocialPooling::kLocal, SocialPooling::kMean,
+                                           SocialPooling::kAttention, SocialPooling::kNone));
+
+class DiffusionGeneratorTest : public ::testing::Test {
+ protected:
+  DiffusionGeneratorTest() {
+    layout_.names.resize(kBodyJoints);
+    options_.averaged = 2;
+    options_.steps = 3;
+  }
+  DiffusionGenerator Generator(int members = 1) const {
+    std::vector<DiffusionNetwork> networks;
+    for (int m = 0; m < members; ++m) {
+      networks.push_back(RandomDiffusion(static_cast<uint64_t>(m) + 1));
+      networks.back().scales.setConstant(0.02f);
+    }
+    return DiffusionGenerator(layout_, networks, 1.0 / 60.0, options_, SeededNoise());
+  }
+  static std::vector<ObservedMotion> Seen(int people, int observed) {
+    std::vector<ObservedMotion> group = PushedGroup(people, 40);
+    for (ObservedMotion& person : group) {
+      person.frames = Trajectories(person.frames.leftCols(observed));
+    }
+    return group;
+  }
+  ParticleLayout layout_;
+  DiffusionGeneratorOptions options_;
+};
+
+TEST_F(DiffusionGeneratorTest, ForecastsRepeatThemselvesInAnyOrder) {
+  const DiffusionGenerator generator = Generator(2);
+  const auto forecast = generator.Forecast(Seen(4, 5), 20);
+  ASSERT_EQ(forecast.size(), 4u);
+  EXPECT_EQ(forecast[0].cols(), 20);
+  const auto again = generator.Forecast(Seen(4, 5), 20);
+  std::vector<ObservedMotion> turned = Seen(4, 5);
+  std::reverse(turned.begin(), turned.end());
+  const auto reversed = generator.Forecast(turned, 20);
+  for (size_t n = 0; n < 4; ++n) {
+    EXPECT_EQ(forecast[n], again[n]);
+    EXPECT_LT((forecast[n] - reversed[3 - n]).cwiseAbs().maxCoeff(), 1e-5f);
+  }
+}
+
+TEST_F(DiffusionGeneratorTest, TheSeamFades) {
+  const std::vector<ObservedMotion> people = Seen(2, 12);
+  const auto jump = [&people](const DiffusionGenerator& generator) {
+    return (generator.Forecast(people, 25)[0].col(0) - people[0].frames.col(11)).norm();
+  };
+  options_.postprocess = {true, 20, false, false};
+  const float faded = jump(Generator());
+  options_.postprocess.fade_residual = false;
+  EXPECT_LT(faded, 0.7f * jump(Generator()));
+}
+
+TEST_F(DiffusionGeneratorTest, BonesHold) {
+  for (const int observed : {1, 12}) {
+    const std::vector<ObservedMotion> people = Seen(2, observed);
+    for (const Trajectories& motion :
+         {Generator().Forecast(people, 25)[0],
+          Generator().Sample(people, 25, 1, SeededNoise()())[0][0].motion}) {
+      const Pose first = people[0].frames.col(0).cast<double>().reshaped(3, kBodyJoints);
+      for (const int t : {0, 10, 24}) {
+        const Pose pose = motion.col(t).cast<double>().reshaped(3, kBodyJoints);
+        EXPECT_LT((BoneLengths(pose) - BoneLengths(first)).cwiseAbs().maxCoeff(), 1e-4);
+      }
+    }
+  }
+}
+
+TEST_F(DiffusionGeneratorTest, ABlendGoesSomeOfTheWayToThePendulum) {
+  options_.postprocess = {false, 0, false, false};
+  std::vector<ObservedMotion> people = Seen(2, 1);
+  const auto alone = Generator().Forecast(people, 20);
+  for (ObservedMotion& person : people) person.pendulum = Eigen::MatrixXf::Constant(3, 21, 2.0f);
+  EXPECT_EQ(Generator().Forecast(people, 20)[1], alone[1]);
+  options_.blend = 0.25;
+  const Trajectories blended = Generator().Forecast(people, 20)[1];
+  const Eigen::Vector3f hip = alone[1].col(7).head<3>(), moved = blended.col(7).head<3>();
+  EXPECT_LT((moved - hip - 0.25f * (Eigen::Vector3f::Constant(2.0f) - hip)).norm(), 1e-5f);
+  const Eigen::Vector3f head = alone[1].col(7).segment<3>(3 * kBodyHead);
+  EXPECT_LT((blended.col(7).segment<3>(3 * kBodyHead) - moved - (head - hip)).norm(), 1e-5f);
+}
+
+TEST_F(DiffusionGeneratorTest, NobodyHasNoFuture) {
+  EXPECT_TRUE(Generator().Forecast({}, 10).empty());
+  EXPECT_TRUE(Generator().Sample({}, 10, 3, SeededNoise()()).empty());
+  EXPECT_EQ(Generator().Sample(Seen(1, 1), 10, 3, SeededNoise()())[0].size(), 3u);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,63 @@
+// Words of motion: scores by hand, and the exact nearest.
+#include "models/restoration/motion_words.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/models/body_samples.h"
+
+namespace pushid {
+namespace {
+
+BodyMotion Gliding(double speed, int frames, double turn = 0.0) {
+  BodyMotion motion;
+  for (int t = 0; t < frames; ++t) {
+    motion.push_back(
+        Placed(StandingPose(), turn, TurnAboutZ(turn) * Eigen::Vector3d(speed * t, 0, 0)));
+  }
+  return motion;
+}
+
+TEST(MotionWordsTest, ScoresByHand) {
+  const MotionWords words({Gliding(0.02, 24)});
+  EXPECT_EQ(words.size(), 5);
+  const auto score = [&words](const BodyMotion& motion) {
+    const MotionWords::Similarity similarity = words.Compare(motion);
+    EXPECT_EQ(similarity.words, static_cast<int>(motion.size()) - kWordFrames + 1);
+    return similarity.sum / similarity.words;
+  };
+  EXPECT_NEAR(score(Gliding(0.02, 22, 0.7)), 1.0, 1e-9) << "turned and elsewhere it is the same";
+  EXPECT_NEAR(score(Gliding(0.01, 20)), 0.5, 1e-9) << "half as fast";
+  EXPECT_NEAR(score(Gliding(-0.02, 20)), 0.0, 1e-9) << "backwards";
+  EXPECT_LT(score(Gliding(0.0, 20)), 1e-5) << "not at all";
+  EXPECT_EQ(words.Compare(Gliding(0.02, 19)).words, 0);
+}
+
+// The search by means and axes against looking at every word.
+TEST(MotionWordsTest, TheNearestIsExact) {
+  Random random(3);
+  const auto wobble = [&random]() {
+    BodyMotion motion;
+    Pose pose = StandingPose(), speed = Pose::Zero();
+    for (int t = 0; t < 60; ++t) {
+      for (double& x : speed.reshaped()) x = 0.9 * x + 0.004 * random.Normal();
+      pose += speed;
+      motion.push_back(pose);
+    }
+    return motion;
+  };
+  const std::vector<BodyMotion> recorded = {wobble(), wobble(), wobble(), wobble()};
+  const MotionWords all(recorded);
+  for (int k = 0; k < 5; ++k) {
+    const MotionWords::Word word = MotionWords::WordAt(wobble(), 30);
+    double least = 1e9;
+    for (int i = 0; i < all.size(); ++i) {
+      least = std::min(least, (all.word(i) - word).squaredNorm());
+    }
+    for (const int first : {0, 17, all.size() - 1}) {
+      EXPECT_EQ((all.word(all.Nearest(word, first)) - word).squaredNorm(), least);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,94 @@
+// The trainer of the diffusion network: it learns, repeats itself, goes on where it was broken off,
+// and what it returns is the network that LibTorch trained, to 1e-5.
+#include "models/generators/diffusion_trainer.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/models/generators/diffusion_samples.h"
+
+namespace pushid {
+namespace {
+
+std::vector<ObservedGroup> Groups() {
+  std::vector<ObservedGroup> groups;
+  for (int i = 0; i < 6; ++i) {
+    groups.push_back(PushedGroup(2 + i % 2, 36 + i, 2.0f + static_cast<float>(i)));
+  }
+  groups.push_back(PushedGroup(1, 40));
+  return groups;
+}
+
+DiffusionTrainingOptions Quick(int steps) {
+  DiffusionTrainingOptions options;
+  options.steps = steps;
+  options.groups = 2;
+  options.people_alone = 2;
+  options.warm_up = 5;
+  return options;
+}
+
+void ExpectSame(const DiffusionNetwork& a, const DiffusionNetwork& b) {
+  TensorList of_a, of_b;
+  AddTensors("n", a, &of_a);
+  AddTensors("n", b, &of_b);
+  ASSERT_EQ(of_a.size(), of_b.size());
+  for (size_t i = 0; i < of_a.size(); ++i) {
+    EXPECT_TRUE(of_a[i].values == of_b[i].values) << of_a[i].name;
+  }
+}
+
+TEST(DiffusionTrainerTest, Learns) {
+  DiffusionTrainer trainer(Groups(), Groups(), Quick(100));
+  const TrainingPoint first = trainer.RunRound();
+  TrainingPoint last = first;
+  while (!trainer.Done()) last = trainer.RunRound();
+  EXPECT_EQ(last.epoch, 100);
+  EXPECT_LT(last.validation_loss, 0.9 * first.validation_loss);
+}
+
+TEST(DiffusionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
+  const DiffusionTrainingOptions options = Quick(2 * kDiffusionRound);
+  const auto trained = [&options] {
+    DiffusionTrainer trainer(Groups(), Groups(), options);
+    while (!trainer.Done()) trainer.RunRound();
+    return trainer.Network();
+  };
+  const DiffusionNetwork one = trained();
+  ExpectSame(one, trained());
+  DiffusionTrainer broken(Groups(), Groups(), options);
+  broken.RunRound();
+  const std::string state = broken.State();
+  DiffusionTrainer resumed(Groups(), Groups(), options);
+  ASSERT_TRUE(resumed.Resume(state));
+  while (!resumed.Done()) resumed.RunRound();
+  ExpectSame(one, resumed.Network());
+  EXPECT_FALSE(resumed.Resume("no state"));
+}
+
+TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
+  for (const auto& row : Names(SocialPooling{})) {
+    for (const bool pendulum : {false, true}) {
+      DiffusionTrainingOptions options = Quick(10);
+      options.structure = {row.value, pendulum};
+      std::vector<ObservedGroup> groups = Groups();
+      for (ObservedGroup& group : groups) {
+        for (ObservedMotion& person : group) {
+          if (pendulum) person.pendulum = 0.9f * person.frames.topRows(3);
+        }
+      }
+      DiffusionTrainer trainer(groups, {}, options);
+      while (!trainer.Done()) trainer.RunRound();
+      const DiffusionNetwork network = trainer.Network();
+      const GroupFeatures features =
+          FeaturesOf(groups[1], network.scales, 3, 37, options.dt, pendulum);
+      Random random(2);
+      const Eigen::MatrixXf noisy = RandomMatrix(kMotionRows, 37 * features.people, 1.0, &random);
+      const Eigen::MatrixXf torch = trainer.Estimate(features, noisy, 440.0);
+      const Eigen::MatrixXf eigen = GroupDenoiser(network, features).Estimate(noisy, 440.0);
+      EXPECT_LT((torch - eigen).cwiseAbs().maxCoeff(), 1e-5f) << row.name << " " << pendulum;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pushid
