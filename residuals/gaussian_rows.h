@@ -3,9 +3,9 @@
 //   rows: L^-1 v, and sqrt(2 (log L_ii + c_i)), half of whose squares is log L_ii + c_i.
 // Any shift c gives the same optimum. With c_i = 1/2 - log L_ii at the point where a problem is
 // built, J'J there is the Fisher information, in expectation, so that Gauss-Newton is Fisher
-// scoring and a covariance from J'J is right; but log L_ii may fall by 1/2 only before the rows end.
-// Far from the optimum a larger shift lets it fall further, at a curvature that is too low; a solve
-// goes on from a problem built anew. Eq. 5 of Lyu et al., ACM MM 2021, is this density.
+// scoring and a covariance from J'J is right; but log L_ii may fall by 1/2 only before the rows
+// end. Far from the optimum a larger shift lets it fall further, at a curvature that is too low; a
+// solve goes on from a problem built anew. Eq. 5 of Lyu et al., ACM MM 2021, is this density.
 #pragma once
 
 #include <cmath>
