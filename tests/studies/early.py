@@ -1,6 +1,7 @@
 """What the first frames of a new push tell (--observed).
 
 single      errors of held-out recordings of single people after 1, 12, 20 and 30 frames (ident/prediction/README.md); 2 minutes
+steps       the same by gains of single steps (--likelihood=innovation), 4 folds once (ident/prediction/README.md); a minute
 groups      the same of groups, 5 folds (ident/prediction/README.md); 15 minutes
 population  how recordings of single people differ (ident/prediction/README.md); seconds
 
@@ -43,6 +44,11 @@ def single():
     return studies.table(HEADER, rows_of("single", FRAMES))
 
 
+def steps():
+    rows = rows_of("single", FRAMES[1:], "--likelihood=innovation", "--folds=4", "--repeats=1")
+    return studies.table(HEADER, [row for row in rows if row[1] in ("forecast", "re-anchored")])
+
+
 def groups():
     return studies.table(HEADER, rows_of("groups", GROUP_FRAMES, "--folds=5", "--repeats=1"))
 
@@ -66,4 +72,4 @@ def population():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"single": single, "groups": groups, "population": population})
+    studies.main(__file__, {"single": single, "steps": steps, "groups": groups, "population": population})
