@@ -25,6 +25,7 @@ ROWS = [
     ("the same by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
     ("the same by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
     ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
+    ("the same 32 by the innovation likelihood, `tail`", ["SolveByInnovations"]),
     ("fit with uncertainty and behaviour, `tail` / `ldp`", ["WholeFit/tail", "WholeFit/ldp"]),
     ("Jacobian of the 49 recordings of groups: contact / with linear self forces / and drive",
      [f"GroupJacobian/{c}" for c in ("contact", "linear_and_contact", "linear_contact_drive")]),
