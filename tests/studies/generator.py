@@ -100,9 +100,11 @@ def pushes():
     rows.append(cells("the first pose held", json["baselines"]["static"]))
     rows.append(cells("constant velocity after the push", json["baselines"]["constant_velocity"]))
     model = studies.fit("single").path
+
     def restored(*flags):
         return studies.on_recordings("pushid-train-restoration", "single", f"--model={model}", "--crossvalidate=4",
                                      *flags).json
+
     seen, simlpe, plain = restored("--observed=20"), restored("--kind=simlpe"), restored()
     rows.append(cells("physics and `window` bodies, 20 frames observed", seen))
     rows.append(cells("siMLPe, 12 frames observed", simlpe["baselines"]["simlpe"]))
