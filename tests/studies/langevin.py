@@ -4,7 +4,7 @@ known      planted noise and gains, 50 studies: how often 95 % intervals of the 
 likelihood the 32 recordings of single people by each likelihood, with the time it took; seconds
 horizons   the same parameters wanted by one step, by 8 to 64 frames, and by all; a minute
 noise      diagonal against full noise, constant or growing, on held-out recordings; 10 minutes
-futures    drawn futures of single people and groups, held out, beside the bands; 20 minutes
+futures    drawn futures of single people, held out; 6 minutes
 
 Times are those of one core.
 """
@@ -115,7 +115,6 @@ def noise():
 
 def futures():
     rows = drawn("single", ["trajectory", "innovation"], [("diagonal", "diagonal")], "--folds=4", "--repeats=5")
-    rows += drawn("groups", ["trajectory"], [("diagonal", "diagonal")], "--folds=5", "--repeats=1")
     return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
 
 
