@@ -58,7 +58,8 @@ Result<std::vector<Fold>> InterleavedFolds(const std::vector<PendulumRecording>&
   }
   if (folds[1].held_out.empty()) {
     return Error{
-        "--scheme=interleaved takes every so-manieth recording of a setting, and here no "
+        "--scheme=interleaved deals the recordings of a setting out to the folds in turn, and here "
+        "no "
         "setting has two; --scheme=stratified makes folds of any recordings"};
   }
   while (folds.back().held_out.empty()) folds.pop_back();

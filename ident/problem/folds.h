@@ -1,7 +1,7 @@
 // ident: which recordings are held out together.
 //
 // Stratified by setting, strength and subject, so that every fold holds out its share of each,
-// repeated with new shuffles; every so-manieth recording of a setting, in the manifest's order,
+// repeated with new shuffles; the recordings of a setting dealt out in the manifest's order,
 // which other programs can repeat; leave-one-subject-out and leave-one-setting-out; the strong
 // pushes held out together.
 #pragma once

@@ -48,9 +48,9 @@ void SetFlat(const VectorXd& flat, FitPoint* point) {
   point->SetFlat(std::vector<double>(flat.data(), flat.data() + flat.size()));
 }
 
-// The cost at the origin. The solver compares changes with the cost itself, and a negative log
-// likelihood may be negative: counted from here it never is.
-constexpr double kLevel = 1e6;
+// The cost at the origin, for every row. The solver compares changes with the cost itself, and a
+// negative log likelihood may be negative: counted from here it is not, as no row falls so far.
+constexpr double kLevelOfRow = 1e3;
 constexpr double kSameCost = 1e-4;  // nats: changes below end the search
 
 // The exact cost: half the squares of rows that do not end, but for a constant.
@@ -66,9 +66,11 @@ class WhitenedCost : public ceres::FirstOrderFunction {
     built_ = problem_.Build(&point_, 0);
     double at_origin = 0.0;
     built_.problem->Evaluate({}, &at_origin, nullptr, nullptr, nullptr);
-    shift_ = kLevel - at_origin;
+    level_ = kLevelOfRow * built_.problem->NumResiduals();
+    shift_ = level_ - at_origin;
   }
 
+  double level() const { return level_; }
   // What a cost of the solver's is above the negative log likelihood.
   double above() const { return shift_ + built_.offset; }
 
@@ -101,7 +103,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
   VectorXd origin_;
   MatrixXd root_;
   Bounds bounds_;
-  double shift_ = 0.0;
+  double level_ = 0.0, shift_ = 0.0;
   mutable FitProblem::Built built_;
 };
 
@@ -157,7 +159,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = problem.options().max_iterations;
-  options.function_tolerance = kSameCost / kLevel;
+  options.function_tolerance = kSameCost / cost->level();
   options.logging_type = ceres::SILENT;
   std::vector<double> z(moving.size(), 0.0);
   ceres::GradientProblemSolver::Summary summary;
