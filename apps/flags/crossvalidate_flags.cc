@@ -14,7 +14,7 @@ const pushid::CrossvalidateFlags kDefaults;
 
 DEFINE_string(scheme, pushid::NameOf(kDefaults.scheme),
               "what is held out: stratified (folds by setting, strength and subject), "
-              "interleaved (every so-manieth of a setting), "
+              "interleaved (a setting dealt out in turn), "
               "subject or setting (one at a time), strong (all strong pushes)");
 DEFINE_int32(folds, kDefaults.folds, "folds of the stratified and the interleaved scheme");
 DEFINE_int32(repeats, kDefaults.repeats, "repeats of the stratified scheme, each with new folds");

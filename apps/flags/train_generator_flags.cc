@@ -43,7 +43,7 @@ DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "recordings held out; 0: off");
 DEFINE_string(scheme, pushid::NameOf(kFlags.scheme),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
-              "(every so-manieth of a setting)");
+              "(a setting dealt out in turn)");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
               "the recordings learnt from, for --pendulum_input and --blend");
