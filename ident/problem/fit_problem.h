@@ -95,13 +95,18 @@ class FitProblem {
     std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
-    // The cost less this is the negative log likelihood, up to a constant that no point changes
-    // (residuals/gaussian_rows.h): only so do costs of problems built at different points compare.
-    double offset = 0.0;
-    std::map<int, double> offset_of;  // by recording; empty for rollouts
+    // By recording: its cost less this is its negative log likelihood, up to a constant that no
+    // point changes (residuals/gaussian_rows.h): only so do costs of problems built at different
+    // points compare. Empty for rollouts.
+    std::map<int, double> offsets;
     double OffsetOf(int recording) const {
-      const auto found = offset_of.find(recording);
-      return found == offset_of.end() ? 0.0 : found->second;
+      const auto found = offsets.find(recording);
+      return found == offsets.end() ? 0.0 : found->second;
+    }
+    double Offset() const {
+      double sum = 0.0;
+      for (const auto& [recording, offset] : offsets) sum += offset;
+      return sum;
     }
     int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
 

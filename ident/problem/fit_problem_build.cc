@@ -196,8 +196,7 @@ void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
       built->shortened.push_back({i, residual->status()});
       continue;
     }
-    built->offset += Count(i) * residual->offset();
-    built->offset_of[i] = Count(i) * residual->offset();
+    built->offsets[i] = Count(i) * residual->offset();
     built->AddRollout(std::move(residual), blocks, i);
   }
 }

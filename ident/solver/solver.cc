@@ -74,11 +74,11 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
   SolveStage stage;
   stage.horizon = horizon;
   stage.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  stage.initial_cost = summary.initial_cost - built->offset;
-  stage.final_cost = summary.final_cost - built->offset;
+  stage.initial_cost = summary.initial_cost - built->Offset();
+  stage.final_cost = summary.final_cost - built->Offset();
   stage.converged = summary.termination_type == ceres::CONVERGENCE;
   for (const ceres::IterationSummary& i : summary.iterations) {
-    stage.trace.push_back({horizon, i.iteration, i.cost - built->offset, i.gradient_max_norm});
+    stage.trace.push_back({horizon, i.iteration, i.cost - built->Offset(), i.gradient_max_norm});
   }
   return stage;
 }
@@ -116,7 +116,7 @@ double CostAt(const FitProblem& problem, FitPoint point) {
   if (built.rests_left_out > 0) return std::numeric_limits<double>::infinity();
   double cost = 0.0;
   built.problem->Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return cost - built.offset;
+  return cost - built.Offset();
 }
 
 // A network learns on top of a physical model that has converged without it, together with it.

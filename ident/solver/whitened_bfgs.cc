@@ -72,7 +72,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
 
   double level() const { return level_; }
   // What a cost of the solver's is above the negative log likelihood.
-  double above() const { return shift_ + built_.offset; }
+  double above() const { return shift_ + built_.Offset(); }
 
   VectorXd At(const double* z) const {
     return origin_ + root_ * Eigen::Map<const VectorXd>(z, root_.cols());

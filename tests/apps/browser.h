@@ -23,6 +23,19 @@ inline std::string Browser() {
   return "";
 }
 
+// The page with a script that drives it: `script` pushes what it sees to `said`, which stands in an
+// element of its own at the end.
+inline std::string Probed(std::string page, const std::string& script) {
+  return page.replace(page.find("</body>"), 7,
+                      "<script>(function () { const said = [];\n" + script + R"js(
+  const note = document.createElement('pre');
+  note.id = 'probe';
+  note.textContent = said.join('; ');
+  document.body.append(note);
+})();
+</script></body>)js");
+}
+
 // The page's elements after its scripts ran, on stdout; what the console said, on stderr. profile:
 // a folder for the browser's own files.
 inline AppRun Browse(const std::string& profile, const std::string& page) {

@@ -12,10 +12,7 @@ namespace pushid {
 namespace {
 
 // Drives the page as a person would and writes down what happened, as text of a new element.
-constexpr char kProbe[] = R"js(<script>
-(function () {
-  const said = [];
-  const find = id => document.getElementById(id);
+constexpr char kProbe[] = R"js(  const find = id => document.getElementById(id);
   const before = find('fig-stage').innerHTML;
   find('fig-time').value = 10;
   find('fig-time').dispatchEvent(new Event('input'));
@@ -32,12 +29,7 @@ constexpr char kProbe[] = R"js(<script>
       a => !document.querySelector(a.getAttribute('href')));
   said.push('broken links ' + broken.length);
   said.push('wide ' + (document.documentElement.scrollWidth > window.innerWidth));
-  const note = document.createElement('pre');
-  note.id = 'probe';
-  note.textContent = said.join('; ');
-  document.body.append(note);
-})();
-</script></body>)js";
+)js";
 
 class ReportPage : public AppTest {};
 
@@ -50,8 +42,7 @@ TEST_F(ReportPage, WorksInABrowser) {
   std::string page = ReadText(Path("report.html"));
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg")) << "opens from disk";
   EXPECT_EQ(page.find("https://"), std::string::npos);
-  page.replace(page.find("</body>"), 7, kProbe);
-  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", page));
+  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe)));
   ASSERT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
   for (const char* section :

@@ -80,10 +80,7 @@ TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
 }
 
 // Moves the time, and looks whether other pixels are drawn.
-constexpr char kProbe[] = R"js(<script>
-(function () {
-  const said = [];
-  const picture = () => document.getElementById('view').toDataURL();
+constexpr char kProbe[] = R"js(  const picture = () => document.getElementById('view').toDataURL();
   const time = document.getElementById('time');
   const at = frame => { time.value = frame; time.dispatchEvent(new Event('input')); return picture(); };
   said.push('time ' + (at(10) !== at(40) ? 'moves' : 'is dead'));
@@ -93,12 +90,7 @@ constexpr char kProbe[] = R"js(<script>
   said.push('futures ' + (picture() !== with_futures ? 'go' : 'stay'));
   said.push('clock ' + document.getElementById('clock').textContent);
   said.push('wide ' + (document.documentElement.scrollWidth > window.innerWidth));
-  const note = document.createElement('pre');
-  note.id = 'probe';
-  note.textContent = said.join('; ');
-  document.body.append(note);
-})();
-</script></body>)js";
+)js";
 
 TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
@@ -106,8 +98,7 @@ TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
   ASSERT_EQ(Generate({"--samples=19", "--page_out=" + Path("fan.html")}).exit_code, 0);
   std::string page = ReadText(Path("fan.html"));
   EXPECT_EQ(page.find("http"), std::string::npos) << "opens from disk";
-  page.replace(page.find("</body>"), 7, kProbe);
-  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", page));
+  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe)));
   ASSERT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
   for (const char* expected : {"time moves", "futures go", "0.64 s, forecast", "wide false"}) {
