@@ -14,9 +14,7 @@
 #include "ident/bodies/body_report.h"
 #include "ident/generators/forecast_scene.h"
 #include "ident/generators/forecast_spread.h"
-#include "ident/generators/group_spread.h"
 #include "ident/generators/path_search.h"
-#include "ident/generators/push_particles.h"
 
 namespace {
 
@@ -270,15 +268,20 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   if (flags.Shows()) {
     if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value())) return Fail(*error);
   }
-  GroupSpread spread;
-  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
-    spread = SpreadOf(loaded, bodies.value(), flags.samples, flags.seed);
-    std::printf("\n%s", SpreadText(spread).c_str());
-  }
-  if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
-  if (spread.samples > 0) json["spread"] = ToJson(spread);
+  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
+    const Result<GroupSpread> spread = SpreadOf(loaded, flags, bodies.value(), physics.value());
+    if (!spread.ok()) return Fail(spread.error());
+    std::printf("\n%s", SpreadText(spread.value()).c_str());
+    json["spread"] = ToJson(spread.value());
+  }
+  if (flags.frames > 0) {
+    const Result<Json> seconds = ShowSeconds(loaded, bodies.value(), physics.value(), flags.frames);
+    if (!seconds.ok()) return Fail(seconds.error());
+    json["seconds"] = seconds.value();
+  }
+  if (flags.json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;

@@ -22,17 +22,20 @@ using Json = nlohmann::ordered_json;
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
-  const Result<ChainValidation> validation =
+  const Result<GeneratorValidation> validation =
       CrossValidateGenerator(recordings, flags.options,
                              {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
-                              flags.pendulum_input, flags.changes},
+                              flags.pendulum_input, flags.changes, flags.samples},
                              [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
   std::printf("%s", BodyText(validation.value().evaluation).c_str());
+  const GroupSpread& spread = validation.value().spread;
+  if (spread.samples > 0) std::printf("\n%s", SpreadText(spread).c_str());
   if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(validation.value().evaluation, &json);
+  if (spread.samples > 0) json["spread"] = ToJson(spread);
   json["run"] = {{"training_seconds", validation.value().training_seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;

@@ -48,9 +48,11 @@ DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with, and to show");
 DEFINE_double(blend, kFlags.changes.diffusion.blend,
               "diffusion: share of the way from the forecast hip to that of --physics");
+DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
+              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_int32(frames, kFlags.frames,
-             "diffusion: frames of the motion that is shown, also past the recording's end; 0: as "
-             "many as the recording has");
+             "diffusion: frames of the motion that is shown, also past the recording's end, and "
+             "what all groups do in each of its seconds; 0: as many as the recording has");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
@@ -89,7 +91,9 @@ MaybeError CheckRanges() {
         CheckRange("observed", FLAGS_observed, 0, 1000),
         CheckRange("averaged", FLAGS_averaged, 1, 1000),
         CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("frames", FLAGS_frames, 0, 10000),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0),
+        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
+        CheckRange("frames", FLAGS_frames, 0, 10000),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
     if (error) return error;
   }
@@ -113,6 +117,9 @@ MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
   }
+  if (FLAGS_push_spread > 0.0 && flags.samples == 0) {
+    return Error{"--push_spread is between sampled futures: give --samples"};
+  }
   if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
     return Error{"--blend needs to know with what: give --physics"};
   }
@@ -133,7 +140,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
       diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
                                           "noise_scale", "person"}
                : std::vector<const char*>{"observed", "averaged", "sampler", "sampling_steps",
-                                          "physics",  "blend",    "frames"};
+                                          "physics",  "blend",    "frames",  "push_spread"};
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag + " says nothing to a generator of " + NameOf(kind),
@@ -161,6 +168,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.diffusion.steps = FLAGS_sampling_steps;
   flags.changes.diffusion.averaged = FLAGS_averaged;
   flags.changes.diffusion.blend = FLAGS_blend;
+  flags.changes.diffusion.push_spread = FLAGS_push_spread;
   flags.changes.seed = FLAGS_seed;
   flags.observed = FLAGS_observed;
   flags.frames = FLAGS_frames;

@@ -53,6 +53,12 @@ DEFINE_bool(pendulum_input, kFlags.pendulum_input,
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
     "diffusion, --crossvalidate: share of the way from the forecast hip to the pendulum's");
+DEFINE_int32(
+    samples, kFlags.samples,
+    "diffusion, --crossvalidate: sampled futures of every recording held out, and how often "
+    "it lies among them; 0: none");
+DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
+              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_string(
     pooling, pushid::NameOf(kDiffusion.structure.pooling),
     "diffusion: how people see each other: local (by distance, ahead and behind), mean (all "
@@ -103,7 +109,8 @@ MaybeError CheckRanges() {
         CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6),
         CheckRange("batch", FLAGS_batch, 0, 4096), CheckRange("observed", FLAGS_observed, 0, 1000),
         CheckRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("samples", FLAGS_samples, 0, 10000),
+        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
         CheckRange("bystanders", FLAGS_bystanders, 0.0, 1.0),
         CheckRange("jitter", FLAGS_jitter, 0.0, 100.0),
         CheckRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6),
@@ -141,8 +148,11 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
             ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
                       "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
                      particles)
-            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input"}, diffusion),
-        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"scheme", "blend"}, "--crossvalidate")}) {
+            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input", "samples"},
+                     diffusion),
+        FLAGS_crossvalidate > 0 ? MaybeError()
+                                : refuse({"scheme", "blend", "samples"}, "--crossvalidate"),
+        FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
@@ -214,6 +224,8 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   flags.crossvalidate = FLAGS_crossvalidate;
   flags.json_out = FLAGS_json_out;
   flags.changes.diffusion.blend = FLAGS_blend;
+  flags.changes.diffusion.push_spread = FLAGS_push_spread;
+  flags.samples = FLAGS_samples;
   if (diffuses) flags.options.seeds = 1;
   if (FLAGS_seeds > 0) flags.options.seeds = FLAGS_seeds;
   SetDiffusion(&flags.options.diffusion);

@@ -21,6 +21,7 @@ struct TrainGeneratorFlags {
   std::optional<FitOptions> physics;  // of the pendulum
   bool pendulum_input = false;        // it goes into diffusion
   GeneratorChanges changes;           // how held-out recordings are forecast
+  int samples = 0;                    // futures sampled of them; 0: none
   std::string json_out;               // scores of the cross-validation; empty: none
 };
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine();

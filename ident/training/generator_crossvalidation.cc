@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "datasets/files/random.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
 #include "ident/validation/crossvalidation.h"
@@ -22,6 +23,22 @@ class FoldJudge {
   FoldJudge(const GeneratorValidationOptions& validation, const TrainedNetworks& trained,
             const std::optional<IdentifiedModel>& model)
       : validation_(validation), trained_(trained), model_(model) {}
+
+  // Adds to the spread, which says how many futures are sampled.
+  MaybeError AddSpreadOf(const BodyRecording& recording, GroupSpread* spread) const {
+    GroupHips hips;
+    std::map<std::string, BodyScore> unused;
+    if (NeedsHips(validation_.changes)) {
+      Result<GroupHips> predicted = Hips(recording, validation_.observed, &unused);
+      if (!predicted.ok()) return predicted.error();
+      hips = std::move(predicted.value());
+    }
+    Random random(validation_.changes.seed);
+    AddSpread(
+        *MakeGenerator(trained_, validation_.changes), recording, hips, validation_.observed,
+        [&random] { return random.Normal(); }, spread);
+    return std::nullopt;
+  }
 
   MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
     const GeneratorChanges& changes = validation_.changes;
@@ -44,6 +61,10 @@ class FoldJudge {
   }
 
  private:
+  bool NeedsHips(const GeneratorChanges& changes) const {
+    return changes.diffusion.blend > 0.0 || trained_.settings.pendulum;
+  }
+
   // Where the fold's physics have everybody; nothing without physics.
   Result<GroupHips> Hips(const BodyRecording& recording, int observed,
                          std::map<std::string, BodyScore>* scores) const {
@@ -68,7 +89,7 @@ class FoldJudge {
     GeneratorSettings settings = trained_.settings;
     settings.observed = observed;
     GroupHips hips;
-    if (changes.diffusion.blend > 0.0 || trained_.settings.pendulum) {
+    if (NeedsHips(changes)) {
       Result<GroupHips> predicted = Hips(recording, observed, scores);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
@@ -89,16 +110,17 @@ class FoldJudge {
 
 }  // namespace
 
-Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                               const GeneratorTrainingOptions& options,
-                                               const GeneratorValidationOptions& validation,
-                                               const RunProgress& progress) {
+Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                                   const GeneratorTrainingOptions& options,
+                                                   const GeneratorValidationOptions& validation,
+                                                   const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const auto made =
       MakeFolds(pendulums, validation.scheme, validation.folds, 1, options.particles.seed);
   if (!made.ok()) return made.error();
   const int total = static_cast<int>(recordings.size());
-  ChainValidation result;
+  GeneratorValidation result;
+  result.spread.samples = validation.samples;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
@@ -125,7 +147,11 @@ Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>&
     result.training_seconds.push_back(Now() - before);
     const FoldJudge judge(validation, trained.value().networks, model);
     for (int i : fold.held_out) {
-      if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
+      MaybeError error = judge.Score(recordings[i], &by_recording[i]);
+      if (!error && validation.samples > 0) {
+        error = judge.AddSpreadOf(recordings[i], &result.spread);
+      }
+      if (error) return *error;
     }
   }
   BodyScores all;

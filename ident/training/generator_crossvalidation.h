@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
+#include "ident/generators/group_spread.h"
 #include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
 #include "ident/training/restoration_training_run.h"
@@ -26,13 +27,18 @@ struct GeneratorValidationOptions {
   std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
   bool pendulum_input = false;        // the pendulum goes into diffusion
   GeneratorChanges changes;           // as in its use
+  int samples = 0;                    // futures of diffusion for every recording; 0: none
+};
+
+struct GeneratorValidation : ChainValidation {
+  GroupSpread spread;  // of the sampled futures of recordings held out
 };
 
 // Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
 // optimum.
-Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                               const GeneratorTrainingOptions& options,
-                                               const GeneratorValidationOptions& validation,
-                                               const RunProgress& progress = nullptr);
+Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                                   const GeneratorTrainingOptions& options,
+                                                   const GeneratorValidationOptions& validation,
+                                                   const RunProgress& progress = nullptr);
 
 }  // namespace pushid
