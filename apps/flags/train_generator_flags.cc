@@ -31,6 +31,11 @@ DEFINE_string(
     dataset, pushid::NameOf(kFlags.data),
     "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings; "
     "diffusion learns from nothing else)");
+DEFINE_string(
+    accuracy, pushid::NameOf(kFlags.accuracy),
+    "diffusion: best compares it by four folds with physics and restored bodies, and with "
+    "blends of both, trains all of them, and pushid-generate uses what was nearest; or "
+    "usual");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: learn from the validation clips too, which then judge nothing");
@@ -101,6 +106,8 @@ DEFINE_int32(num_threads, kParticles.num_threads,
 namespace pushid {
 namespace {
 
+bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
+
 constexpr int kShownToDiffusion = 1;  // frames
 
 MaybeError CheckRanges() {
@@ -144,23 +151,31 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
                : refuse({"folder", "with_validation", "ridge_share", "ridge_penalty"}, cmu),
-        diffuses
-            ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
-                      "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
-                     particles)
-            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input", "samples"},
-                     diffusion),
-        FLAGS_crossvalidate > 0 ? MaybeError()
-                                : refuse({"scheme", "blend", "samples"}, "--crossvalidate"),
+        diffuses ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
+                           "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
+                          particles)
+                 : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input", "samples",
+                           "accuracy"},
+                          diffusion),
+        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
+        FLAGS_crossvalidate > 0 || Best()
+            ? MaybeError()
+            : refuse({"scheme"}, "--crossvalidate or --accuracy=best"),
         FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;
+  }
+  if (Best() && (FLAGS_crossvalidate > 0 || FLAGS_pendulum_input)) {
+    return Error{
+        "--accuracy=best takes its own folds, and blends with physics afterwards; leave out "
+        "--crossvalidate and --pendulum_input"};
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
   if (uses_physics && FLAGS_physics.empty()) {
     return Error{"--blend and --pendulum_input need to know which pendulum: give --physics"};
   }
-  if (!uses_physics && !FLAGS_physics.empty()) {
-    return Error{"--physics is there for --pendulum_input and --blend: give one of them"};
+  if (!uses_physics && !Best() && !FLAGS_physics.empty()) {
+    return Error{
+        "--physics is there for --pendulum_input, --blend and --accuracy=best: give one of them"};
   }
   return std::nullopt;
 }
@@ -203,6 +218,7 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   for (const MaybeError& error :
        {ParseName("--kind", FLAGS_kind, &flags.options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
         ParseName("--scheme", FLAGS_scheme, &flags.scheme),
         ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),

@@ -8,9 +8,16 @@
 
 namespace pushid {
 
+// best: compares everything that may forecast groups, and keeps what it needs for it.
+enum class ForecastAccuracy { kUsual, kBest };
+constexpr EnumNames<ForecastAccuracy, 2> Names(ForecastAccuracy) {
+  return {{{"usual", ForecastAccuracy::kUsual}, {"best", ForecastAccuracy::kBest}}};
+}
+
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   GeneratorData data = GeneratorData::kCmu;
+  ForecastAccuracy accuracy = ForecastAccuracy::kUsual;
   std::string folder;            // of clips
   bool with_validation = false;  // learn from the validation clips too
   int observed = 20;             // frames of a push that the generator is shown

@@ -76,6 +76,9 @@ Json SettingsJson(const TrainedNetworks& trained) {
   Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
                {"predicted", settings.predicted}, {"rate_hz", settings.rate},
                {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
+  if (settings.choice) {
+    json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
+  }
   std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
   return json;
 }
@@ -90,6 +93,13 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.rate = json.at("rate_hz");
   settings.pendulum = json.value("pendulum", false);  // files from before have none
   settings.layout = LayoutFrom(json.at("layout"));
+  if (json.contains("choice")) {
+    settings.choice.emplace();
+    ParseSetting(json["choice"], "by", &settings.choice->by);
+    settings.choice->blend = json["choice"].at("blend");
+    Demand(settings.choice->blend >= 0.0 && settings.choice->blend <= 1.0,
+           "blend must lie between 0 and 1");
+  }
   settings.training = folder.training;
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
          "observed, predicted and rate_hz must be positive");

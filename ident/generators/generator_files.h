@@ -22,6 +22,20 @@ constexpr EnumNames<GeneratorData, 2> Names(GeneratorData) {
   return {{{"cmu", GeneratorData::kCmu}, {"pushes", GeneratorData::kPushes}}};
 }
 
+// Who forecasts best, as cross-validation found: the generator, `blend` of the way to physics, or
+// physics with restored bodies.
+enum class ForecastBy { kGenerator, kRestoration };
+constexpr EnumNames<ForecastBy, 2> Names(ForecastBy) {
+  return {{{"generator", ForecastBy::kGenerator}, {"restoration", ForecastBy::kRestoration}}};
+}
+struct ForecastChoice {
+  ForecastBy by = ForecastBy::kGenerator;
+  double blend = 0.0;
+};
+// Beside the generator in its folder, where there was a choice.
+inline constexpr const char* kChosenPhysics = "physics.json";
+inline constexpr const char* kChosenRestoration = "restoration";
+
 struct GeneratorSettings {
   GeneratorData data = GeneratorData::kCmu;
   int observed = 25;      // frames that it is given
@@ -29,6 +43,7 @@ struct GeneratorSettings {
   double rate = 25.0;     // Hz
   bool pendulum = false;  // whether it must be told where physics have the hips
   ParticleLayout layout;
+  std::optional<ForecastChoice> choice;                                // none: nothing was compared
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
 };
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
@@ -51,6 +52,11 @@ class FoldJudge {
     if (changes.diffusion.blend > 0.0) {
       error = Add("generator_unblended", recording, validation_.observed, alone, scores);
     }
+    for (size_t b = 0; b < validation_.blends.size() && !error; ++b) {
+      alone.diffusion.blend = validation_.blends[b];
+      error = Add(BlendName(validation_.blends[b]), recording, validation_.observed, alone, scores);
+    }
+    alone.diffusion.blend = 0.0;
     if (!error && trained_.kind() == GeneratorKind::kDiffusion && validation_.observed != kShown &&
         recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
@@ -109,6 +115,8 @@ class FoldJudge {
 };
 
 }  // namespace
+
+std::string BlendName(double blend) { return "generator_blend_" + Rounded(blend, 3); }
 
 Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
                                                    const GeneratorTrainingOptions& options,

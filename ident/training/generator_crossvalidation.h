@@ -4,12 +4,14 @@
 //   generator                  the recording as far as it is shown, then the forecast
 //   generator_after_observed   the forecast alone
 //   generator_unblended        without the physics that the forecast is blended with
+//   generator_blend_0.25       the same with another share of physics, where such are compared
 //   rigid                      those physics alone, first poses carried by the rods' tips
 //   generator_shown_20         of diffusion, which is trained for it: shown 20 frames, no physics
 //   static, constant_velocity  as in body_evaluation.h
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
@@ -27,12 +29,15 @@ struct GeneratorValidationOptions {
   std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
   bool pendulum_input = false;        // the pendulum goes into diffusion
   GeneratorChanges changes;           // as in its use
+  std::vector<double> blends;         // to compare with, besides that of changes
   int samples = 0;                    // futures of diffusion for every recording; 0: none
 };
 
 struct GeneratorValidation : ChainValidation {
   GroupSpread spread;  // of the sampled futures of recordings held out
 };
+
+std::string BlendName(double blend);
 
 // Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
 // optimum.
