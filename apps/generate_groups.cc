@@ -78,12 +78,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   animation.title = recording.pendulum.id + ", diffusion";
   animation.dt = recording.pendulum.scene.dt;
   AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
-  for (int n = 0; n < recording.num_people(); ++n) {
-    AnimatedPerson person;
-    person.name = recording.pendulum.subject_ids[n];
-    person.body = bodies.value()[n];
-    animation.people.push_back(std::move(person));
-  }
+  AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);
   if (physics) {
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, flags.frames);
     if (!predicted.ok()) return predicted.error();

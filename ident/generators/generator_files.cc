@@ -2,6 +2,7 @@
 #include "ident/generators/generator_files.h"
 
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/recording_names.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/generators/generator_kinds.h"
 #include "ident/parameters/option_names.h"
@@ -10,8 +11,10 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr TensorFolderKind kGeneratorFolder = {"generator", "--model",
-                                               "pushid-train-generator --out", 1};
+// flag: what names the folder.
+TensorFolderKind GeneratorFolder(const char* flag) {
+  return {"generator", flag, "pushid-train-generator --out", 1};
+}
 constexpr int kMostParticles = 1000;
 
 std::string KindNames() {
@@ -76,6 +79,7 @@ Json SettingsJson(const TrainedNetworks& trained) {
   Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
                {"predicted", settings.predicted}, {"rate_hz", settings.rate},
                {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
+  for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(Name(kind));
   std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
   return json;
 }
@@ -89,6 +93,11 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.predicted = json.at("predicted");
   settings.rate = json.at("rate_hz");
   settings.pendulum = json.value("pendulum", false);  // files from before have none
+  for (const Json& name : json.value("push_kinds", Json::array())) {
+    const std::optional<PushKind> kind = PushKindFromName(name.get<std::string>());
+    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is none");
+    settings.push_kinds.push_back(*kind);
+  }
   settings.layout = LayoutFrom(json.at("layout"));
   settings.training = folder.training;
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
@@ -110,7 +119,7 @@ MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trai
   content.training = trained.settings.training;
   std::visit([&content](const auto& of_kind) { AddTensors(of_kind, &content.tensors); },
              trained.of_kind);
-  return WriteTensorFolder(kGeneratorFolder, folder, content);
+  return WriteTensorFolder(GeneratorFolder("--out"), folder, content);
 }
 
 std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
@@ -120,10 +129,12 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
       trained.of_kind);
 }
 
-Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes) {
-  const Result<TensorFolder> read = ReadTensorFolder(kGeneratorFolder, folder, KindNames(), IsKind);
+Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
+                                      const char* flag) {
+  const Result<TensorFolder> read =
+      ReadTensorFolder(GeneratorFolder(flag), folder, KindNames(), IsKind);
   if (!read.ok()) return read.error();
-  const std::string path = JsonFileOf(kGeneratorFolder, folder);
+  const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
   TensorReader reader(read.value().tensors);
   TrainedNetworks trained;
   try {
