@@ -5,6 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/scheme_flags.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/result_json.h"
 
@@ -41,9 +42,6 @@ DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg"
 DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "pushes: folds; instead of writing a generator, train in every fold and score the "
              "recordings held out; 0: off");
-DEFINE_string(scheme, pushid::NameOf(kFlags.scheme),
-              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
-              "(a setting dealt out in turn)");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
               "the recordings learnt from, for --pendulum_input and --blend");
@@ -142,7 +140,7 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
                       "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
                      particles)
             : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input"}, diffusion),
-        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"scheme", "blend"}, "--crossvalidate")}) {
+        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend"}, "--crossvalidate")}) {
     if (error) return error;
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
@@ -193,12 +191,14 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   for (const MaybeError& error :
        {ParseName("--kind", FLAGS_kind, &flags.options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--scheme", FLAGS_scheme, &flags.scheme),
         ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
     if (error) return *error;
   }
+  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate);
+  if (!scheme.ok()) return scheme.error();
+  flags.scheme = scheme.value();
   if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
     flags.data = GeneratorData::kPushes;
   }
