@@ -2,11 +2,14 @@
 #include "apps/generate_groups.h"
 
 #include <cstdio>
+#include <filesystem>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/generators/long_forecast.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
@@ -69,10 +72,37 @@ Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file) {
   return std::optional<IdentifiedModel>(std::move(model));
 }
 
+MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
+  const std::optional<ForecastChoice> choice = loaded->settings.choice;
+  if (!choice || !flags->physics.empty()) return std::nullopt;
+  const std::filesystem::path folder(flags->model);
+  flags->physics = (folder / kChosenPhysics).string();
+  flags->changes.diffusion.blend = choice->blend;
+  Result<LoadedGenerator> again = LoadGenerator(flags->model, flags->changes);
+  if (!again.ok()) return again.error();
+  *loaded = std::move(again.value());
+  const bool restores = choice->by == ForecastBy::kRestoration;
+  if (restores) {
+    auto restoration = LoadRestoration((folder / kChosenRestoration).string());
+    if (!restoration.ok()) return restoration.error();
+    loaded->restoration = std::move(restoration.value());
+  }
+  std::printf("as cross-validation chose: %s\n",
+              restores
+                  ? "physics and restored bodies"
+                  : ("diffusion, " + Rounded(choice->blend, 3) + " of the way to physics").c_str());
+  return std::nullopt;
+}
+
 Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
                                              const BodyRecording& recording,
                                              const std::optional<IdentifiedModel>& physics,
                                              int frames) {
+  if (loaded.restoration) {
+    const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
+    if (!predicted.ok()) return predicted.error();
+    return RestoreBodies(*loaded.restoration, {}, PredictedPeople(recording, predicted.value()));
+  }
   const Result<GroupHips> hips = HipsBeside(loaded, physics, recording, frames);
   if (!hips.ok()) return hips.error();
   return GenerateBodies(loaded.settings, *loaded.generator, recording, hips.value(), frames);
@@ -133,12 +163,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   animation.title = recording.pendulum.id + ", diffusion";
   animation.dt = recording.pendulum.scene.dt;
   AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
-  for (int n = 0; n < recording.num_people(); ++n) {
-    AnimatedPerson person;
-    person.name = recording.pendulum.subject_ids[n];
-    person.body = bodies.value()[n];
-    animation.people.push_back(std::move(person));
-  }
+  AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);
   if (physics) {
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, flags.frames);
     if (!predicted.ok()) return predicted.error();

@@ -13,6 +13,10 @@ namespace pushid {
 // The model of --physics; nothing where none is named.
 Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
 
+// Flags and generator as cross-validation chose them (pushid-train-generator --accuracy=best),
+// where it did and no flag says otherwise; told on stdout.
+MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
+
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // physics that see as many frames are told to the generator.
 Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,

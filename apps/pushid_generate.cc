@@ -288,11 +288,12 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
 }
 
 int Run() {
-  const Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
+  Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
   Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
   if (!loaded.ok()) return Fail(loaded.error());
   if (MaybeError error = CheckKindFlags(flags.value(), loaded.value().kind)) return Fail(*error);
+  if (MaybeError error = TakeChoice(&flags.value(), &loaded.value())) return Fail(*error);
   if (flags.value().observed > 0) loaded.value().settings.observed = flags.value().observed;
   const GeneratorData data = loaded.value().settings.data;
   if (data != flags.value().data) {

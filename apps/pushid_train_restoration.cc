@@ -23,7 +23,7 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
                   const RestorationRunOptions& options) {
   TrainingLine line;
   const Result<ChainValidation> validation =
-      CrossValidateChain(recordings, options, flags.crossvalidate, options.training.seed,
+      CrossValidateChain(recordings, options, flags.scheme, flags.crossvalidate,
                          [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());

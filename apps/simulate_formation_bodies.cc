@@ -1,10 +1,12 @@
 // apps: bodies of formations, from poses to files.
 #include "apps/simulate_formation_bodies.h"
 
+#include "apps/flags/command_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
+#include "ident/generators/push_particles.h"
 
 namespace pushid {
 namespace {
@@ -33,16 +35,35 @@ BodyScene SceneOf(const FormationRun& run, std::vector<BodyMotion> bodies) {
   return scene;
 }
 
+Result<LoadedGenerator> LoadFormationGenerator(const FormationBodyFlags& flags, bool rod_moves,
+                                               const Scene& scene) {
+  if (MaybeError error = CheckRod("generator", rod_moves)) return *error;
+  GeneratorChanges changes;
+  changes.diffusion = flags.diffusion;
+  Result<LoadedGenerator> loaded = LoadGenerator(flags.generator, changes, "--generator");
+  if (!loaded.ok()) return loaded;
+  if (MaybeError error = PrepareForFormation(scene, "generator", &loaded.value())) return *error;
+  const std::string other = OtherPushKinds(loaded.value().settings, scene);
+  if (!other.empty()) Warn(other);
+  return loaded;
+}
+
 }  // namespace
 
 Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
                                                     Scene* scene) {
-  if (!flags.restoration.given()) return std::optional<FormationBodyPlan>();
+  if (!flags.given()) return std::optional<FormationBodyPlan>();
   FormationBodyPlan plan;
-  Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, rod_moves);
-  if (!restoration.ok()) return restoration.error();
-  plan.restoration = std::move(restoration.value());
+  if (flags.generates()) {
+    Result<LoadedGenerator> generator = LoadFormationGenerator(flags, rod_moves, *scene);
+    if (!generator.ok()) return generator.error();
+    plan.generator = std::move(generator.value());
+  } else {
+    Result<std::unique_ptr<Restoration>> restoration =
+        LoadFlaggedRestoration(flags.restoration, rod_moves);
+    if (!restoration.ok()) return restoration.error();
+    plan.restoration = std::move(restoration.value());
+  }
   const Result<std::vector<Pose>> poses =
       FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);
   if (!poses.ok()) return poses.error();
@@ -52,12 +73,19 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
 
 MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const FormationBodyPlan& plan,
                                 const FormationRun& run, const std::string& title) {
-  const BodyScene scene = SceneOf(run, FormationBodies(run, plan.first_poses, *plan.restoration,
-                                                       flags.restoration.postprocess));
+  Result<std::vector<BodyMotion>> bodies =
+      plan.generator ? GeneratedBodies(run, plan.first_poses, *plan.generator)
+                     : FormationBodies(run, plan.first_poses, *plan.restoration,
+                                       flags.restoration.postprocess);
+  if (!bodies.ok()) return bodies.error();
+  const BodyScene scene = SceneOf(run, std::move(bodies.value()));
   Animation animation;
-  animation.title = title;
+  animation.title = title + (plan.generator ? "; bodies by diffusion" : "");
   animation.dt = scene.dt;
-  AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
+  // Restored bodies hang on their pendulums; generated ones move beside them.
+  if (plan.generator) AddForecast(scene.subject_ids, scene.bodies, &animation);
+  AddPrediction(run.recording, run.prediction,
+                plan.generator ? std::vector<BodyMotion>() : scene.bodies, &animation);
   MaybeError error;
   if (!flags.html_out.empty()) {
     error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));

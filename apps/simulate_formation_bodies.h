@@ -1,5 +1,5 @@
-// apps: pushid-simulate --formation --restoration: bodies of the formation's people, and the files
-// that show them.
+// apps: pushid-simulate --formation with --restoration or --generator: bodies of the formation's
+// people, and the files that show them.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,12 @@
 namespace pushid {
 
 struct FormationBodyPlan {
-  std::unique_ptr<Restoration> restoration;
+  std::unique_ptr<Restoration> restoration;  // or
+  std::optional<LoadedGenerator> generator;
   std::vector<Pose> first_poses;
 };
 
-// Nothing without --restoration. Gives the scene's people the pendulums of their bodies.
+// Nothing without either flag. Gives the scene's people the pendulums of their bodies.
 Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
                                                     Scene* scene);
 

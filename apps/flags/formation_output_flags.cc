@@ -3,7 +3,10 @@
 
 #include <gflags/gflags.h>
 
+#include <vector>
+
 #include "apps/flags/command_line.h"
+#include "apps/flags/diffusion_flags.h"
 #include "apps/support/output_folder.h"
 #include "ident/formations/formation_pictures.h"
 
@@ -15,28 +18,50 @@ DEFINE_string(svg_out, "",
               "formation: picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
 
+DEFINE_string(generator, "",
+              "formation: whole bodies by diffusion instead of --restoration: the folder that "
+              "pushid-train-generator --kind=diffusion --out wrote");
 DEFINE_string(poses_from, "",
-              "formation with --restoration: manifest.json of recordings whose first poses (with "
+              "formation with bodies: manifest.json of recordings whose first poses (with "
               "skeleton and lean, in their order) the people take (default: the synthetic "
               "skeleton, upright)");
-DEFINE_string(html_out, "", "formation with --restoration: page of the moving bodies (HTML)");
-DEFINE_string(strip_out, "", "formation with --restoration: strip of poses (SVG)");
-DEFINE_string(joints_out, "", "formation with --restoration: joint positions (CSV)");
+DEFINE_string(html_out, "", "formation with bodies: page of the moving bodies (HTML)");
+DEFINE_string(strip_out, "", "formation with bodies: strip of poses (SVG)");
+DEFINE_string(joints_out, "", "formation with bodies: joint positions (CSV)");
 DEFINE_string(bodies_out, "",
-              "formation with --restoration: the bodies (BVH; one file a person, named after "
-              "this one)");
+              "formation with bodies: the bodies (BVH; one file a person, named after this one)");
 
 namespace pushid {
 namespace {
 
-constexpr const char* kOfBodies[] = {"poses_from", "html_out", "strip_out", "joints_out",
-                                     "bodies_out"};
+const std::vector<const char*> kOfBodies = {"poses_from", "html_out", "strip_out", "joints_out",
+                                            "bodies_out"};
 
-const char* GivenBodyFlag() {
-  for (const char* flag : kOfBodies) {
+const char* FirstGiven(const std::vector<const char*>& flags) {
+  for (const char* flag : flags) {
     if (Given(flag)) return flag;
   }
   return nullptr;
+}
+
+// Flags that go with one way to bodies, where that is not the one.
+MaybeError CheckWayToBodies(bool restores) {
+  const bool generates = !FLAGS_generator.empty();
+  if (restores && generates) {
+    return Error{"--restoration and --generator both make the bodies; give one of them"};
+  }
+  if (generates && Given("postprocess")) {
+    return Error{"--postprocess goes with --restoration; a generator finishes its bodies itself"};
+  }
+  if (const char* flag = generates ? nullptr : FirstGiven(DiffusionFlagNames())) {
+    return Error{std::string("--") + flag + " goes with --generator"};
+  }
+  if (const char* flag = restores || generates ? nullptr : FirstGiven(kOfBodies)) {
+    return Error{std::string("--") + flag +
+                 " needs bodies: name the folder of pushid-train-restoration by --restoration, or "
+                 "that of pushid-train-generator by --generator"};
+  }
+  return std::nullopt;
 }
 
 MaybeError CheckPicture(const std::string& flag, const std::string& file, int people, int most) {
@@ -48,11 +73,12 @@ MaybeError CheckPicture(const std::string& flag, const std::string& file, int pe
 }  // namespace
 
 const char* GivenFormationOutput() {
-  for (const char* flag :
-       {"csv_out", "forces_out", "bvh_out", "svg_out", "forces_svg_out", "restoration"}) {
-    if (Given(flag)) return flag;
+  std::vector<const char*> flags = {"csv_out",        "forces_out",  "bvh_out",  "svg_out",
+                                    "forces_svg_out", "restoration", "generator"};
+  for (const std::vector<const char*>& more : {DiffusionFlagNames(), kOfBodies}) {
+    flags.insert(flags.end(), more.begin(), more.end());
   }
-  return GivenBodyFlag();
+  return FirstGiven(flags);
 }
 
 Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
@@ -72,12 +98,12 @@ Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
   const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
   if (!restoration.ok()) return restoration.error();
-  if (!restoration.value().given()) {
-    if (const char* flag = GivenBodyFlag()) return NeedsRestoration(flag);
-    return FormationBodyFlags();
-  }
-  const FormationBodyFlags flags{restoration.value(), FLAGS_poses_from, FLAGS_html_out,
-                                 FLAGS_strip_out,     FLAGS_joints_out, FLAGS_bodies_out};
+  if (MaybeError error = CheckWayToBodies(restoration.value().given())) return *error;
+  const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
+  if (!diffusion.ok()) return diffusion.error();
+  const FormationBodyFlags flags{restoration.value(), FLAGS_generator, diffusion.value(),
+                                 FLAGS_poses_from,    FLAGS_html_out,  FLAGS_strip_out,
+                                 FLAGS_joints_out,    FLAGS_bodies_out};
   if (MaybeError error =
           CheckOutputFiles({flags.html_out, flags.strip_out, flags.joints_out, flags.bodies_out})) {
     return *error;

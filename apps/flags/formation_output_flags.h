@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/flags/restoration_flags.h"
+#include "models/generators/diffusion_generator.h"
 
 namespace pushid {
 
@@ -19,12 +20,18 @@ struct FormationOutputs {
 Result<FormationOutputs> FormationOutputsFromCommandLine(int people);
 
 struct FormationBodyFlags {
-  RestorationFlags restoration;  // without it there are no bodies, and the rest is empty
-  std::string poses_from;        // manifest of the first poses; empty: the synthetic skeleton
-  std::string html_out;          // page of the moving bodies
-  std::string strip_out;         // strip of poses (SVG)
-  std::string joints_out;        // joint positions (CSV)
-  std::string bodies_out;        // BVH, one file a person
+  // Where bodies come from; without either there are none, and the rest is empty.
+  RestorationFlags restoration;
+  std::string generator;                // folder of pushid-train-generator
+  DiffusionGeneratorOptions diffusion;  // how it is sampled
+  std::string poses_from;  // manifest of the first poses; empty: the synthetic skeleton
+  std::string html_out;    // page of the moving bodies
+  std::string strip_out;   // strip of poses (SVG)
+  std::string joints_out;  // joint positions (CSV)
+  std::string bodies_out;  // BVH, one file a person
+
+  bool generates() const { return !generator.empty(); }
+  bool given() const { return restoration.given() || generates(); }
 };
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine();
 

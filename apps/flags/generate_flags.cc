@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/diffusion_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "ident/generators/forecast_scene.h"
 #include "ident/generators/forecast_spread.h"
@@ -39,15 +40,8 @@ DEFINE_double(noise_scale, kFlags.changes.noise_scale,
 DEFINE_int32(observed, kFlags.observed,
              "diffusion: frames that it is shown, 1 for the first poses and the push; 0: as it was "
              "made for");
-DEFINE_int32(averaged, kFlags.changes.diffusion.averaged,
-             "diffusion: samples that a forecast is the mean of");
-DEFINE_string(sampler, pushid::NameOf(kFlags.changes.diffusion.sampler),
-              "diffusion: way back from noise: renoised, ddpm or ddim");
-DEFINE_int32(sampling_steps, kFlags.changes.diffusion.steps, "diffusion: steps of the way back");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with, and to show");
-DEFINE_double(blend, kFlags.changes.diffusion.blend,
-              "diffusion: share of the way from the forecast hip to that of --physics");
 DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
               "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_int32(frames, kFlags.frames,
@@ -89,9 +83,6 @@ MaybeError CheckRanges() {
         CheckRange("target_window", FLAGS_target_window, -1, 1e9),
         CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
         CheckRange("observed", FLAGS_observed, 0, 1000),
-        CheckRange("averaged", FLAGS_averaged, 1, 1000),
-        CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0),
         CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
         CheckRange("frames", FLAGS_frames, 0, 10000),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
@@ -120,7 +111,7 @@ MaybeError CheckData(const GenerateFlags& flags) {
   if (FLAGS_push_spread > 0.0 && flags.samples == 0) {
     return Error{"--push_spread is between sampled futures: give --samples"};
   }
-  if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
+  if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
     return Error{"--blend needs to know with what: give --physics"};
   }
   return CheckRecordingFlags();
@@ -136,11 +127,12 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
         "with pushes and particles --samples only makes a fan for --poses_out, --strip_out or "
         "--page_out"};
   }
-  const std::vector<const char*> foreign =
-      diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
-                                          "noise_scale", "person"}
-               : std::vector<const char*>{"observed", "averaged", "sampler", "sampling_steps",
-                                          "physics",  "blend",    "frames",  "push_spread"};
+  std::vector<const char*> foreign = {"ridge_share", "project_bones", "noise_memory", "noise_scale",
+                                      "person"};
+  if (!diffuses) {
+    foreign = DiffusionFlagNames();
+    foreign.insert(foreign.end(), {"observed", "physics", "frames", "push_spread"});
+  }
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag + " says nothing to a generator of " + NameOf(kind),
@@ -154,10 +146,11 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   for (const MaybeError& error :
        {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--protocol", FLAGS_protocol, &flags.protocol),
-        ParseName("--sampler", FLAGS_sampler, &flags.changes.diffusion.sampler), CheckRanges()}) {
+        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges()}) {
     if (error) return *error;
   }
+  const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
+  if (!diffusion.ok()) return diffusion.error();
   if (!Given("dataset") && Given("recordings")) flags.data = GeneratorData::kPushes;
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
@@ -165,9 +158,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.project_bones = FLAGS_project_bones;
   flags.changes.noise_memory = FLAGS_noise_memory;
   flags.changes.noise_scale = FLAGS_noise_scale;
-  flags.changes.diffusion.steps = FLAGS_sampling_steps;
-  flags.changes.diffusion.averaged = FLAGS_averaged;
-  flags.changes.diffusion.blend = FLAGS_blend;
+  flags.changes.diffusion = diffusion.value();
   flags.changes.diffusion.push_spread = FLAGS_push_spread;
   flags.changes.seed = FLAGS_seed;
   flags.observed = FLAGS_observed;

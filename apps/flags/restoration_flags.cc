@@ -21,13 +21,17 @@ Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& othe
   return flags;
 }
 
+MaybeError CheckRod(const std::string& flag, bool rod_moves) {
+  if (!rod_moves) return std::nullopt;
+  return Error{
+      "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
+      "--rod=constant for --" +
+      flag};
+}
+
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
                                                             bool rod_moves) {
-  if (rod_moves) {
-    return Error{
-        "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
-        "--rod=constant for --restoration"};
-  }
+  if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
   return LoadRestoration(flags.name);
 }
 

@@ -20,7 +20,10 @@ struct RestorationFlags {
 // Without --restoration, `otherwise` is taken.
 Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
-// For a model whose rod moves or does not: bodies are carried by rods of constant length.
+// flag: what asks for bodies, "restoration". Errors: a model whose rod moves, for bodies are
+// carried by rods of constant length.
+MaybeError CheckRod(const std::string& flag, bool rod_moves);
+
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
                                                             bool rod_moves);
 

@@ -5,6 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/scheme_flags.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/result_json.h"
 
@@ -46,9 +47,6 @@ DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg"
 DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "pushes: folds; instead of writing a generator, train in every fold and score the "
              "recordings held out; 0: off");
-DEFINE_string(scheme, pushid::NameOf(kFlags.scheme),
-              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
-              "(a setting dealt out in turn)");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
               "the recordings learnt from, for --pendulum_input and --blend");
@@ -158,9 +156,6 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
                            "accuracy"},
                           diffusion),
         FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
-        FLAGS_crossvalidate > 0 || Best()
-            ? MaybeError()
-            : refuse({"scheme"}, "--crossvalidate or --accuracy=best"),
         FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;
   }
@@ -219,12 +214,14 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
        {ParseName("--kind", FLAGS_kind, &flags.options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
         ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
-        ParseName("--scheme", FLAGS_scheme, &flags.scheme),
         ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
     if (error) return *error;
   }
+  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
+  if (!scheme.ok()) return scheme.error();
+  flags.scheme = scheme.value();
   if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
     flags.data = GeneratorData::kPushes;
   }

@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
+#include "apps/flags/scheme_flags.h"
 #include "ident/results/result_json.h"
 #include "models/self_network.h"
 
@@ -109,9 +110,11 @@ Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
   if (MaybeError error = CheckFlags()) return *error;
   const Result<RestorationRunOptions> options = RunOptions();
   if (!options.ok()) return options.error();
+  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
+  if (!scheme.ok()) return scheme.error();
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
-  return TrainRestorationFlags{options.value(), FLAGS_out, FLAGS_crossvalidate, FLAGS_json_out,
-                               FLAGS_more_settings};
+  return TrainRestorationFlags{options.value(), FLAGS_out,      FLAGS_crossvalidate,
+                               scheme.value(),  FLAGS_json_out, FLAGS_more_settings};
 }
 
 }  // namespace pushid

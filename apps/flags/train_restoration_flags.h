@@ -11,8 +11,9 @@ struct TrainRestorationFlags {
   RestorationRunOptions options;  // with the fit's options read from it
   std::string out;                // folder of the restoration
   int crossvalidate = 0;          // folds, instead of writing a restoration; 0: off
-  std::string json_out;           // scores of the cross-validation; empty: none
-  std::string more_settings;      // of recordings to learn from too; empty: none
+  FoldScheme scheme = FoldScheme::kStratified;
+  std::string json_out;       // scores of the cross-validation; empty: none
+  std::string more_settings;  // of recordings to learn from too; empty: none
 };
 Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine();
 

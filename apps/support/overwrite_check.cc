@@ -13,8 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kInputs[] = {
-    "recordings", "model",   "truth",  "self_from", "interaction_network",
-    "poses_from", "sensor",  "masses", "sensors",   "mapping",
+    "recordings", "model",   "physics", "truth",   "self_from", "interaction_network",
+    "poses_from", "sensor",  "masses",  "sensors", "mapping",   "generator",
     "plan",       "flagfile"};
 
 struct NamedPath {
@@ -61,7 +61,8 @@ MaybeError CheckOutputs() {
   }
   for (const char* input : kInputs) {
     gflags::CommandLineFlagInfo flag;
-    if (!gflags::GetCommandLineFlagInfo(input, &flag) || flag.is_default) continue;
+    const bool known = gflags::GetCommandLineFlagInfo(input, &flag);
+    if (!known || flag.is_default || flag.current_value.empty()) continue;
     const MaybeError error = CheckNoOutput("--" + flag.name, flag.current_value);
     if (error) return error;
   }

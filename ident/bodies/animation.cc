@@ -70,6 +70,17 @@ std::pair<double, double> ExtentX(const Animation& animation) {
   return low > high ? std::make_pair(-1.0, 1.0) : std::make_pair(low - 0.1, high + 0.1);
 }
 
+void AddBodies(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
+               bool recorded, Animation* animation) {
+  for (size_t n = 0; n < bodies.size(); ++n) {
+    AnimatedPerson person;
+    person.name = names[n];
+    person.recorded = recorded;
+    person.body = bodies[n];
+    animation->people.push_back(std::move(person));
+  }
+}
+
 }  // namespace
 
 int Animation::num_frames() const {
@@ -98,13 +109,12 @@ void AddPrediction(const PendulumRecording& recording, const Prediction& predict
 
 void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation) {
-  for (size_t n = 0; n < bodies.size(); ++n) {
-    AnimatedPerson person;
-    person.name = names[n];
-    person.recorded = true;
-    person.body = bodies[n];
-    animation->people.push_back(std::move(person));
-  }
+  AddBodies(names, bodies, true, animation);
+}
+
+void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
+                 Animation* animation) {
+  AddBodies(names, bodies, false, animation);
 }
 
 std::string PoseStripSvg(const Animation& animation, int poses) {

@@ -31,7 +31,10 @@ struct Animation {
 // or none).
 void AddPrediction(const PendulumRecording& recording, const Prediction& prediction,
                    const std::vector<BodyMotion>& bodies, Animation* animation);
+// Bodies alone: recorded, or forecast without a pendulum.
 void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
+                 Animation* animation);
+void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
 
 // One self-contained page: no network, no library. Play, time slider, orbit by mouse or touch,

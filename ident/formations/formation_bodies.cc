@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "datasets/files/number_text.h"
 #include "datasets/formats/bvh_kinematics.h"
 #include "datasets/synthetic/synthetic_skeleton.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/generators/push_particles.h"
+#include "ident/parameters/option_names.h"
 #include "ident/prediction/predicted_steps.h"
 #include "models/skeleton_mapping.h"
 
@@ -77,6 +80,37 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
     people[n].stands = StandingFrames(run.prediction, n);
   }
   return RestoreBodies(restoration, options, people);
+}
+
+MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
+                               LoadedGenerator* loaded) {
+  GeneratorSettings& settings = loaded->settings;
+  if (loaded->kind != GeneratorKind::kDiffusion) {
+    return Error{"--" + flag + " names a generator of " + NameOf(loaded->kind) +
+                 ", whose people do not see each other: nobody but the pushed would move; give one "
+                 "that pushid-train-generator --kind=" +
+                 NameOf(GeneratorKind::kDiffusion) + " wrote"};
+  }
+  if (!AtRateOf(settings, scene.dt)) {
+    return Error{"--" + flag + " names a generator that was trained at " +
+                 Rounded(settings.rate, 3) + " frames a second, and the formation has " +
+                 Rounded(1.0 / scene.dt, 3) + ": give --fps=" + Rounded(settings.rate, 3)};
+  }
+  settings.observed = 1;
+  return std::nullopt;
+}
+
+Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
+                                                const std::vector<Pose>& first_poses,
+                                                const LoadedGenerator& loaded) {
+  BodyRecording held;
+  held.pendulum = run.recording;
+  for (const Pose& pose : first_poses) {
+    held.bodies.emplace_back(run.num_frames(), pose);
+    held.pendulum.hip.emplace_back(run.num_frames(), pose.col(kBodyHip));
+  }
+  const GroupHips hips = PendulumHips(held, run.prediction.path);
+  return GenerateBodies(loaded.settings, *loaded.generator, held, hips, run.num_frames());
 }
 
 }  // namespace pushid

@@ -1,11 +1,12 @@
 // ident: bodies for people who were never recorded: a formation's people get the skeleton and pose
-// of a recorded person, or of the synthetic skeleton, and a restoration moves them.
+// of a recorded person, or of the synthetic skeleton, and a restoration moves them, or a generator.
 #pragma once
 
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
 #include "ident/formations/formation_run.h"
+#include "ident/generators/generator_files.h"
 #include "models/restoration/postprocess.h"
 
 namespace pushid {
@@ -27,5 +28,15 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const std::vector<Pose>& first_poses,
                                         const Restoration& restoration,
                                         const PostprocessOptions& options);
+
+// Whether a generator can take such a scene: people who see each other, at its rate; flag: what
+// names its folder. It is shown the first poses from now on, whatever it was made for.
+MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
+                               LoadedGenerator* loaded);
+
+// What it makes of the first poses and the pushes, and of where physics have everybody's hip.
+Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
+                                                const std::vector<Pose>& first_poses,
+                                                const LoadedGenerator& loaded);
 
 }  // namespace pushid

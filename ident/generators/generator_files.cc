@@ -2,6 +2,7 @@
 #include "ident/generators/generator_files.h"
 
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/recording_names.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/generators/generator_kinds.h"
 #include "ident/parameters/option_names.h"
@@ -10,8 +11,10 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr TensorFolderKind kGeneratorFolder = {"generator", "--model",
-                                               "pushid-train-generator --out", 1};
+// flag: what names the folder.
+TensorFolderKind GeneratorFolder(const char* flag) {
+  return {"generator", flag, "pushid-train-generator --out", 1};
+}
 constexpr int kMostParticles = 1000;
 
 std::string KindNames() {
@@ -79,6 +82,7 @@ Json SettingsJson(const TrainedNetworks& trained) {
   if (settings.choice) {
     json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
   }
+  for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(Name(kind));
   std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
   return json;
 }
@@ -92,6 +96,11 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.predicted = json.at("predicted");
   settings.rate = json.at("rate_hz");
   settings.pendulum = json.value("pendulum", false);  // files from before have none
+  for (const Json& name : json.value("push_kinds", Json::array())) {
+    const std::optional<PushKind> kind = PushKindFromName(name.get<std::string>());
+    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is none");
+    settings.push_kinds.push_back(*kind);
+  }
   settings.layout = LayoutFrom(json.at("layout"));
   if (json.contains("choice")) {
     settings.choice.emplace();
@@ -120,7 +129,7 @@ MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trai
   content.training = trained.settings.training;
   std::visit([&content](const auto& of_kind) { AddTensors(of_kind, &content.tensors); },
              trained.of_kind);
-  return WriteTensorFolder(kGeneratorFolder, folder, content);
+  return WriteTensorFolder(GeneratorFolder("--out"), folder, content);
 }
 
 std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
@@ -130,10 +139,12 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
       trained.of_kind);
 }
 
-Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes) {
-  const Result<TensorFolder> read = ReadTensorFolder(kGeneratorFolder, folder, KindNames(), IsKind);
+Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
+                                      const char* flag) {
+  const Result<TensorFolder> read =
+      ReadTensorFolder(GeneratorFolder(flag), folder, KindNames(), IsKind);
   if (!read.ok()) return read.error();
-  const std::string path = JsonFileOf(kGeneratorFolder, folder);
+  const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
   TensorReader reader(read.value().tensors);
   TrainedNetworks trained;
   try {
@@ -149,7 +160,8 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (particles && changes.ridge_share.value_or(0.0) > 0.0 && particles->ridge_share <= 0.0) {
     return Error{"this generator was trained without a ridge; leave out --ridge_share", path};
   }
-  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes)};
+  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes),
+                         nullptr};
 }
 
 }  // namespace pushid

@@ -13,6 +13,8 @@
 #include "datasets/files/error.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
+#include "models/push.h"
+#include "models/restoration/restoration.h"
 
 namespace pushid {
 
@@ -38,10 +40,11 @@ inline constexpr const char* kChosenRestoration = "restoration";
 
 struct GeneratorSettings {
   GeneratorData data = GeneratorData::kCmu;
-  int observed = 25;      // frames that it is given
-  int predicted = 25;     // frames that it was trained to forecast
-  double rate = 25.0;     // Hz
-  bool pendulum = false;  // whether it must be told where physics have the hips
+  int observed = 25;                      // frames that it is given
+  int predicted = 25;                     // frames that it was trained to forecast
+  double rate = 25.0;                     // Hz
+  bool pendulum = false;                  // whether it must be told where physics have the hips
+  std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
   std::optional<ForecastChoice> choice;                                // none: nothing was compared
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
@@ -71,6 +74,7 @@ struct LoadedGenerator {
   GeneratorKind kind = GeneratorKind::kParticles;
   GeneratorSettings settings;
   std::unique_ptr<MotionGenerator> generator;
+  std::unique_ptr<Restoration> restoration;  // that forecasts in its place; usually none
 };
 
 // What may differ from the training; unset: as trained. Each kind has its own.
@@ -83,9 +87,11 @@ struct GeneratorChanges {
   uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
 };
 
-// Errors: no such folder, settings or tensors that are missing or do not fit.
+// flag: what names the folder, for messages. Errors: no such folder, settings or tensors that are
+// missing or do not fit.
 Result<LoadedGenerator> LoadGenerator(const std::string& folder,
-                                      const GeneratorChanges& changes = {});
+                                      const GeneratorChanges& changes = {},
+                                      const char* flag = "--model");
 
 // The same of what was just trained.
 std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,

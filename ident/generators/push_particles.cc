@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/recording_names.h"
 
 namespace pushid {
 
@@ -71,6 +73,32 @@ std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupH
   return group;
 }
 
+std::vector<PushKind> PushKindsOf(const Scene& scene) {
+  std::set<PushKind> kinds;
+  for (const ScenePush& push : scene.pushes) kinds.insert(push.kind);
+  return {kinds.begin(), kinds.end()};
+}
+
+std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene) {
+  if (settings.push_kinds.empty()) return "";
+  const auto& learned = settings.push_kinds;
+  std::string known, other;
+  for (const PushKind kind : learned) known += (known.empty() ? "" : ", ") + Name(kind);
+  for (const PushKind kind : PushKindsOf(scene)) {
+    if (std::find(learned.begin(), learned.end(), kind) != learned.end()) continue;
+    other += (other.empty() ? "" : ", ") + Name(kind);
+  }
+  if (other.empty()) return "";
+  return "the generator learned from pushes of kind " + known + " and is given some of kind " +
+         other +
+         ": people may go farther or less far than after such a push (an external push is "
+         "whole, the others go on after their frames)";
+}
+
+bool AtRateOf(const GeneratorSettings& settings, double dt) {
+  return std::abs(1.0 / dt - settings.rate) <= 0.01 * settings.rate;
+}
+
 BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin) {
   BodyMotion body(motion.cols());
   for (size_t t = 0; t < body.size(); ++t) {
@@ -84,9 +112,9 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
                                                const MotionGenerator& generator,
                                                const BodyRecording& recording,
                                                const GroupHips& hips, int frames) {
-  const double rate = 1.0 / recording.pendulum.scene.dt;
-  if (std::abs(rate - settings.rate) > 0.01 * settings.rate) {
-    return Error{"recording " + recording.pendulum.id + " has " + Rounded(rate, 3) +
+  const double dt = recording.pendulum.scene.dt;
+  if (!AtRateOf(settings, dt)) {
+    return Error{"recording " + recording.pendulum.id + " has " + Rounded(1.0 / dt, 3) +
                  " frames a second; the generator was trained at " + Rounded(settings.rate, 3) +
                  ": resample the recording"};
   }

@@ -32,6 +32,14 @@ GroupHips PendulumHips(const BodyRecording& recording, const RolloutPath<double>
 // Everybody of a recording, for generators whose people see each other; hips: or empty.
 std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips = {});
 
+// The kinds of a scene's pushes, each once.
+std::vector<PushKind> PushKindsOf(const Scene& scene);
+// Says which pushes are of a kind that the generator has not learned from; empty: none.
+std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene);
+
+// Whether frames of dt seconds are those the generator was trained on.
+bool AtRateOf(const GeneratorSettings& settings, double dt);
+
 BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& origin);
 
 // What a generator makes of a recording whose first `observed` frames it is shown: those, then its

@@ -1,6 +1,7 @@
 // ident: what generators learn from.
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "datasets/loading/forecast_windows.h"
 #include "ident/generators/push_particles.h"
@@ -33,6 +34,15 @@ std::vector<ObservedGroup> Groups(const std::vector<BodyRecording>& recordings,
     groups.push_back(GroupOf(recordings[i], pendulums.empty() ? GroupHips() : pendulums[i]));
   }
   return groups;
+}
+
+std::vector<PushKind> PushKindsOf(const std::vector<BodyRecording>& recordings,
+                                  const std::vector<int>& among) {
+  std::set<PushKind> kinds;
+  for (int i : among) {
+    for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
+  }
+  return {kinds.begin(), kinds.end()};
 }
 
 }  // namespace
@@ -81,6 +91,7 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
   settings.pendulum = !pendulums.empty();
+  settings.push_kinds = PushKindsOf(recordings, among);
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
   samples.groups = Groups(recordings, among, pendulums);

@@ -1,7 +1,6 @@
 // ident: trainings from recordings.
 #include "ident/training/restoration_training_run.h"
 
-#include <algorithm>
 #include <chrono>
 #include <numeric>
 
@@ -99,20 +98,16 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
 }
 
 Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
-                                           const RestorationRunOptions& options, int folds,
-                                           uint64_t seed, const RunProgress& progress) {
+                                           const RestorationRunOptions& options, FoldScheme scheme,
+                                           int folds, const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const int total = static_cast<int>(recordings.size());
-  const auto made = MakeFolds(pendulums, FoldScheme::kStratified, folds, 1, seed);
+  const auto made = MakeFolds(pendulums, scheme, folds, 1, options.training.seed);
   if (!made.ok()) return made.error();
   ChainValidation validation;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
-    std::vector<int> train;
-    for (int i = 0; i < total; ++i) {
-      const bool held = std::binary_search(fold.held_out.begin(), fold.held_out.end(), i);
-      if (!held) train.push_back(i);
-    }
+    const std::vector<int> train = Others(fold.held_out, total);
     const auto told = [&](const std::string& step, double done) {
       if (progress) progress(fold.name + ", " + step, done);
     };

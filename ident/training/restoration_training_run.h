@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
+#include "ident/problem/folds.h"
 #include "ident/training/restoration_training.h"
 
 namespace pushid {
@@ -40,7 +41,7 @@ struct ChainValidation {
 // Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
 // learn from first frames where some are to be seen.
 Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
-                                           const RestorationRunOptions& options, int folds,
-                                           uint64_t seed, const RunProgress& progress = nullptr);
+                                           const RestorationRunOptions& options, FoldScheme scheme,
+                                           int folds, const RunProgress& progress = nullptr);
 
 }  // namespace pushid

@@ -3,31 +3,37 @@
 groups     errors of the 49 recordings of groups, four folds, beside physics and baselines
 motion     what groups do: social states, words of motion, who moved first; with the same runs
 
-PUSHID_RECORDINGS is the folder of the recordings. One run serves both, a quarter of an hour of one core.
-Needs pushid-train-generator, which is built where LibTorch is found.
+PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
+diffusion and ten minutes for `window` bodies, which carry physics on the same folds.
+Needs pushid-train-generator and pushid-train-restoration, which are built where LibTorch is found.
 """
 import studies
 from studies import number, with_error
 
 BLEND = 0.5  # chosen on these folds
-FOLDS = ["--kind=diffusion", "--crossvalidate=4", "--scheme=interleaved"]
-# Name in the table, and which predictor of the run beside physics.
-ROWS = [("**diffusion and physics**, `--blend=0.5`", None),
-        ("diffusion", "generator_unblended"),
-        ("diffusion, 20 frames observed", "generator_shown_20"),
-        ("physics, `rigid` bodies", "rigid"),
-        ("constant velocity after the push", "constant_velocity"),
-        ("the first poses held", "static")]
+FOLDS = ["--crossvalidate=4", "--scheme=interleaved"]
 
 
-def beside_physics():
-    physics = studies.fit("groups").path
-    return studies.on_recordings("pushid-train-generator", "groups", *FOLDS, f"--physics={physics}",
-                                 f"--blend={BLEND}").json
+def diffused():
+    return studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
+                                 f"--physics={studies.fit('groups').path}", f"--blend={BLEND}").json
 
 
-def found(json, name):
-    return json if name is None else json["baselines"][name]
+def restored():
+    return studies.on_recordings("pushid-train-restoration", "groups", f"--model={studies.fit('groups').path}",
+                                 *FOLDS).json
+
+
+def rows():
+    """What a row is called, and the scores in it."""
+    beside = diffused()["baselines"]
+    return [("**diffusion and physics**, `--blend=0.5`", diffused()),
+            ("diffusion", beside["generator_unblended"]),
+            ("diffusion, 20 frames observed", beside["generator_shown_20"]),
+            ("physics, `rigid` bodies", beside["rigid"]),
+            ("physics, `window` bodies", restored()),
+            ("constant velocity after the push", beside["constant_velocity"]),
+            ("the first poses held", beside["static"])]
 
 
 def errors(json):
@@ -38,9 +44,8 @@ def errors(json):
 
 
 def groups():
-    json = beside_physics()
     return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"],
-                         [[title, *errors(found(json, name))] for title, name in ROWS])
+                         [[title, *errors(json)] for title, json in rows()])
 
 
 def share(value):
@@ -48,15 +53,14 @@ def share(value):
 
 
 def motion():
-    json = beside_physics()
-    rows = []
-    for title, name in ROWS:
-        m = found(json, name)["group_metrics"]
-        rows.append([title, share(m["sscp"]), share(m["sscp_changes"]), share(m["ndms"]),
-                     f"{m['pushed_named']} of {m['recordings']}", share(m["onset_order"]), share(m["onset_error_s"]),
-                     m["false_movers"], m["missed_movers"]])
+    cells = []
+    for title, json in rows():
+        m = json["group_metrics"]
+        cells.append([title, share(m["sscp"]), share(m["sscp_changes"]), share(m["ndms"]),
+                      f"{m['pushed_named']} of {m['recordings']}", share(m["onset_order"]), share(m["onset_error_s"]),
+                      m["false_movers"], m["missed_movers"]])
     return studies.table(["held out, 4 folds", "SSCP", "its changes", "NDMS", "pushed person moves first",
-                          "onsets in order", "onset error, s", "false movers", "missed movers"], rows)
+                          "onsets in order", "onset error, s", "false movers", "missed movers"], cells)
 
 
 if __name__ == "__main__":

@@ -30,6 +30,8 @@ ROWS = [
     ("Jacobian of the 49 recordings of groups: contact / with linear self forces / and drive",
      [f"GroupJacobian/{c}" for c in ("contact", "linear_and_contact", "linear_contact_drive")]),
     ("bodies of 13 people, a frame: `rigid` / `window` / `cvae`", ["RestoreRigid", "RestoreWindow", "RestoreCvae"]),
+    ("96 frames of a group by diffusion, one sample of 25 steps: 5 / 13 people",
+     ["BM_DiffusionSample/5", "BM_DiffusionSample/13"]),
     ("Jacobian of the 32 recordings with a network: `mlp:4` / `gru:4`",
      ["NetworkJacobian/mlp:4", "NetworkJacobian/gru:4"]),
     ("one second of a crowd of 1,000 / 10,000 people who touch",

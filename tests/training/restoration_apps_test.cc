@@ -105,6 +105,30 @@ TEST_F(RestorationAppTest, CrossValidatesTheWholeChain) {
   EXPECT_GT(json["true_pendulum"]["mean"]["MPJPE_m"].get<double>(), 0.0);
 }
 
+// Physics alone differ too: other recordings are fitted.
+TEST_F(RestorationAppTest, CrossValidatesOnTheFoldsOfGenerators) {
+  const auto rigid = [&](const std::string& scheme) {
+    EXPECT_EQ(RunApp("pushid-train-restoration",
+                     {Recordings(), model_, "--crossvalidate=2", "--effort=0.01", "--quiet",
+                      "--scheme=" + scheme, "--json_out=" + Path("cv.json")})
+                  .exit_code,
+              0);
+    return Json(Path("cv.json"))["baselines"]["rigid"]["mean"]["hipADE_m"].get<double>();
+  };
+  const double interleaved = rigid("interleaved");
+  EXPECT_NE(interleaved, rigid("stratified"));
+  const AppRun generator =
+      RunApp("pushid-train-generator",
+             {Recordings(), "--kind=diffusion", "--crossvalidate=2", "--scheme=interleaved",
+              "--physics=" + Path("model.json"), "--blend=0.5", "--steps=2", "--batch=2", "--quiet",
+              "--json_out=" + Path("g.json")});
+  ASSERT_EQ(generator.exit_code, 0) << generator.err;
+  EXPECT_DOUBLE_EQ(Json(Path("g.json"))["baselines"]["rigid"]["mean"]["hipADE_m"], interleaved);
+  EXPECT_TRUE(Refused(RunApp("pushid-train-restoration",
+                             {Recordings(), model_, "--scheme=subject", "--out=" + Path("o")}),
+                      {"--scheme goes with --crossvalidate"}));
+}
+
 // Shown first frames, bodies err less.
 TEST_F(RestorationAppTest, CrossValidatesAfterFramesThatWereSeen) {
   const auto error = [&](const std::string& observed) {

@@ -1,0 +1,41 @@
+// apps: sampling of diffusion by flag.
+#include "apps/flags/diffusion_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "ident/parameters/option_names.h"
+
+namespace {
+const pushid::DiffusionGeneratorOptions kOptions;
+}  // namespace
+
+DEFINE_int32(averaged, kOptions.averaged, "diffusion: samples that a forecast is the mean of");
+DEFINE_string(sampler, pushid::NameOf(kOptions.sampler),
+              "diffusion: way back from noise: renoised, ddpm or ddim");
+DEFINE_int32(sampling_steps, kOptions.steps, "diffusion: steps of the way back");
+DEFINE_double(blend, kOptions.blend,
+              "diffusion: share of the way from the forecast hip to that of physics");
+
+namespace pushid {
+
+Result<DiffusionGeneratorOptions> DiffusionOptionsFromCommandLine() {
+  DiffusionGeneratorOptions options;
+  for (const MaybeError& error :
+       {ParseName("--sampler", FLAGS_sampler, &options.sampler),
+        CheckRange("averaged", FLAGS_averaged, 1, 1000),
+        CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0)}) {
+    if (error) return *error;
+  }
+  options.averaged = FLAGS_averaged;
+  options.steps = FLAGS_sampling_steps;
+  options.blend = FLAGS_blend;
+  return options;
+}
+
+std::vector<const char*> DiffusionFlagNames() {
+  return {"averaged", "sampler", "sampling_steps", "blend"};
+}
+
+}  // namespace pushid

@@ -1,0 +1,22 @@
+// apps: --scheme by name.
+#include "apps/flags/scheme_flags.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "ident/parameters/option_names.h"
+
+DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
+              "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
+              "(a setting dealt out in turn)");
+
+namespace pushid {
+
+Result<FoldScheme> SchemeFromCommandLine(bool takes_folds) {
+  FoldScheme scheme = FoldScheme::kStratified;
+  if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &scheme)) return *error;
+  if (!takes_folds && Given("scheme")) return Error{"--scheme goes with --crossvalidate"};
+  return scheme;
+}
+
+}  // namespace pushid

@@ -1,0 +1,77 @@
+// pushid-simulate --formation --generator, as a user runs it after pushid-train-generator.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class FormationGeneratorTest : public AppTest {
+ protected:
+  AppRun Train(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--dataset=pushes", Recordings(), "--steps=20", "--seeds=1",
+                             "--batch=2", "--observed=1", "--quiet"});
+    return RunApp("pushid-train-generator", more);
+  }
+  // Flags that are given later win.
+  AppRun Simulate(const std::vector<std::string>& more) const {
+    std::vector<std::string> flags = {"--model=" + Path("model.json"), "--formation=diamond",
+                                      "--people=5", "--duration=1", "--generator=" + Path("g")};
+    flags.insert(flags.end(), more.begin(), more.end());
+    return RunApp("pushid-simulate", flags);
+  }
+};
+
+const std::vector<std::string> kQuick = {"--averaged=1", "--sampling_steps=2"};
+
+TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
+  FitModel();
+  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
+  std::vector<std::string> flags = kQuick;
+  flags.insert(flags.end(), {"--blend=0.5", "--poses_from=" + manifest_,
+                             "--html_out=" + Path("p.html"), "--strip_out=" + Path("s.svg"),
+                             "--joints_out=" + Path("j.csv"), "--bodies_out=" + Path("b.bvh")});
+  const AppRun run = Simulate(flags);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.err, "of kind net and is given some of kind external"));
+  EXPECT_TRUE(Contains(run.out, "5 people in a diamond"));
+  const std::string page = ReadText(Path("p.html"));
+  EXPECT_TRUE(Contains(page, "bodies by diffusion"));
+  EXPECT_TRUE(Contains(ReadText(Path("s.svg")), "bodies by diffusion"));
+  EXPECT_TRUE(Contains(ReadText(Path("j.csv")), "\n60,"));
+  EXPECT_TRUE(Contains(ReadText(Path("b_4_p04.bvh")), "HIERARCHY"));
+  // Another share of physics moves the bodies, and nothing else does.
+  const std::string blended = ReadText(Path("j.csv"));
+  flags.push_back("--blend=0.9");
+  ASSERT_EQ(Simulate(flags).exit_code, 0);
+  EXPECT_NE(ReadText(Path("j.csv")), blended);
+  flags.back() = "--blend=0.5";
+  ASSERT_EQ(Simulate(flags).exit_code, 0);
+  EXPECT_EQ(ReadText(Path("j.csv")), blended);
+}
+
+TEST_F(FormationGeneratorTest, MistakesAreNamed) {
+  FitModel();
+  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
+  ASSERT_EQ(Train({"--noise_steps=5", "--out=" + Path("particles")}).exit_code, 0);
+  EXPECT_TRUE(Refused(Simulate({"--restoration=rigid"}), {"--restoration and --generator"}));
+  EXPECT_TRUE(Refused(Simulate({"--postprocess=none"}), {"--postprocess goes with --restoration"}));
+  EXPECT_TRUE(
+      Refused(Simulate({"--generator=", "--blend=0.5"}), {"--blend goes with --generator"}));
+  EXPECT_TRUE(Refused(Simulate({"--generator=", "--html_out=" + Path("p.html")}),
+                      {"--html_out needs bodies", "--restoration", "--generator"}));
+  EXPECT_TRUE(Refused(Simulate({"--blend=1.5"}), {"--blend is 1.5"}));
+  EXPECT_TRUE(Refused(Simulate({"--fps=100"}), {"trained at 60", "has 100", "--fps=60"}));
+  EXPECT_TRUE(Refused(Simulate({"--generator=" + Path("none")}),
+                      {Path("none"), "--generator names the folder"}));
+  EXPECT_TRUE(Refused(Simulate({"--generator=" + Path("particles")}),
+                      {"a generator of particles", "--kind=diffusion"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path("o"), "--generator=" + Path("g")}),
+                      {"--generator needs --formation"}));
+}
+
+}  // namespace
+}  // namespace pushid
