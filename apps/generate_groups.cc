@@ -8,6 +8,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/bodies/animation.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/generators/long_forecast.h"
