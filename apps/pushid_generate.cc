@@ -277,9 +277,9 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     json["spread"] = ToJson(spread.value());
   }
   if (flags.frames > 0) {
-    const Result<Json> seconds = ShowSeconds(loaded, bodies.value(), physics.value(), flags.frames);
-    if (!seconds.ok()) return Fail(seconds.error());
-    json["seconds"] = seconds.value();
+    const Result<Json> rows = ShowSeconds(loaded, bodies.value(), physics.value(), flags.frames);
+    if (!rows.ok()) return Fail(rows.error());
+    json["seconds"] = rows.value();
   }
   if (flags.json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};

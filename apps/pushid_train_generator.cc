@@ -30,7 +30,7 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
   const Result<GeneratorValidation> validation =
       CrossValidateGenerator(recordings, flags.options,
                              {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
-                              flags.pendulum_input, flags.changes, flags.samples},
+                              flags.pendulum_input, flags.changes, {}, flags.samples},
                              [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
