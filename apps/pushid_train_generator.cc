@@ -40,7 +40,10 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
   if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(validation.value().evaluation, &json);
-  if (spread.samples > 0) json["spread"] = ToJson(spread);
+  if (spread.samples > 0) {
+    json["spread"] = ToJson(spread);
+    json["spread_of_noise_alone"] = ToJson(validation.value().noise_alone);
+  }
   json["run"] = {{"training_seconds", validation.value().training_seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;

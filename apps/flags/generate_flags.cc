@@ -108,7 +108,7 @@ MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
   }
-  if (FLAGS_push_spread > 0.0 && flags.samples == 0) {
+  if (Given("push_spread") && flags.samples == 0) {
     return Error{"--push_spread is between sampled futures: give --samples"};
   }
   if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {

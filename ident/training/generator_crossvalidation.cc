@@ -25,8 +25,7 @@ class FoldJudge {
             const std::optional<IdentifiedModel>& model)
       : validation_(validation), trained_(trained), model_(model) {}
 
-  // Adds to the spread, which says how many futures are sampled.
-  MaybeError AddSpreadOf(const BodyRecording& recording, GroupSpread* spread) const {
+  MaybeError AddSpreads(const BodyRecording& recording, GeneratorValidation* result) const {
     GroupHips hips;
     std::map<std::string, BodyScore> unused;
     if (NeedsHips(validation_.changes)) {
@@ -34,10 +33,16 @@ class FoldJudge {
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
     }
-    Random random(validation_.changes.seed);
-    AddSpread(
-        *MakeGenerator(trained_, validation_.changes), recording, hips, validation_.observed,
-        [&random] { return random.Normal(); }, spread);
+    GeneratorChanges still = validation_.changes;
+    still.diffusion.push_spread = 0.0;
+    for (const auto& [changes, spread] :
+         {std::pair(&validation_.changes, &result->spread),
+          std::pair<const GeneratorChanges*, GroupSpread*>(&still, &result->noise_alone)}) {
+      Random random(changes->seed);
+      AddSpread(
+          *MakeGenerator(trained_, *changes), recording, hips, validation_.observed,
+          [&random] { return random.Normal(); }, spread);
+    }
     return std::nullopt;
   }
 
@@ -128,7 +133,7 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
   if (!made.ok()) return made.error();
   const int total = static_cast<int>(recordings.size());
   GeneratorValidation result;
-  result.spread.samples = validation.samples;
+  result.spread.samples = result.noise_alone.samples = validation.samples;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
@@ -157,7 +162,7 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
     for (int i : fold.held_out) {
       MaybeError error = judge.Score(recordings[i], &by_recording[i]);
       if (!error && validation.samples > 0) {
-        error = judge.AddSpreadOf(recordings[i], &result.spread);
+        error = judge.AddSpreads(recordings[i], &result);
       }
       if (error) return *error;
     }

@@ -34,7 +34,8 @@ struct GeneratorValidationOptions {
 };
 
 struct GeneratorValidation : ChainValidation {
-  GroupSpread spread;  // of the sampled futures of recordings held out
+  // Of the sampled futures of recordings held out, and of such that differ by noise alone.
+  GroupSpread spread, noise_alone;
 };
 
 std::string BlendName(double blend);

@@ -29,7 +29,7 @@ struct DiffusionGeneratorOptions {
   int averaged = 8;          // samples of a forecast
   int window = 128;          // frames of one pass; more go on window after window
   double blend = 0.0;        // share of the way to the pendulum's hip
-  double push_spread = 0.0;  // of the logarithm of the push, between sampled futures
+  double push_spread = 0.8;  // of the logarithm of the push, between sampled futures
   PostprocessOptions postprocess = {true, 20};
 };
 

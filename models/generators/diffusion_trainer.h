@@ -37,7 +37,7 @@ struct DiffusionTrainingOptions {
   double averaging = 0.998;  // of the weights, from step to step
   double dropout = 0.1;      // of the statics
   double bystanders = 0.3;   // share of groups that get one or two
-  double later = 0.0;        // share of groups that are seen from a later frame on
+  double later = 0.2;        // share of groups that are seen from a later frame on
   double turn = 0.12;        // rad, largest
   double size = 0.05;        // share, largest
   double dt = 1.0 / 60.0;    // s

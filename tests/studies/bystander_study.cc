@@ -24,7 +24,7 @@ namespace {
 constexpr int kBystanders = 8;
 constexpr float kAhead = 0.6f, kColumn = 0.5f, kAside = 3.0f;  // m
 
-enum class Place { kNobody, kAhead, kAside };
+enum class Place { kNobody, kInFront, kAtTheSide };
 
 // Recorded people first. `extra` have the frames and masses of the recorded ones in turn.
 std::vector<ObservedMotion> WithBystanders(std::vector<ObservedMotion> group, Place place) {
@@ -41,7 +41,7 @@ std::vector<ObservedMotion> WithBystanders(std::vector<ObservedMotion> group, Pl
     person.controls = {};
     const float row = static_cast<float>(k / 2), column = static_cast<float>(k % 2);
     person.place =
-        place == Place::kAhead
+        place == Place::kInFront
             ? Eigen::Vector2f(foremost + kAhead * (1.0f + row), middle + kColumn * (column - 0.5f))
             : Eigen::Vector2f(foremost - kAhead * row, outermost + kAside + kColumn * column);
     group.push_back(std::move(person));
@@ -95,8 +95,9 @@ int Run() {
     return 1;
   }
   std::printf("where they stand, error of the recorded people m, way of the others m\n");
-  for (const auto& [name, place] :
-       {std::pair("nobody", Place::kNobody), {"ahead", Place::kAhead}, {"aside", Place::kAside}}) {
+  for (const auto& [name, place] : {std::pair("nobody", Place::kNobody),
+                                    {"ahead", Place::kInFront},
+                                    {"aside", Place::kAtTheSide}}) {
     Sums sums;
     for (const BodyRecording& recording : bodies.value()) {
       Judge(*loaded.value().generator, recording, place, &sums);
