@@ -2,21 +2,30 @@
 
 groups     errors of the 49 recordings of groups, four folds, beside physics and baselines
 motion     what groups do: social states, words of motion, who moved first; with the same runs
+poolings   how people see each other, over the same folds; half an hour
+crowds     people who were not recorded, ahead of a group and beside it
+spread     whether sampled futures hold what was recorded; with the first run
+seconds    six seconds of every group, beside physics
 
 PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
 diffusion and ten minutes for `window` bodies, which carry physics on the same folds.
 Needs pushid-train-generator and pushid-train-restoration, which are built where LibTorch is found.
 """
+from json import load as json_of
+
 import studies
 from studies import number, with_error
 
 BLEND = 0.5  # chosen on these folds
+SAMPLES = 19  # their range is a 90 % interval
+POOLINGS = ["local", "mean", "attention", "none"]
 FOLDS = ["--crossvalidate=4", "--scheme=interleaved"]
 
 
 def diffused():
     return studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
-                                 f"--physics={studies.fit('groups').path}", f"--blend={BLEND}").json
+                                 f"--physics={studies.fit('groups').path}", f"--blend={BLEND}",
+                                 f"--samples={SAMPLES}").json
 
 
 def restored():
@@ -63,5 +72,69 @@ def motion():
                           "onsets in order", "onset error, s", "false movers", "missed movers"], cells)
 
 
+def spread():
+    json = diffused()
+    rows = [(name, json[key]) for name, key in (("noise alone, `--push_spread=0`", "spread_of_noise_alone"),
+                                                ("pushed harder or less (default)", "spread"))]
+    return studies.table([f"{SAMPLES} futures of recordings held out", "recorded hip x among them (0.9 if as people)",
+                          "their width, m"],
+                         [[name, f"{of['hip_x_inside']:.2f}", number(of["hip_x_width_m"])] for name, of in rows])
+
+
+def poolings():
+    rows = []
+    for pooling in POOLINGS:
+        if pooling == "local":
+            json = diffused()["baselines"]["generator_unblended"]
+        else:
+            json = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
+                                         f"--pooling={pooling}").json
+        rows.append([f"`{pooling}`", *errors(json)[:3]])
+    return studies.table(["`--pooling`, held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m"], rows)
+
+
+def of_fold(fold):
+    """The ids of the recordings of groups that the interleaved fold holds out."""
+    with open(studies.MANIFEST, encoding="utf-8") as file:
+        recordings = json_of(file)["recordings"]
+    seen, ids = {}, []
+    for recording in recordings:
+        if len(recording["subjects"]) < 2:
+            continue
+        position = seen.get(recording["setting"], 0)
+        seen[recording["setting"]] = position + 1
+        if position % 4 == fold:
+            ids.append(recording["id"])
+    return ",".join(ids)
+
+
+def crowds():
+    rows = []
+    for name, flags in [(f"`{p}`", [f"--pooling={p}"]) for p in POOLINGS[:3]] + [
+            ("`local`, `--bystanders=0`", ["--bystanders=0"])]:
+        model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion",
+                                      f"--leave_out={of_fold(0)}", *flags, out="out").path
+        text = studies.run("pushid-bystander-study", f"--model={model}", f"--recordings={studies.MANIFEST}",
+                           f"--ids={of_fold(0)}", out=None).text
+        cells = [line.split(", ") for line in text.splitlines()[1:]]
+        rows.append([name, *(cell[1] for cell in cells), cells[2][2]])
+    return studies.table(["one fold held out", "error of the recorded people, m", "eight stand ahead", "eight stand 3 m aside",
+                          "way of those aside, m"], rows)
+
+
+def seconds():
+    physics = studies.fit("groups").path
+    model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", out="out").path
+    json = studies.on_recordings("pushid-generate", "groups", f"--model={model}", f"--physics={physics}", "--blend=0",
+                                 "--frames=361").json["seconds"]
+    rows = []
+    for name, by in (("diffusion", "generator"), ("physics", "rigid")):
+        for key, title in (("hip_speed_m_s", "hip speed, m/s"), ("hip_way_m", "way of the hip, m"),
+                           ("standing", "share who stand"), ("sscp", "SSCP")):
+            rows.append([f"{name}: {title}", *(number(row[key]) for row in json[by])])
+    return studies.table(["every group for six seconds", *(f"{row['second']}. s" for row in json["generator"])], rows)
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"groups": groups, "motion": motion})
+    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "poolings": poolings,
+                            "crowds": crowds, "seconds": seconds})
