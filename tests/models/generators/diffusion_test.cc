@@ -308,23 +308,22 @@ TEST_F(DiffusionGeneratorTest, GoesOnPastAWindow) {
   EXPECT_TRUE(whole[1].allFinite());
 }
 
+// A future under a push drawn larger is that of a larger push; forecasts are under the push itself.
 TEST_F(DiffusionGeneratorTest, PushesOfSampledFuturesDiffer) {
-  const auto width = [this](double spread) {
+  const auto sample = [this](double spread, double first_draw, double push) {
     options_.push_spread = spread;
-    const auto futures = Generator().Sample(Seen(2, 1), 30, 8, SeededNoise()());
-    float low = 1e9f, high = -1e9f;
-    for (const SampledFuture& future : futures[1]) {
-      low = std::min(low, future.motion(0, 29)), high = std::max(high, future.motion(0, 29));
-    }
-    return high - low;
+    const auto draws = std::make_shared<int>(0);
+    const NormalSource normal = [draws, first_draw] { return (*draws)++ == 0 ? first_draw : 0.0; };
+    return Generator().Sample(PushedBy(Seen(2, 1), push), 30, 1, normal)[1][0].motion;
   };
-  const float usual = width(0.0);
-  EXPECT_GT(width(1.5), 1.2f * usual);
-  // Forecasts are not sampled.
-  options_.push_spread = 0.0;
-  const auto forecast = Generator().Forecast(Seen(2, 1), 20);
-  options_.push_spread = 1.0;
-  EXPECT_EQ(Generator().Forecast(Seen(2, 1), 20)[0], forecast[0]);
+  const Trajectories drawn = sample(0.5, 1.0, 1.0);
+  EXPECT_EQ(drawn, sample(0.0, 0.0, std::exp(0.5)));
+  EXPECT_NE(drawn, sample(0.0, 0.0, 1.0));
+  const auto forecast = [this](double spread) {
+    options_.push_spread = spread;
+    return Generator().Forecast(Seen(2, 1), 20)[0];
+  };
+  EXPECT_EQ(forecast(0.0), forecast(1.0));
 }
 
 TEST_F(DiffusionGeneratorTest, NobodyHasNoFuture) {
