@@ -298,11 +298,11 @@ TEST_F(DiffusionGeneratorTest, GoesOnPastAWindow) {
   EXPECT_EQ(Trajectories(whole[1].leftCols(59)), first[1]);
   // The untrained network shakes by itself: windows may not add to it.
   const auto largest = [&whole](int begin, int end) {
-    float largest = 0.0f;
+    float step = 0.0f;
     for (int t = begin; t < end; ++t) {
-      largest = std::max(largest, (whole[1].col(t) - whole[1].col(t - 1)).norm());
+      step = std::max(step, (whole[1].col(t) - whole[1].col(t - 1)).norm());
     }
-    return largest;
+    return step;
   };
   EXPECT_LT(largest(55, 65), 3.0f * largest(20, 50));
   EXPECT_TRUE(whole[1].allFinite());
