@@ -36,6 +36,9 @@ DEFINE_double(noise_memory, kFlags.changes.noise_memory,
               "of sampled futures: correlation of the noise of one frame with the next");
 DEFINE_double(noise_scale, kFlags.changes.noise_scale,
               "of sampled futures: multiplies the noise that was learned");
+DEFINE_bool(mirror, kFlags.changes.mirror,
+            "forecast the mirror image too, and average: as a second network would, without its "
+            "training");
 DEFINE_int32(observed, kFlags.observed,
              "diffusion: frames that it is shown, 1 for the first poses and the push; 0: as it was "
              "made for");
@@ -131,7 +134,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   }
   const std::vector<const char*> foreign =
       diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
-                                          "noise_scale", "person"}
+                                          "noise_scale", "mirror",        "person"}
                : std::vector<const char*>{"observed", "averaged", "sampler", "sampling_steps",
                                           "physics",  "blend",    "frames"};
   for (const char* flag : foreign) {
@@ -158,6 +161,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.project_bones = FLAGS_project_bones;
   flags.changes.noise_memory = FLAGS_noise_memory;
   flags.changes.noise_scale = FLAGS_noise_scale;
+  flags.changes.mirror = FLAGS_mirror;
   flags.changes.diffusion.steps = FLAGS_sampling_steps;
   flags.changes.diffusion.averaged = FLAGS_averaged;
   flags.changes.diffusion.blend = FLAGS_blend;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "datasets/files/random.h"
+#include "ident/generators/push_particles.h"
 
 namespace pushid {
 namespace {
@@ -100,6 +101,8 @@ std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
   options.jitter = trained.jitter;
   options.noise_memory = changes.noise_memory;
   options.noise_scale = changes.noise_scale;
+  options.mirror = changes.mirror;
+  if (settings.data == GeneratorData::kPushes) options.mirrored_controls = kMirroredPush;
   options.ridge_share =
       trained.ridge_share > 0.0 ? changes.ridge_share.value_or(trained.ridge_share) : 0.0;
   return std::make_unique<ParticleGenerator>(settings.layout, trained.members, trained.ridge,

@@ -98,11 +98,11 @@ class ParticleGeneratorTest : public ::testing::Test {
     for (float phase : {0.0f, 1.0f, 2.0f}) fit.Add(SwayingMotion(100, phase), 12, 6);
     ridge_ = fit.Solve(1e-4);
   }
-  ParticleGenerator Generator(double ridge_share, bool project_bones) const {
-    return {FourParticles(),
-            {RandomParticles(1), RandomParticles(2)},
-            ridge_,
-            {ridge_share, project_bones, 0.0}};
+  ParticleGenerator Generator(double ridge_share, bool project_bones, bool mirror = false) const {
+    ParticleGeneratorOptions options;
+    options.ridge_share = ridge_share, options.project_bones = project_bones;
+    options.jitter = 0.0, options.mirror = mirror;
+    return {FourParticles(), {RandomParticles(1), RandomParticles(2)}, ridge_, options};
   }
   RidgeForecast ridge_;
   std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
@@ -114,6 +114,37 @@ TEST_F(ParticleGeneratorTest, BlendsMembersAndTheLinearForecast) {
   const Trajectories expected = 0.7f * mean + 0.3f * ridge_.Forecast(people_[0].frames);
   EXPECT_LT((Generator(0.3, false).Forecast(people_, 6)[0] - expected).norm(), 1e-5f);
   EXPECT_LT((Generator(0.0, false).Forecast(people_, 6)[0] - mean).norm(), 1e-5f);
+}
+
+// In the mirror the same members are asked of the mirrored past; half of the mean is theirs.
+TEST_F(ParticleGeneratorTest, LooksInTheMirror) {
+  const ParticleLayout layout = FourParticles();
+  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
+  const Trajectories plain = Generator(0.0, false).Forecast(people_, 6)[0];
+  const Trajectories back = Mirrored(Generator(0.0, false).Forecast({turned}, 6)[0], layout);
+  ASSERT_GT((plain - back).norm(), 1e-3f);
+  const ParticleGenerator both = Generator(0.0, false, true);
+  const Trajectories forecast = both.Forecast(people_, 6)[0];
+  EXPECT_LT((forecast - 0.5f * (plain + back)).norm(), 1e-5f);
+  EXPECT_LT((both.Forecast({turned}, 6)[0] - Mirrored(forecast, layout)).norm(), 1e-5f);
+}
+
+TEST_F(ParticleGeneratorTest, PushesTurnInTheMirrorToo) {
+  ParticleStructure structure;
+  structure.controls = 2;
+  ParticleGeneratorOptions options;
+  options.ridge_share = 0.0, options.project_bones = false;
+  options.mirrored_controls = {1.0f, -1.0f};
+  const ParticleLayout layout = FourParticles();
+  const ParticleGenerator generator(layout, {RandomParticles(3, structure)}, {}, options);
+  ObservedMotion pushed = {people_[0].frames, Eigen::MatrixXf::Random(2, 18)};
+  const Trajectories forecast = generator.Forecast({pushed}, 6)[0];
+  pushed.frames = Mirrored(pushed.frames, layout);
+  const Trajectories otherwise = generator.Forecast({pushed}, 6)[0];
+  pushed.controls.row(1) *= -1.0f;
+  const Trajectories turned = generator.Forecast({pushed}, 6)[0];
+  EXPECT_LT((turned - Mirrored(forecast, layout)).norm(), 1e-5f);
+  EXPECT_GT((turned - otherwise).norm(), 1e-3f);
 }
 
 TEST_F(ParticleGeneratorTest, BonesKeepTheLengthsThatWereSeen) {
@@ -173,8 +204,16 @@ TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
   EXPECT_LT((a - b).norm(), 1e-5f);
 }
 
-// Noise of nothing: a future is its member's forecast, moved as the blend is.
+// Noise of nothing: a future is its member's forecast, moved as the blend is, in the mirror or not.
 TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
+  const ParticleLayout layout = FourParticles();
+  const auto views = Generator(0.0, false, true).Sample(people_, 6, 4, [] { return 0.0; })[0];
+  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
+  for (uint64_t m = 0; m < 2; ++m) {
+    const ParticleNetwork member = RandomParticles(m + 1);
+    EXPECT_LT((views[m].motion - Moved(member, people_[0], 6)).norm(), 1e-5f);
+    EXPECT_LT((views[m + 2].motion - Mirrored(Moved(member, turned, 6), layout)).norm(), 1e-5f);
+  }
   const auto futures = Generator(0.0, false).Sample(people_, 6, 2, [] { return 0.0; })[0];
   EXPECT_LT((futures[0].motion - Moved(RandomParticles(1), people_[0], 6)).norm(), 1e-5f);
   EXPECT_LT((futures[1].motion - Moved(RandomParticles(2), people_[0], 6)).norm(), 1e-5f);
