@@ -36,6 +36,9 @@ DEFINE_double(noise_memory, kFlags.changes.noise_memory,
               "of sampled futures: correlation of the noise of one frame with the next");
 DEFINE_double(noise_scale, kFlags.changes.noise_scale,
               "of sampled futures: multiplies the noise that was learned");
+DEFINE_bool(correlated_noise, kFlags.changes.correlated_noise,
+            "of sampled futures: coordinates are moved together, as the drift was seen to miss "
+            "them; off: each by itself");
 DEFINE_bool(mirror, kFlags.changes.mirror,
             "forecast the mirror image too, and average: as a second network would, without its "
             "training");
@@ -133,8 +136,9 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
         "--page_out"};
   }
   const std::vector<const char*> foreign =
-      diffuses ? std::vector<const char*>{"ridge_share", "project_bones", "noise_memory",
-                                          "noise_scale", "mirror",        "person"}
+      diffuses ? std::vector<const char*>{"ridge_share", "project_bones",    "noise_memory",
+                                          "noise_scale", "correlated_noise", "mirror",
+                                          "person"}
                : std::vector<const char*>{"observed", "averaged", "sampler", "sampling_steps",
                                           "physics",  "blend",    "frames"};
   for (const char* flag : foreign) {
@@ -161,6 +165,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.project_bones = FLAGS_project_bones;
   flags.changes.noise_memory = FLAGS_noise_memory;
   flags.changes.noise_scale = FLAGS_noise_scale;
+  flags.changes.correlated_noise = FLAGS_correlated_noise;
   flags.changes.mirror = FLAGS_mirror;
   flags.changes.diffusion.steps = FLAGS_sampling_steps;
   flags.changes.diffusion.averaged = FLAGS_averaged;

@@ -47,7 +47,11 @@ ParticleGenerator::ParticleGenerator(ParticleLayout layout, std::vector<Particle
     : layout_(std::move(layout)),
       members_(std::move(members)),
       ridge_(std::move(ridge)),
-      options_(options) {}
+      options_(options) {
+  for (ParticleNetwork& member : members_) {
+    if (!options_.correlated_noise) member.noise_mix.resize(0, 0);
+  }
+}
 
 std::vector<ParticleGenerator::View> ParticleGenerator::Views() const {
   std::vector<View> views;

@@ -26,6 +26,7 @@ struct ParticleGeneratorOptions {
   // scale. Both were chosen on the validation split, where the noise that was learned, drawn anew
   // every frame, covers 80 ms but too little of 1000 ms: errors of a forecast last.
   double noise_memory = 0.2, noise_scale = 1.0;
+  bool correlated_noise = true;               // off: coordinates are drawn independently
   bool mirror = true;                         // members also look in the mirror
   std::vector<float> mirrored_controls = {};  // the sign of each control there
 };

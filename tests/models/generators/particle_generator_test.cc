@@ -61,6 +61,22 @@ TEST(ParticleRolloutTest, NoiseIsHeldWithinItsBounds) {
   EXPECT_LT((difference.array() / 0.01f - std::exp(2.0f)).abs().maxCoeff(), 1e-2f);
 }
 
+// M = [1 0; 0.6 0.8] for the first two coordinates: e = (1, 1) moves them by 1 and 1.4 of a step,
+// and the likelihood is that of N(0, M M^T), whose determinant is 0.8^2.
+TEST(ParticleRolloutTest, NoiseMovesCoordinatesTogether) {
+  ParticleNetwork network = RandomParticles(1);
+  network.noise.weights.setZero(), network.noise.bias.setZero();
+  network.noise_mix.topLeftCorner<2, 2>() << 1.0f, 0.0f, 0.6f, 0.8f;
+  const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.0f)}};
+  ParticleRollout still(network, people), moved(network, people);
+  const Eigen::MatrixXf noise = Eigen::MatrixXf::Ones(12, 1);
+  const Eigen::VectorXf difference = (moved.Step(&noise) - still.Step()) / 0.01f;
+  EXPECT_NEAR(difference[0], 1.0f, 1e-3f);
+  EXPECT_NEAR(difference[1], 1.4f, 1e-3f);
+  EXPECT_NEAR(difference[2], 1.0f, 1e-3f);
+  EXPECT_NEAR(moved.log_likelihood()(0), -6.0 * (1.0 + std::log(2.0 * M_PI)) - std::log(0.8), 1e-4);
+}
+
 TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
   for (ParticleCell cell : {ParticleCell::kGru, ParticleCell::kLstm}) {
     ParticleStructure structure;
@@ -114,6 +130,20 @@ TEST_F(ParticleGeneratorTest, BlendsMembersAndTheLinearForecast) {
   const Trajectories expected = 0.7f * mean + 0.3f * ridge_.Forecast(people_[0].frames);
   EXPECT_LT((Generator(0.3, false).Forecast(people_, 6)[0] - expected).norm(), 1e-5f);
   EXPECT_LT((Generator(0.0, false).Forecast(people_, 6)[0] - mean).norm(), 1e-5f);
+}
+
+TEST_F(ParticleGeneratorTest, NoiseMayBeDrawnIndependently) {
+  ParticleNetwork together = RandomParticles(1);
+  together.noise_mix.col(0).setConstant(0.5f);
+  const auto first = [&](const ParticleNetwork& network, bool correlated) {
+    ParticleGeneratorOptions options;
+    options.correlated_noise = correlated;
+    const ParticleGenerator generator(FourParticles(), {network}, ridge_, options);
+    Random random(1);
+    return generator.Sample(people_, 6, 1, [&] { return random.Normal(); })[0][0].motion;
+  };
+  EXPECT_NE(first(together, true), first(together, false));
+  EXPECT_EQ(first(together, false), first(RandomParticles(1), false));
 }
 
 // In the mirror the same members are asked of the mirrored past; half of the mean is theirs.
