@@ -51,7 +51,9 @@ def validation():
     one = train(*ALONE, "--noise_steps=0")
     rows = [("the last pose held", whole["baselines"]["zero_velocity"]),
             ("ridge, `--ridge_share=1 --project_bones=false`", ridge),
-            ("one network, `--project_bones=false`", evaluate(one, "--project_bones=false")),
+            ("one network, `--project_bones=false --mirror=false`",
+             evaluate(one, "--project_bones=false", "--mirror=false")),
+            ("one network, `--mirror=false`", evaluate(one, "--mirror=false")),
             ("one network", evaluate(one)),
             ("three networks, `--ridge_share=0`", evaluate(model, "--ridge_share=0")),
             ("**three networks and ridge** (default)", whole)]
@@ -60,7 +62,9 @@ def validation():
 
 
 def spread():
-    json = evaluate(train(), f"--samples={SAMPLES}")
+    model = train()
+    json = evaluate(model, f"--samples={SAMPLES}")
+    alone = evaluate(model, f"--samples={SAMPLES}", "--correlated_noise=false")["mean"]
     actions = json["actions"]
     rows = [by_horizon("coverage of 90 % intervals", json["mean"]["coverage_90"])]
     worst = min(actions, key=lambda a: min(actions[a]["coverage_90"].values()))
@@ -68,6 +72,7 @@ def spread():
     for key, name in (("CRPS_mm", "CRPS, mm"), ("energy_score_mm", "energy score, mm"),
                       ("best_of_n_MPJPE_mm", f"best of {SAMPLES}, mean joint error, mm")):
         rows.append(by_horizon(name, json["mean"][key]))
+        rows.append(by_horizon("the same, `--correlated_noise=false`", alone[key]))
     return studies.table([f"{SAMPLES} sampled futures", *IN_MS], rows)
 
 
@@ -75,7 +80,7 @@ def ablations():
     rows = []
     for name, flags in ABLATIONS:
         model = train(*ALONE, "--steps=600", "--noise_steps=0", *flags)
-        rows.append(by_horizon(name, evaluate(model, "--project_bones=false")["mean"]["MPJPE_mm"]))
+        rows.append(by_horizon(name, evaluate(model, "--project_bones=false", "--mirror=false")["mean"]["MPJPE_mm"]))
     return studies.table(["one network, 600 steps; mean joint error, mm", *IN_MS], rows)
 
 
