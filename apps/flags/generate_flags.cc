@@ -37,6 +37,12 @@ DEFINE_double(noise_memory, kFlags.changes.noise_memory,
               "of sampled futures: correlation of the noise of one frame with the next");
 DEFINE_double(noise_scale, kFlags.changes.noise_scale,
               "of sampled futures: multiplies the noise that was learned");
+DEFINE_bool(correlated_noise, kFlags.changes.correlated_noise,
+            "of sampled futures: coordinates are moved together, as the drift was seen to miss "
+            "them; off: each by itself");
+DEFINE_bool(mirror, kFlags.changes.mirror,
+            "forecast the mirror image too, and average: as a second network would, without its "
+            "training");
 DEFINE_int32(observed, kFlags.observed,
              "diffusion: frames that it is shown, 1 for the first poses and the push; 0: as it was "
              "made for");
@@ -127,7 +133,8 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
         "with pushes and particles --samples only makes a fan for --poses_out, --strip_out or "
         "--page_out"};
   }
-  std::vector<const char*> foreign = {"ridge_share", "project_bones", "noise_memory", "noise_scale",
+  std::vector<const char*> foreign = {"ridge_share", "project_bones",    "noise_memory",
+                                      "noise_scale", "correlated_noise", "mirror",
                                       "person"};
   if (!diffuses) {
     foreign = DiffusionFlagNames();
@@ -160,6 +167,8 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.noise_scale = FLAGS_noise_scale;
   flags.changes.diffusion = diffusion.value();
   flags.changes.diffusion.push_spread = FLAGS_push_spread;
+  flags.changes.correlated_noise = FLAGS_correlated_noise;
+  flags.changes.mirror = FLAGS_mirror;
   flags.changes.seed = FLAGS_seed;
   flags.observed = FLAGS_observed;
   flags.frames = FLAGS_frames;

@@ -83,6 +83,8 @@ struct GeneratorChanges {
   bool project_bones = ParticleGeneratorOptions{}.project_bones;
   double noise_memory = ParticleGeneratorOptions{}.noise_memory;
   double noise_scale = ParticleGeneratorOptions{}.noise_scale;
+  bool correlated_noise = ParticleGeneratorOptions{}.correlated_noise;
+  bool mirror = ParticleGeneratorOptions{}.mirror;
   DiffusionGeneratorOptions diffusion = {};
   uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
 };

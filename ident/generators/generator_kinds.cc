@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "datasets/files/random.h"
+#include "ident/generators/push_particles.h"
 
 namespace pushid {
 namespace {
@@ -27,6 +28,7 @@ Json KindJson(const TrainedParticles& trained) {
           {"pose_operator", structure.pose_operator},
           {"particles", structure.particles},
           {"controls", structure.controls},
+          {"correlated_noise", structure.correlated_noise},
           {"jitter", trained.jitter},
           {"ridge_share", trained.ridge_share}};
 }
@@ -59,6 +61,7 @@ TrainedParticles ReadParticles(const Json& json, const GeneratorSettings& settin
   structure.pose_operator = json.at("pose_operator");
   structure.particles = json.at("particles");
   structure.controls = json.at("controls");
+  structure.correlated_noise = json.value("correlated_noise", false);  // older files have none
   trained.jitter = json.at("jitter");
   trained.ridge_share = json.at("ridge_share");
   Demand(structure.controls >= 0 && structure.controls <= kMostControls,
@@ -100,6 +103,9 @@ std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
   options.jitter = trained.jitter;
   options.noise_memory = changes.noise_memory;
   options.noise_scale = changes.noise_scale;
+  options.correlated_noise = changes.correlated_noise;
+  options.mirror = changes.mirror;
+  if (settings.data == GeneratorData::kPushes) options.mirrored_controls = kMirroredPush;
   options.ridge_share =
       trained.ridge_share > 0.0 ? changes.ridge_share.value_or(trained.ridge_share) : 0.0;
   return std::make_unique<ParticleGenerator>(settings.layout, trained.members, trained.ridge,

@@ -29,8 +29,9 @@ class NoiseAction : public ceres::CostFunction {
         size_(frames * generator.layout().num_coordinates()) {
     mutable_parameter_block_sizes()->push_back(size_);
     set_num_residuals(size_ + 1 + static_cast<int>(target.size()));
-    // The log of no coordinate's noise is below this (models/generators/particle_network.h).
-    shift_ = 1.0 - kLeastLogNoise * size_;
+    // Nothing that is drawn is narrower than this, by what is known of the others
+    // (models/generators/particle_network.h).
+    shift_ = 1.0 - (kLeastLogNoise + 0.5 * std::log(kOwnNoise)) * size_;
   }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {

@@ -29,7 +29,7 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
       AddTo(&hash, motion.controls);
     }
   }
-  return Joined("generator 1 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss),
+  return Joined("generator 2 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss),
                 {double(o.structure.skip),
                  double(o.structure.pose_operator),
                  double(o.structure.particles),

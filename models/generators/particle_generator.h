@@ -1,9 +1,13 @@
 // models: several particle networks of different seeds, averaged, blended with the linear forecast,
 // and brought back to the person's bones.
 //
-// A sampled future is a sampled path of one member, the members taking turns, with a draw of the
-// pose's jitter, moved by what the blend differs from the members' mean: so futures spread around
-// the forecast as noise, members and what is not known of the pose do.
+// Every member looks twice: at the motion as it is, and in the mirror, whose forecast is mirrored
+// back. The mean of both is the same left and right, as what was learned from is; it brings one
+// network to what three without it reach.
+//
+// A sampled future is a sampled path of one view (a member, mirrored or not), the views taking
+// turns, with a draw of the pose's jitter, moved by what the blend differs from the views' mean: so
+// futures spread around the forecast as noise, views and what is not known of the pose do.
 #pragma once
 
 #include <vector>
@@ -22,6 +26,9 @@ struct ParticleGeneratorOptions {
   // scale. Both were chosen on the validation split, where the noise that was learned, drawn anew
   // every frame, covers 80 ms but too little of 1000 ms: errors of a forecast last.
   double noise_memory = 0.2, noise_scale = 1.0;
+  bool correlated_noise = true;               // off: coordinates are drawn independently
+  bool mirror = true;                         // members also look in the mirror
+  std::vector<float> mirrored_controls = {};  // the sign of each control there
 };
 
 class ParticleGenerator : public MotionGenerator {
@@ -35,14 +42,22 @@ class ParticleGenerator : public MotionGenerator {
   std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
                                                  int frames, int count,
                                                  const NormalSource& normal) const override;
-  // Of the first member, told the pose as it is.
+  // Of the first member, told the pose as it is and not in the mirror.
   std::vector<SampledFuture> Driven(const ObservedMotion& person, int frames,
                                     const Eigen::MatrixXf& noise) const override;
 
  private:
-  // What the members forecast in the mean, without bones.
-  std::vector<Trajectories> MeanOfMembers(const std::vector<ObservedMotion>& people,
-                                          int frames) const;
+  struct View {
+    const ParticleNetwork& member;
+    bool mirrored;
+  };
+  std::vector<View> Views() const;  // the members, then the members in the mirror
+  std::vector<ObservedMotion> Seen(const View& view,
+                                   const std::vector<ObservedMotion>& people) const;
+  Trajectories Back(const View& view, const Trajectories& motion) const;
+  // What the views forecast in the mean, without bones.
+  std::vector<Trajectories> MeanOfViews(const std::vector<ObservedMotion>& people,
+                                        int frames) const;
   void Blend(const std::vector<ObservedMotion>& people, std::vector<Trajectories>* motions) const;
   void Finish(const ObservedMotion& person, Trajectories* motion) const;
 

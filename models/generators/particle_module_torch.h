@@ -1,6 +1,8 @@
 // models: the particles' network as a LibTorch module. Included by *_torch.cc files alone.
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include "models/generators/particle_trainer.h"
 #include "models/restoration/support_torch.h"
 
@@ -37,6 +39,7 @@ class ParticleModule : public torch::nn::Module {
     }
     noise_ = register_parameter("noise", torch::zeros({size_, kParticleHidden}));
     noise_bias_ = register_parameter("noise_bias", torch::full({size_}, -1.0));
+    noise_mix_ = register_buffer("noise_mix", torch::eye(size_));
   }
 
   std::vector<torch::Tensor> DriftParameters() const {
@@ -99,11 +102,23 @@ class ParticleModule : public torch::nn::Module {
                         kLargestLogNoise);
   }
 
+  // scatter: of misses over their noise, summed over frames; its correlations become those of the
+  // noise.
+  void SetScatter(const Eigen::MatrixXd& scatter) {
+    const Eigen::VectorXd scale = scatter.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+    Eigen::MatrixXd correlations =
+        (1.0 - kOwnNoise) * (scale.asDiagonal() * scatter * scale.asDiagonal());
+    correlations.diagonal().setOnes();
+    const Eigen::MatrixXd mix = correlations.llt().matrixL();
+    noise_mix_.copy_(ToTensor(Eigen::MatrixXf(mix.transpose().cast<float>())));
+  }
+
   ParticleNetwork Network(ParticleNetwork network) const {
     network.input = {ToMatrix(input_), ToVector(input_bias_)};
     network.recurrent = {ToMatrix(recurrent_), ToVector(recurrent_bias_)};
     network.drift = {ToMatrix(drift_), ToVector(drift_bias_)};
     network.noise = {ToMatrix(noise_), ToVector(noise_bias_)};
+    if (structure_.correlated_noise) network.noise_mix = ToMatrix(noise_mix_);
     if (structure_.HasSkip()) network.skip = ToMatrix(skip_);
     return network;
   }
@@ -175,7 +190,7 @@ class ParticleModule : public torch::nn::Module {
   int64_t size_;
   torch::Tensor pose_mean_, pose_spread_, step_spread_, control_spread_;
   torch::Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
-  torch::Tensor noise_, noise_bias_;
+  torch::Tensor noise_, noise_bias_, noise_mix_;
 };
 
 }  // namespace pushid

@@ -25,6 +25,7 @@ ParticleRollout::ParticleRollout(const ParticleNetwork& network,
   hidden_ = memory_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
   history_ = Eigen::MatrixXf::Zero(kSkipSteps * size, count);
   log_likelihood_ = Eigen::VectorXf::Zero(count);
+  log_mix_ = network.noise_mix.diagonal().array().log().sum();
   for (Eigen::Index t = 0; t < people.front().frames.cols(); ++t) {
     Eigen::MatrixXf pose(size, count);
     for (Eigen::Index n = 0; n < count; ++n) pose.col(n) = people[n / copies].frames.col(t);
@@ -79,13 +80,18 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
   if (noise != nullptr) {
     const Array log_noise =
         Apply(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
-    next.array() += log_noise.exp() * noise->array();
+    const bool mixed = network_.noise_mix.size() > 0;
+    const Eigen::MatrixXf drawn =
+        mixed ? Eigen::MatrixXf(network_.noise_mix.triangularView<Eigen::Lower>() * *noise)
+              : *noise;
+    next.array() += log_noise.exp() * drawn.array();
     const float constant = 0.5f * std::log(2.0f * static_cast<float>(M_PI));
     log_likelihood_ = -(log_noise + 0.5f * noise->array().square() + constant)
                            .colwise()
                            .sum()
                            .matrix()
                            .transpose();
+    log_likelihood_.array() -= log_mix_;
   }
   const bool steps = network_.structure.PredictsSteps();
   next.array().colwise() *= (steps ? network_.step_spread : network_.pose_spread).array();
@@ -105,6 +111,9 @@ void AddTensors(const std::string& name, const ParticleNetwork& network, TensorL
   AddTensors(name + ".recurrent", network.recurrent, tensors);
   AddTensors(name + ".drift", network.drift, tensors);
   AddTensors(name + ".noise", network.noise, tensors);
+  if (network.structure.correlated_noise) {
+    tensors->push_back({name + ".noise_mix", network.noise_mix});
+  }
   if (network.structure.HasSkip()) tensors->push_back({name + ".skip", network.skip});
 }
 
@@ -123,6 +132,9 @@ ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& 
   network.recurrent = TakeLayer(name + ".recurrent", kParticleHidden, gates, reader);
   network.drift = TakeLayer(name + ".drift", kParticleHidden, coordinates, reader);
   network.noise = TakeLayer(name + ".noise", kParticleHidden, coordinates, reader);
+  if (structure.correlated_noise) {
+    network.noise_mix = reader->Take(name + ".noise_mix", coordinates, coordinates);
+  }
   if (structure.HasSkip()) {
     network.skip = reader->Take(name + ".skip", coordinates, kSkipSteps * coordinates);
   }

@@ -4,10 +4,15 @@
 //
 //   p_t     = (S_t - S_{t-1}) / step_spread            displacement of every coordinate; p_0 = 0
 //   h_t     = cell([p_t, (S_t - pose_mean) / pose_spread, controls_t], h_{t-1})
-//   p_{t+1} = f + g e,   e ~ N(0, 1)                   the transition of SDE's Eq. 4
+//   p_{t+1} = f + g (M e),   e ~ N(0, 1)               the transition of SDE's Eq. 4
 //   f       = W h_t + b + sum_{k<9} A_k p_{t-k}        drift; A_0 = 1 and the rest 0 before
-//   training log g   = V h_t + c, held within -6 .. 2           noise, diagonal S_{t+1} = S_t +
-//   step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
+//   log g   = V h_t + c, held within -6 .. 2           noise of every coordinate
+//   S_{t+1} = S_t + step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
+//
+// M is lower triangular, and M M^T are the correlations of what the drift misses, (p_{t+1} - f) /
+// g, over the windows that were learned from: a wrist goes where its arm goes. In SDE M is 1, and
+// neighbours are torn apart. Rejected: M M^T = D + U U^T of rank 4, which spreads futures less well
+// and saves nothing at this size.
 //
 // The forecast is the path without noise; what is predicted is fed back. Cells in PyTorch's
 // conventions. Rejected: a pose operator that is learned, as the released fragment has it: the sum
@@ -30,10 +35,11 @@ constexpr EnumNames<ParticleCell, 2> Names(ParticleCell) {
 
 struct ParticleStructure {
   ParticleCell cell = ParticleCell::kGru;
-  bool skip = true;           // the sum over A_k
-  bool pose_operator = true;  // off: the next pose itself is predicted
-  bool particles = true;      // off: poses go in alone, and the next pose comes out
-  int controls = 0;           // further inputs a frame: a push
+  bool skip = true;              // the sum over A_k
+  bool pose_operator = true;     // off: the next pose itself is predicted
+  bool particles = true;         // off: poses go in alone, and the next pose comes out
+  bool correlated_noise = true;  // off: M = 1
+  int controls = 0;              // further inputs a frame: a push
 
   bool PredictsSteps() const { return pose_operator && particles; }
   bool HasSkip() const { return skip && PredictsSteps(); }
@@ -44,6 +50,8 @@ struct ParticleStructure {
 inline constexpr int kSkipSteps = 9;
 inline constexpr int kParticleHidden = 256;
 inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
+// Of a coordinate's noise, what no other coordinate shares (in variance): M has an inverse.
+inline constexpr float kOwnNoise = 0.01f;
 
 struct ParticleNetwork {
   ParticleStructure structure;
@@ -51,7 +59,8 @@ struct ParticleNetwork {
   Eigen::VectorXf control_spread;
   DenseLayer input, recurrent;  // of the gates, side by side
   DenseLayer drift, noise;
-  Eigen::MatrixXf skip;  // coordinates x 9 coordinates, the newest step first
+  Eigen::MatrixXf noise_mix;  // M, coordinates x coordinates; or empty
+  Eigen::MatrixXf skip;       // coordinates x 9 coordinates, the newest step first
 
   int num_coordinates() const { return static_cast<int>(pose_mean.size()); }
 };
@@ -81,6 +90,7 @@ class ParticleRollout {
   int frame_ = 0;  // the next to be observed
   Eigen::MatrixXf pose_, hidden_, memory_, history_;
   Eigen::VectorXf log_likelihood_;
+  float log_mix_ = 0.0f;  // log of the determinant of M
 };
 
 void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors);

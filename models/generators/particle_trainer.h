@@ -6,9 +6,9 @@
 //
 // The drift first: windows of observed and forecast frames, own output fed back in the forecast,
 // mean distance of joints with frame t weighing 1/t. Then the noise, with the drift as it is: the
-// Gaussian likelihood of the true displacements. What the network is told of the pose is jittered,
-// one draw a window and coordinate: poses are few, and displacements say more. Adam, a warm-up, the
-// rate down to nothing by a cosine, gradients clipped.
+// Gaussian likelihood of the true displacements, and at last its correlations. What the network is
+// told of the pose is jittered, one draw a window and coordinate: poses are few, and displacements
+// say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 #pragma once
 
 #include <cstdint>

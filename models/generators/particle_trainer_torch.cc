@@ -7,7 +7,8 @@ namespace pushid {
 namespace {
 
 constexpr int kHeldWindows = 256;
-constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
+constexpr int kScatterBatches = 32;  // thousands of windows for the correlations of the noise
+constexpr double kLossUnits = 1e3;   // the gradient is clipped with the loss in mm
 
 torch::Tensor NoJitter(const ParticleBatch& batch) {
   return torch::zeros({batch.frames.size(0), 1, batch.frames.size(2)});
@@ -42,6 +43,7 @@ struct ParticleTrainer::Torch {
 
   int AllSteps() const { return options.steps + options.noise_steps; }
   bool InDrift() const { return step < options.steps; }
+  bool Done() const { return step >= AllSteps(); }
 
   std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
     return std::make_unique<torch::optim::AdamW>(
@@ -102,6 +104,23 @@ struct ParticleTrainer::Torch {
     return loss.item<double>();
   }
 
+  // The correlations of the noise: of what the drift misses, on windows drawn as in training.
+  void Correlate() {
+    torch::NoGradGuard no_grad;
+    const int first = std::min(kFirstNoiseStep, options.observed);
+    Eigen::MatrixXd scatter =
+        Eigen::MatrixXd::Zero(statistics.num_coordinates(), statistics.num_coordinates());
+    for (int i = 0; i < kScatterBatches; ++i) {
+      const ParticleBatch batch = windows.Draw();
+      const auto [misses, hidden] = module->Misses(batch, Jitter(batch), first);
+      const torch::Tensor present = batch.present.narrow(1, first, misses.size(1)).unsqueeze(2);
+      const torch::Tensor scaled =
+          (misses * present * (-module->LogNoise(hidden)).exp()).flatten(0, 1);
+      scatter += ToMatrix(torch::matmul(scaled.t(), scaled)).cast<double>();
+    }
+    module->SetScatter(scatter);
+  }
+
   double HeldLoss(bool of_drift) const {
     if (held_windows.num_windows() == 0) return std::nan("");
     torch::NoGradGuard no_grad;
@@ -132,7 +151,7 @@ ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
 
 ParticleTrainer::~ParticleTrainer() = default;
 
-bool ParticleTrainer::Done() const { return torch_->step >= torch_->AllSteps(); }
+bool ParticleTrainer::Done() const { return torch_->Done(); }
 
 TrainingPoint ParticleTrainer::RunRound() {
   Torch& t = *torch_;
@@ -141,6 +160,7 @@ TrainingPoint ParticleTrainer::RunRound() {
   double sum = 0.0;
   const int count = end - t.step;
   for (; t.step < end; ++t.step) sum += in_drift ? t.DriftStep() : t.NoiseStep();
+  if (!in_drift && t.Done()) t.Correlate();
   return {t.step, sum / std::max(1, count), t.HeldLoss(in_drift), in_drift ? "drift" : "noise"};
 }
 

@@ -8,11 +8,6 @@ namespace {
 
 constexpr float kLeastSpread = 1e-4f;  // m; of a coordinate that hardly moves
 
-Eigen::MatrixXf MirroredControls(Eigen::MatrixXf controls, const std::vector<float>& signs) {
-  for (size_t i = 0; i < signs.size(); ++i) controls.row(static_cast<Eigen::Index>(i)) *= signs[i];
-  return controls;
-}
-
 torch::Tensor ControlsOf(const LearntParticles& motion, int count) {
   if (count == 0) return torch::zeros({motion.motion.cols(), 0});
   return ToTensor(motion.controls);

@@ -297,6 +297,7 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"give --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
+  EXPECT_TRUE(Refused(Generate({"--nomirror"}), {"--mirror", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
   EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));
 }

@@ -40,6 +40,7 @@ void ExpectSame(const ParticleNetwork& a, const ParticleNetwork& b) {
   EXPECT_EQ(a.recurrent.weights, b.recurrent.weights);
   EXPECT_EQ(a.drift.weights, b.drift.weights);
   EXPECT_EQ(a.noise.weights, b.noise.weights);
+  EXPECT_EQ(a.noise_mix, b.noise_mix);
   EXPECT_EQ(a.skip, b.skip);
 }
 
@@ -150,6 +151,34 @@ TEST(ParticleTrainerTest, TheLikelihoodFindsTheNoiseAndTheSquaredErrorLosesIt) {
     return network.noise.bias.mean();
   };
   EXPECT_LT(mean_log_noise(NoiseLoss::kSquared), mean_log_noise(NoiseLoss::kLikelihood) - 0.1f);
+}
+
+// Head and spine are shaken together, with a correlation of 0.8 along every axis.
+TEST(ParticleTrainerTest, FindsTheCorrelationsOfTheNoise) {
+  std::vector<LearntParticles> motions;
+  Random random(4);
+  for (int i = 0; i < 6; ++i) {
+    LearntParticles walk = {0, SwayingMotion(80, static_cast<float>(i))};
+    Eigen::VectorXf moved = Eigen::VectorXf::Zero(12);
+    for (int t = 0; t < 80; ++t) {
+      Eigen::VectorXf step(12);
+      for (float& x : step) x = static_cast<float>(0.01 * random.Normal());
+      step.segment<3>(3) = 0.8f * step.head<3>() + 0.6f * step.segment<3>(3);
+      moved += step;
+      walk.motion.col(t) += moved;
+    }
+    motions.push_back(walk);
+  }
+  ParticleTrainer trainer(FourParticles(), motions, {}, Quick());
+  while (!trainer.Done()) trainer.RunRound();
+  const Eigen::MatrixXf mix = trainer.Network().noise_mix;
+  EXPECT_TRUE(mix.isLowerTriangular());
+  const Eigen::MatrixXf correlations = mix * mix.transpose();
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(correlations(k, 3 + k), 0.8f, 0.1f) << k;
+    EXPECT_NEAR(correlations(k, 6 + k), 0.0f, 0.15f) << k;
+  }
+  EXPECT_LT((correlations.diagonal().array() - 1.0f).abs().maxCoeff(), 1e-5f);
 }
 
 // An arm that swings at random: the mean of where it may be is nearer to the shoulder than the arm

@@ -28,6 +28,7 @@ ParticleGenerator Steady() {
   ParticleGeneratorOptions options;
   options.ridge_share = 0.0;
   options.project_bones = false;
+  options.mirror = false;  // there the drift is another one
   return ParticleGenerator(FourParticles(), {network}, {}, options);
 }
 

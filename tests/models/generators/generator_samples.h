@@ -52,6 +52,7 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
   network.recurrent = RandomLayer(gates, kParticleHidden, 0.05, &random);
   network.drift = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.noise = RandomLayer(size, kParticleHidden, 0.03, &random);
+  network.noise_mix = Eigen::MatrixXf::Identity(size, size);
   if (structure.HasSkip()) {
     network.skip = RandomLayer(size, kSkipSteps * size, 0.01, &random).weights;
     network.skip.leftCols(size) += Eigen::MatrixXf::Identity(size, size);

@@ -61,6 +61,22 @@ TEST(ParticleRolloutTest, NoiseIsHeldWithinItsBounds) {
   EXPECT_LT((difference.array() / 0.01f - std::exp(2.0f)).abs().maxCoeff(), 1e-2f);
 }
 
+// M = [1 0; 0.6 0.8] for the first two coordinates: e = (1, 1) moves them by 1 and 1.4 of a step,
+// and the likelihood is that of N(0, M M^T), whose determinant is 0.8^2.
+TEST(ParticleRolloutTest, NoiseMovesCoordinatesTogether) {
+  ParticleNetwork network = RandomParticles(1);
+  network.noise.weights.setZero(), network.noise.bias.setZero();
+  network.noise_mix.topLeftCorner<2, 2>() << 1.0f, 0.0f, 0.6f, 0.8f;
+  const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.0f)}};
+  ParticleRollout still(network, people), moved(network, people);
+  const Eigen::MatrixXf noise = Eigen::MatrixXf::Ones(12, 1);
+  const Eigen::VectorXf difference = (moved.Step(&noise) - still.Step()) / 0.01f;
+  EXPECT_NEAR(difference[0], 1.0f, 1e-3f);
+  EXPECT_NEAR(difference[1], 1.4f, 1e-3f);
+  EXPECT_NEAR(difference[2], 1.0f, 1e-3f);
+  EXPECT_NEAR(moved.log_likelihood()(0), -6.0 * (1.0 + std::log(2.0 * M_PI)) - std::log(0.8), 1e-4);
+}
+
 TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
   for (ParticleCell cell : {ParticleCell::kGru, ParticleCell::kLstm}) {
     ParticleStructure structure;
@@ -98,11 +114,11 @@ class ParticleGeneratorTest : public ::testing::Test {
     for (float phase : {0.0f, 1.0f, 2.0f}) fit.Add(SwayingMotion(100, phase), 12, 6);
     ridge_ = fit.Solve(1e-4);
   }
-  ParticleGenerator Generator(double ridge_share, bool project_bones) const {
-    return {FourParticles(),
-            {RandomParticles(1), RandomParticles(2)},
-            ridge_,
-            {ridge_share, project_bones, 0.0}};
+  ParticleGenerator Generator(double ridge_share, bool project_bones, bool mirror = false) const {
+    ParticleGeneratorOptions options;
+    options.ridge_share = ridge_share, options.project_bones = project_bones;
+    options.jitter = 0.0, options.mirror = mirror;
+    return {FourParticles(), {RandomParticles(1), RandomParticles(2)}, ridge_, options};
   }
   RidgeForecast ridge_;
   std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
@@ -114,6 +130,51 @@ TEST_F(ParticleGeneratorTest, BlendsMembersAndTheLinearForecast) {
   const Trajectories expected = 0.7f * mean + 0.3f * ridge_.Forecast(people_[0].frames);
   EXPECT_LT((Generator(0.3, false).Forecast(people_, 6)[0] - expected).norm(), 1e-5f);
   EXPECT_LT((Generator(0.0, false).Forecast(people_, 6)[0] - mean).norm(), 1e-5f);
+}
+
+TEST_F(ParticleGeneratorTest, NoiseMayBeDrawnIndependently) {
+  ParticleNetwork together = RandomParticles(1);
+  together.noise_mix.col(0).setConstant(0.5f);
+  const auto first = [&](const ParticleNetwork& network, bool correlated) {
+    ParticleGeneratorOptions options;
+    options.correlated_noise = correlated;
+    const ParticleGenerator generator(FourParticles(), {network}, ridge_, options);
+    Random random(1);
+    return generator.Sample(people_, 6, 1, [&] { return random.Normal(); })[0][0].motion;
+  };
+  EXPECT_NE(first(together, true), first(together, false));
+  EXPECT_EQ(first(together, false), first(RandomParticles(1), false));
+}
+
+// In the mirror the same members are asked of the mirrored past; half of the mean is theirs.
+TEST_F(ParticleGeneratorTest, LooksInTheMirror) {
+  const ParticleLayout layout = FourParticles();
+  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
+  const Trajectories plain = Generator(0.0, false).Forecast(people_, 6)[0];
+  const Trajectories back = Mirrored(Generator(0.0, false).Forecast({turned}, 6)[0], layout);
+  ASSERT_GT((plain - back).norm(), 1e-3f);
+  const ParticleGenerator both = Generator(0.0, false, true);
+  const Trajectories forecast = both.Forecast(people_, 6)[0];
+  EXPECT_LT((forecast - 0.5f * (plain + back)).norm(), 1e-5f);
+  EXPECT_LT((both.Forecast({turned}, 6)[0] - Mirrored(forecast, layout)).norm(), 1e-5f);
+}
+
+TEST_F(ParticleGeneratorTest, PushesTurnInTheMirrorToo) {
+  ParticleStructure structure;
+  structure.controls = 2;
+  ParticleGeneratorOptions options;
+  options.ridge_share = 0.0, options.project_bones = false;
+  options.mirrored_controls = {1.0f, -1.0f};
+  const ParticleLayout layout = FourParticles();
+  const ParticleGenerator generator(layout, {RandomParticles(3, structure)}, {}, options);
+  ObservedMotion pushed = {people_[0].frames, Eigen::MatrixXf::Random(2, 18)};
+  const Trajectories forecast = generator.Forecast({pushed}, 6)[0];
+  pushed.frames = Mirrored(pushed.frames, layout);
+  const Trajectories otherwise = generator.Forecast({pushed}, 6)[0];
+  pushed.controls.row(1) *= -1.0f;
+  const Trajectories turned = generator.Forecast({pushed}, 6)[0];
+  EXPECT_LT((turned - Mirrored(forecast, layout)).norm(), 1e-5f);
+  EXPECT_GT((turned - otherwise).norm(), 1e-3f);
 }
 
 TEST_F(ParticleGeneratorTest, BonesKeepTheLengthsThatWereSeen) {
@@ -173,8 +234,16 @@ TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
   EXPECT_LT((a - b).norm(), 1e-5f);
 }
 
-// Noise of nothing: a future is its member's forecast, moved as the blend is.
+// Noise of nothing: a future is its member's forecast, moved as the blend is, in the mirror or not.
 TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
+  const ParticleLayout layout = FourParticles();
+  const auto views = Generator(0.0, false, true).Sample(people_, 6, 4, [] { return 0.0; })[0];
+  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
+  for (uint64_t m = 0; m < 2; ++m) {
+    const ParticleNetwork member = RandomParticles(m + 1);
+    EXPECT_LT((views[m].motion - Moved(member, people_[0], 6)).norm(), 1e-5f);
+    EXPECT_LT((views[m + 2].motion - Mirrored(Moved(member, turned, 6), layout)).norm(), 1e-5f);
+  }
   const auto futures = Generator(0.0, false).Sample(people_, 6, 2, [] { return 0.0; })[0];
   EXPECT_LT((futures[0].motion - Moved(RandomParticles(1), people_[0], 6)).norm(), 1e-5f);
   EXPECT_LT((futures[1].motion - Moved(RandomParticles(2), people_[0], 6)).norm(), 1e-5f);
