@@ -84,6 +84,9 @@ DEFINE_bool(pose_operator, kParticles.structure.pose_operator,
             "displacements are predicted and summed up; off: the next pose itself is predicted");
 DEFINE_bool(particles, kParticles.structure.particles,
             "displacements go in beside the pose; off: poses alone, in and out");
+DEFINE_bool(correction, kOptions.correction,
+            "cmu: what the sum of displacements gets wrong over the forecast is corrected at once, "
+            "by a few slow waves");
 DEFINE_double(squared_weight, kParticles.squared,
               "weight of squared distances (SDE's Eq. 10) in the loss");
 DEFINE_double(bone_weight, kParticles.bones, "weight of bone lengths (SDE's Eq. 11) in the loss");
@@ -148,7 +151,8 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   const std::string particles = "--kind=particles", diffusion = "--kind=diffusion";
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
-               : refuse({"folder", "with_validation", "ridge_share", "ridge_penalty"}, cmu),
+               : refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty"},
+                        cmu),
         diffuses ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
                            "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
                           particles)
@@ -242,6 +246,7 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   if (diffuses) flags.options.seeds = 1;
   if (FLAGS_seeds > 0) flags.options.seeds = FLAGS_seeds;
   SetDiffusion(&flags.options.diffusion);
+  flags.options.correction = FLAGS_correction;
   flags.options.ridge_share = FLAGS_ridge_share;
   flags.options.ridge_penalty = FLAGS_ridge_penalty;
   flags.options.checkpoint_seconds = FLAGS_checkpoint_seconds;

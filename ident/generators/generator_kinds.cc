@@ -10,7 +10,7 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr int kMostMembers = 100, kMostControls = 1000;
+constexpr int kMostMembers = 100, kMostControls = 1000, kMostCorrected = 100000;
 
 }  // namespace
 
@@ -29,6 +29,7 @@ Json KindJson(const TrainedParticles& trained) {
           {"particles", structure.particles},
           {"controls", structure.controls},
           {"correlated_noise", structure.correlated_noise},
+          {"corrected_frames", structure.corrected_frames},
           {"jitter", trained.jitter},
           {"ridge_share", trained.ridge_share}};
 }
@@ -61,11 +62,14 @@ TrainedParticles ReadParticles(const Json& json, const GeneratorSettings& settin
   structure.pose_operator = json.at("pose_operator");
   structure.particles = json.at("particles");
   structure.controls = json.at("controls");
+  structure.corrected_frames = json.value("corrected_frames", 0);
   structure.correlated_noise = json.value("correlated_noise", false);  // older files have none
   trained.jitter = json.at("jitter");
   trained.ridge_share = json.at("ridge_share");
   Demand(structure.controls >= 0 && structure.controls <= kMostControls,
          "controls must be 0 to 1000");
+  Demand(structure.corrected_frames >= 0 && structure.corrected_frames <= kMostCorrected,
+         "corrected_frames must be 0 to 100000");
   Demand(trained.jitter >= 0.0, "jitter must not be negative");
   Demand(trained.ridge_share >= 0.0 && trained.ridge_share <= 1.0,
          "ridge_share must lie between 0 and 1");

@@ -111,7 +111,10 @@ void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* optio
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;
-  if (settings.data != GeneratorData::kPushes) return;
+  if (settings.data != GeneratorData::kPushes) {
+    if (options->correction) particles.structure.corrected_frames = settings.predicted;
+    return;
+  }
   // A push stands at the start of its recording, recordings differ in length, and a metric is a
   // mean over all frames.
   particles.from_start = true;

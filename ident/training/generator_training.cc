@@ -34,6 +34,7 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
                  double(o.structure.pose_operator),
                  double(o.structure.particles),
                  double(o.structure.controls),
+                 double(o.structure.corrected_frames),
                  double(o.observed),
                  double(o.predicted),
                  double(o.from_start),

@@ -19,6 +19,8 @@ struct GeneratorTrainingOptions {
   ParticleTrainingOptions particles;  // of every seed; seed is the first one's
   DiffusionTrainingOptions diffusion;
   int seeds = 3;  // networks that are averaged
+  bool correction =
+      true;  // cmu: of the whole forecast at once (models/generators/particle_network.h)
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double ridge_penalty = 1e-2;  // m^2
   std::string checkpoint;       // file, one per seed beside it; empty: none

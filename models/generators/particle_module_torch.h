@@ -37,6 +37,15 @@ class ParticleModule : public torch::nn::Module {
       const torch::Tensor older = torch::zeros({size_, (kSkipSteps - 1) * size_});
       skip_ = register_parameter("skip", torch::cat({torch::eye(size_), older}, 1));
     }
+    if (structure_.corrected_frames > 0) {
+      const int terms = kCorrectionTerms * static_cast<int>(size_);
+      correction_hidden_ = register_module(
+          "correction_hidden", torch::nn::Linear(kParticleHidden + terms, kCorrectionHidden));
+      correction_ = register_module("correction", torch::nn::Linear(kCorrectionHidden, terms));
+      torch::nn::init::zeros_(correction_->weight);
+      torch::nn::init::zeros_(correction_->bias);
+      sines_ = ToTensor(CorrectionSines(structure_.corrected_frames));
+    }
     noise_ = register_parameter("noise", torch::zeros({size_, kParticleHidden}));
     noise_bias_ = register_parameter("noise_bias", torch::full({size_}, -1.0));
     noise_mix_ = register_buffer("noise_mix", torch::eye(size_));
@@ -46,6 +55,11 @@ class ParticleModule : public torch::nn::Module {
     std::vector<torch::Tensor> all = {input_,          recurrent_, input_bias_,
                                       recurrent_bias_, drift_,     drift_bias_};
     if (structure_.HasSkip()) all.push_back(skip_);
+    if (structure_.corrected_frames > 0) {
+      for (const auto& layer : {correction_hidden_, correction_}) {
+        all.insert(all.end(), {layer->weight, layer->bias});
+      }
+    }
     return all;
   }
   std::vector<torch::Tensor> NoiseParameters() const { return {noise_, noise_bias_}; }
@@ -57,6 +71,7 @@ class ParticleModule : public torch::nn::Module {
     const torch::Tensor past = batch.frames.narrow(1, 0, observed);
     const torch::Tensor steps = Steps(past);
     std::vector<torch::Tensor> state = Run(Inputs(steps, past, batch.controls, 0, jitter));
+    const torch::Tensor correction = Correction(past, state[0], jitter, predicted);
     torch::Tensor pose = past.select(1, observed - 1), history = LastSteps(steps, observed);
     const torch::Tensor still = jitter.squeeze(1);
     std::vector<torch::Tensor> poses;
@@ -73,7 +88,7 @@ class ParticleModule : public torch::nn::Module {
       pose = moved;
       poses.push_back(pose);
     }
-    return torch::stack(poses, 1);
+    return torch::stack(poses, 1) + correction;
   }
 
   // Of the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
@@ -119,6 +134,10 @@ class ParticleModule : public torch::nn::Module {
     network.drift = {ToMatrix(drift_), ToVector(drift_bias_)};
     network.noise = {ToMatrix(noise_), ToVector(noise_bias_)};
     if (structure_.correlated_noise) network.noise_mix = ToMatrix(noise_mix_);
+    if (structure_.corrected_frames > 0) {
+      network.correction_hidden = ToLayer(correction_hidden_);
+      network.correction = ToLayer(correction_);
+    }
     if (structure_.HasSkip()) network.skip = ToMatrix(skip_);
     return network;
   }
@@ -156,6 +175,21 @@ class ParticleModule : public torch::nn::Module {
     return Inputs(step.unsqueeze(1), pose.unsqueeze(1), controls, frame, jitter.unsqueeze(1))
         .squeeze(1);
   }
+  // Of all frames forecast, [batch, frame, coordinate]; hidden: after the last that was seen.
+  torch::Tensor Correction(const torch::Tensor& past, const torch::Tensor& hidden,
+                           const torch::Tensor& jitter, int predicted) const {
+    if (structure_.corrected_frames == 0) return torch::zeros({1});
+    const torch::Tensor seen = (past - pose_mean_) / pose_spread_ + jitter;
+    const torch::Tensor cosines = ToTensor(SeenCosines(static_cast<int>(past.size(1)))).t();
+    const torch::Tensor features = torch::cat({hidden, torch::matmul(cosines, seen).flatten(1)}, 1);
+    const torch::Tensor inner = torch::elu(
+        torch::addmm(correction_hidden_->bias, features, correction_hidden_->weight.t()));
+    const torch::Tensor terms = torch::addmm(correction_->bias, inner, correction_->weight.t())
+                                    .reshape({past.size(0), kCorrectionTerms, size_});
+    const torch::Tensor frames =
+        torch::arange(predicted).clamp_max(structure_.corrected_frames - 1);
+    return pose_spread_ * torch::matmul(sines_.index_select(0, frames), terms);
+  }
   torch::Tensor Drift(const torch::Tensor& hidden, const torch::Tensor& history) const {
     torch::Tensor drift = torch::addmm(drift_bias_, hidden, drift_.t());
     return structure_.HasSkip() ? torch::addmm(drift, history, skip_.t()) : drift;
@@ -191,6 +225,8 @@ class ParticleModule : public torch::nn::Module {
   torch::Tensor pose_mean_, pose_spread_, step_spread_, control_spread_;
   torch::Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
   torch::Tensor noise_, noise_bias_, noise_mix_;
+  torch::nn::Linear correction_hidden_{nullptr}, correction_{nullptr};
+  torch::Tensor sines_;  // of the correction, a row a frame
 };
 
 }  // namespace pushid

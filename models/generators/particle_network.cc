@@ -1,6 +1,7 @@
 // models: particles moved on by their network.
 #include "models/generators/particle_network.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pushid {
@@ -32,6 +33,25 @@ ParticleRollout::ParticleRollout(const ParticleNetwork& network,
     if (t == 0) pose_ = pose;
     Observe(pose);
   }
+  shown_ = pose_;
+  if (network.structure.corrected_frames > 0) PrepareCorrection();
+}
+
+void ParticleRollout::PrepareCorrection() {
+  const int size = network_.num_coordinates();
+  const Eigen::MatrixXf cosines = SeenCosines(frame_);
+  Eigen::MatrixXf features(kParticleHidden + kCorrectionTerms * size, hidden_.cols());
+  features.topRows(kParticleHidden) = hidden_;
+  for (Eigen::Index n = 0; n < hidden_.cols(); ++n) {
+    Eigen::MatrixXf seen = people_[n / copies_].frames.colwise() - network_.pose_mean;
+    seen.array().colwise() /= network_.pose_spread.array();
+    if (jitter_ != nullptr) seen.colwise() += jitter_->col(n);
+    const Eigen::MatrixXf terms = seen * cosines.transpose();
+    features.col(n).tail(kCorrectionTerms * size) = terms.reshaped();
+  }
+  const Array inner = Apply(network_.correction_hidden, features);
+  const Eigen::MatrixXf elu = (inner > 0.0f).select(inner, inner.exp() - 1.0f);
+  correction_ = Apply(network_.correction, elu);
 }
 
 void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
@@ -97,7 +117,38 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
   next.array().colwise() *= (steps ? network_.step_spread : network_.pose_spread).array();
   Observe(steps ? Eigen::MatrixXf(pose_ + next)
                 : Eigen::MatrixXf(next.colwise() + network_.pose_mean));
-  return pose_;
+  shown_ = pose_;
+  ++step_;
+  const int corrected = network_.structure.corrected_frames, size = network_.num_coordinates();
+  if (corrected == 0) return shown_;
+  const Eigen::VectorXf sines = CorrectionSines(corrected).col(std::min(step_, corrected) - 1);
+  Eigen::MatrixXf moved = Eigen::MatrixXf::Zero(size, shown_.cols());
+  for (int k = 0; k < kCorrectionTerms; ++k) {
+    moved += sines[k] * correction_.middleRows(k * size, size);
+  }
+  shown_ += network_.pose_spread.asDiagonal() * moved;
+  return shown_;
+}
+
+Eigen::MatrixXf SeenCosines(int observed) {
+  Eigen::MatrixXf cosines(kCorrectionTerms, observed);
+  for (int k = 0; k < kCorrectionTerms; ++k) {
+    for (int t = 0; t < observed; ++t) {
+      cosines(k, t) =
+          static_cast<float>(std::sqrt(2.0 / observed) * std::cos(M_PI * k * (t + 0.5) / observed));
+    }
+  }
+  return cosines;
+}
+
+Eigen::MatrixXf CorrectionSines(int frames) {
+  Eigen::MatrixXf sines(kCorrectionTerms, frames);
+  for (int k = 0; k < kCorrectionTerms; ++k) {
+    for (int u = 1; u <= frames; ++u) {
+      sines(k, u - 1) = static_cast<float>(std::sin(M_PI * (k + 0.5) * u / frames));
+    }
+  }
+  return sines;
 }
 
 void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors) {
@@ -113,6 +164,10 @@ void AddTensors(const std::string& name, const ParticleNetwork& network, TensorL
   AddTensors(name + ".noise", network.noise, tensors);
   if (network.structure.correlated_noise) {
     tensors->push_back({name + ".noise_mix", network.noise_mix});
+  }
+  if (network.structure.corrected_frames > 0) {
+    AddTensors(name + ".correction_hidden", network.correction_hidden, tensors);
+    AddTensors(name + ".correction", network.correction, tensors);
   }
   if (network.structure.HasSkip()) tensors->push_back({name + ".skip", network.skip});
 }
@@ -134,6 +189,12 @@ ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& 
   network.noise = TakeLayer(name + ".noise", kParticleHidden, coordinates, reader);
   if (structure.correlated_noise) {
     network.noise_mix = reader->Take(name + ".noise_mix", coordinates, coordinates);
+  }
+  if (structure.corrected_frames > 0) {
+    const int terms = kCorrectionTerms * coordinates;
+    network.correction_hidden =
+        TakeLayer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden, reader);
+    network.correction = TakeLayer(name + ".correction", kCorrectionHidden, terms, reader);
   }
   if (structure.HasSkip()) {
     network.skip = reader->Take(name + ".skip", coordinates, kSkipSteps * coordinates);

@@ -9,6 +9,12 @@
 //   log g   = V h_t + c, held within -6 .. 2           noise of every coordinate
 //   S_{t+1} = S_t + step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
 //
+// What the sum gets wrong over a whole second is corrected at once, and is not fed back:
+//   S_{T+u} += pose_spread sum_{k<6} c_k sin(pi (k + 1/2) u / U),   u = 1 .. U frames of forecast
+//   c = W' elu(V' [h_T, d] + b') + b''   d: the first six cosine coefficients of the scaled poses
+// zero at the last pose seen, and before training. Of trainings of U frames; later ones keep the
+// last correction.
+//
 // M is lower triangular, and M M^T are the correlations of what the drift misses, (p_{t+1} - f) /
 // g, over the windows that were learned from: a wrist goes where its arm goes. In SDE M is 1, and
 // neighbours are torn apart. Rejected: M M^T = D + U U^T of rank 4, which spreads futures less well
@@ -40,6 +46,7 @@ struct ParticleStructure {
   bool particles = true;         // off: poses go in alone, and the next pose comes out
   bool correlated_noise = true;  // off: M = 1
   int controls = 0;              // further inputs a frame: a push
+  int corrected_frames = 0;      // U; 0: no correction
 
   bool PredictsSteps() const { return pose_operator && particles; }
   bool HasSkip() const { return skip && PredictsSteps(); }
@@ -49,6 +56,7 @@ struct ParticleStructure {
 
 inline constexpr int kSkipSteps = 9;
 inline constexpr int kParticleHidden = 256;
+inline constexpr int kCorrectionTerms = 6, kCorrectionHidden = 256;
 inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
 // Of a coordinate's noise, what no other coordinate shares (in variance): M has an inverse.
 inline constexpr float kOwnNoise = 0.01f;
@@ -59,6 +67,7 @@ struct ParticleNetwork {
   Eigen::VectorXf control_spread;
   DenseLayer input, recurrent;  // of the gates, side by side
   DenseLayer drift, noise;
+  DenseLayer correction_hidden, correction;
   Eigen::MatrixXf noise_mix;  // M, coordinates x coordinates; or empty
   Eigen::MatrixXf skip;       // coordinates x 9 coordinates, the newest step first
 
@@ -78,7 +87,7 @@ class ParticleRollout {
   const Eigen::MatrixXf& Step(const Eigen::MatrixXf* noise = nullptr);
   // Of the last step's transitions, per person: log density of the displacement in its units.
   const Eigen::VectorXf& log_likelihood() const { return log_likelihood_; }
-  const Eigen::MatrixXf& pose() const { return pose_; }
+  const Eigen::MatrixXf& pose() const { return shown_; }
 
  private:
   void Observe(const Eigen::MatrixXf& pose);  // moves the cell on by a frame
@@ -88,10 +97,18 @@ class ParticleRollout {
   int copies_;
   const Eigen::MatrixXf* jitter_;
   int frame_ = 0;  // the next to be observed
-  Eigen::MatrixXf pose_, hidden_, memory_, history_;
+  void PrepareCorrection();
+
+  int step_ = 0;  // of the forecast
+  Eigen::MatrixXf pose_, shown_, hidden_, memory_, history_;
+  Eigen::MatrixXf correction_;  // 6 coordinates x people
   Eigen::VectorXf log_likelihood_;
   float log_mix_ = 0.0f;  // log of the determinant of M
 };
+
+// Rows k < 6: the cosines that observed poses are seen by, and the sines of the correction.
+Eigen::MatrixXf SeenCosines(int observed);
+Eigen::MatrixXf CorrectionSines(int frames);
 
 void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors);
 ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,

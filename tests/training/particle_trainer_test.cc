@@ -76,11 +76,12 @@ TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
 }
 
 TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
-  std::vector<ParticleStructure> structures(5);
+  std::vector<ParticleStructure> structures(6);
   structures[1].cell = ParticleCell::kLstm;
   structures[2].skip = false;
   structures[3].pose_operator = false;
   structures[4].particles = false;
+  structures[5].corrected_frames = 5;  // of eight: later ones keep the last correction
   for (size_t i = 0; i < structures.size(); ++i) {
     ParticleTrainingOptions options = Quick();
     options.structure = structures[i];

@@ -52,6 +52,12 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
   network.recurrent = RandomLayer(gates, kParticleHidden, 0.05, &random);
   network.drift = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.noise = RandomLayer(size, kParticleHidden, 0.03, &random);
+  if (structure.corrected_frames > 0) {
+    const int terms = kCorrectionTerms * size;
+    network.correction_hidden =
+        RandomLayer(kCorrectionHidden, kParticleHidden + terms, 0.05, &random);
+    network.correction = RandomLayer(terms, kCorrectionHidden, 0.03, &random);
+  }
   network.noise_mix = Eigen::MatrixXf::Identity(size, size);
   if (structure.HasSkip()) {
     network.skip = RandomLayer(size, kSkipSteps * size, 0.01, &random).weights;

@@ -94,6 +94,25 @@ TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
   }
 }
 
+// A correction of one term alone, c_0 = 1 for every coordinate: pose_spread sin(pi u / 8) over four
+// frames, and what is fed back knows nothing of it.
+TEST(ParticleRolloutTest, CorrectionByHand) {
+  ParticleStructure structure;
+  structure.corrected_frames = 4;
+  ParticleNetwork network = RandomParticles(1, structure);
+  network.correction.weights.setZero(), network.correction.bias.setZero();
+  const ObservedMotion person = {SwayingMotion(12, 0.0f)};
+  const Trajectories plain = Moved(network, person, 6);
+  network.correction.bias.head(12).setOnes();
+  const Trajectories corrected = Moved(network, person, 6);
+  for (int u = 1; u <= 6; ++u) {
+    const double wave = 0.1 * std::sin(M_PI / 8.0 * std::min(u, 4));
+    for (int i = 0; i < 12; ++i) {
+      ASSERT_NEAR(corrected(i, u - 1) - plain(i, u - 1), wave, 1e-5) << u << " " << i;
+    }
+  }
+}
+
 TEST(ParticleRolloutTest, WhatActsOnSomebodyMovesThem) {
   ParticleStructure structure;
   structure.controls = 1;
