@@ -43,7 +43,7 @@ ReportSection GroupSection(const std::vector<RecordingView>& views) {
           : "People are rigid here: first poses carried by the predicted hips, which never step.",
       GroupMetricsLegend()};
   section.tables.push_back(
-      {"the recordings shown here, which were fitted; pushid-crossvalidate judges others",
+      {"the recordings shown here; pushid-crossvalidate judges by what was not fitted",
        GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
   return section;
 }
