@@ -1,9 +1,17 @@
 // apps: groups forecast and shown.
 #include "apps/generate_groups.h"
 
+#include <cstdio>
+#include <filesystem>
+
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
 #include "ident/bodies/animation.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
+#include "ident/bodies/restoration_files.h"
+#include "ident/generators/long_forecast.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
 #include "ident/results/result_json.h"
@@ -26,6 +34,16 @@ Result<Prediction> PredictBeside(const LoadedGenerator& loaded, const Identified
   return Error{"recording " + recording.pendulum.id + ": " + OutsideText(predicted.value().status) +
                    "; leave out --physics",
                physics.source};
+}
+
+// Where physics have the hips; none without physics.
+Result<GroupHips> HipsBeside(const LoadedGenerator& loaded,
+                             const std::optional<IdentifiedModel>& physics,
+                             const BodyRecording& recording, int frames) {
+  if (!physics) return GroupHips();
+  const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
+  if (!predicted.ok()) return predicted.error();
+  return PendulumHips(recording, predicted.value().path);
 }
 
 BodyScene SceneOf(const BodyRecording& recording, const std::vector<BodyMotion>& bodies) {
@@ -55,17 +73,85 @@ Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file) {
   return std::optional<IdentifiedModel>(std::move(model));
 }
 
+MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
+  const std::optional<ForecastChoice> choice = loaded->settings.choice;
+  if (!choice || !flags->physics.empty()) return std::nullopt;
+  const std::filesystem::path folder(flags->model);
+  flags->physics = (folder / kChosenPhysics).string();
+  flags->changes.diffusion.blend = choice->blend;
+  Result<LoadedGenerator> again = LoadGenerator(flags->model, flags->changes);
+  if (!again.ok()) return again.error();
+  *loaded = std::move(again.value());
+  const bool restores = choice->by == ForecastBy::kRestoration;
+  if (restores) {
+    auto restoration = LoadRestoration((folder / kChosenRestoration).string());
+    if (!restoration.ok()) return restoration.error();
+    loaded->restoration = std::move(restoration.value());
+  }
+  std::printf("as cross-validation chose: %s\n",
+              restores
+                  ? "physics and restored bodies"
+                  : ("diffusion, " + Rounded(choice->blend, 3) + " of the way to physics").c_str());
+  return std::nullopt;
+}
+
 Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
                                              const BodyRecording& recording,
                                              const std::optional<IdentifiedModel>& physics,
                                              int frames) {
-  GroupHips hips;
-  if (physics) {
+  if (loaded.restoration) {
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
     if (!predicted.ok()) return predicted.error();
-    hips = PendulumHips(recording, predicted.value().path);
+    return RestoreBodies(*loaded.restoration, {}, PredictedPeople(recording, predicted.value()));
   }
-  return GenerateBodies(loaded.settings, *loaded.generator, recording, hips, frames);
+  const Result<GroupHips> hips = HipsBeside(loaded, physics, recording, frames);
+  if (!hips.ok()) return hips.error();
+  return GenerateBodies(loaded.settings, *loaded.generator, recording, hips.value(), frames);
+}
+
+Result<GroupSpread> SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                             const std::vector<BodyRecording>& recordings,
+                             const std::optional<IdentifiedModel>& physics) {
+  GroupSpread spread;
+  spread.samples = flags.samples;
+  Random random(flags.seed);
+  for (const BodyRecording& recording : recordings) {
+    const Result<GroupHips> hips = HipsBeside(loaded, physics, recording, 0);
+    if (!hips.ok()) return hips.error();
+    AddSpread(
+        *loaded.generator, recording, hips.value(), loaded.settings.observed,
+        [&random] { return random.Normal(); }, &spread);
+  }
+  return spread;
+}
+
+Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
+                                           const std::vector<BodyRecording>& recordings,
+                                           const std::optional<IdentifiedModel>& physics,
+                                           int frames) {
+  std::vector<GroupMotion> recorded, generated, rigid;
+  for (const BodyRecording& recording : recordings) {
+    const double dt = recording.pendulum.scene.dt;
+    const int pushed = recording.pendulum.pushed_person;
+    recorded.push_back({recording.bodies, dt, pushed});
+    auto bodies = GenerateWith(loaded, recording, physics, frames);
+    if (!bodies.ok()) return bodies.error();
+    generated.push_back({std::move(bodies.value()), dt, pushed});
+    if (!physics) continue;
+    const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
+    if (!predicted.ok()) return predicted.error();
+    const auto people = PredictedPeople(recording, predicted.value().path);
+    rigid.push_back({RigidRestoration().Restore(people), dt, pushed});
+  }
+  nlohmann::ordered_json json;
+  const auto show = [&](const std::string& name, const std::vector<GroupMotion>& motions) {
+    const std::vector<ForecastSecond> seconds = BySecond(recorded, motions);
+    std::printf("\n%s", SecondsText(name, seconds).c_str());
+    json[name] = ToJson(seconds);
+  };
+  show("generator", generated);
+  if (physics) show("rigid", rigid);
+  return json;
 }
 
 Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,

@@ -1,10 +1,11 @@
 // apps: groups that diffusion forecasts, with physics to blend with, and as pictures and files.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/flags/generate_flags.h"
-#include "ident/generators/push_particles.h"
+#include "ident/generators/group_spread.h"
 #include "ident/results/identified_model.h"
 
 namespace pushid {
@@ -12,12 +13,28 @@ namespace pushid {
 // The model of --physics; nothing where none is named.
 Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
 
+// Flags and generator as cross-validation chose them (pushid-train-generator --accuracy=best),
+// where it did and no flag says otherwise; told on stdout.
+MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
+
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // physics that see as many frames are told to the generator.
 Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
                                              const BodyRecording& recording,
                                              const std::optional<IdentifiedModel>& physics,
                                              int frames = 0);
+
+// Whether what was recorded lies among sampled futures.
+Result<GroupSpread> SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                             const std::vector<BodyRecording>& recordings,
+                             const std::optional<IdentifiedModel>& physics);
+
+// What all groups do in every second of forecasts of `frames` frames, beside physics where they are
+// given: printed, and as JSON.
+Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
+                                           const std::vector<BodyRecording>& recordings,
+                                           const std::optional<IdentifiedModel>& physics,
+                                           int frames);
 
 // What --poses_out, --strip_out and --page_out ask for: everybody recorded, forecast, and the
 // pendulums of the physics beside them. Returns the files' names.

@@ -14,9 +14,7 @@
 #include "ident/bodies/body_report.h"
 #include "ident/generators/forecast_scene.h"
 #include "ident/generators/forecast_spread.h"
-#include "ident/generators/group_spread.h"
 #include "ident/generators/path_search.h"
-#include "ident/generators/push_particles.h"
 
 namespace {
 
@@ -270,26 +268,32 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   if (flags.Shows()) {
     if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value())) return Fail(*error);
   }
-  GroupSpread spread;
-  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
-    spread = SpreadOf(loaded, bodies.value(), flags.samples, flags.seed);
-    std::printf("\n%s", SpreadText(spread).c_str());
-  }
-  if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
-  if (spread.samples > 0) json["spread"] = ToJson(spread);
+  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
+    const Result<GroupSpread> spread = SpreadOf(loaded, flags, bodies.value(), physics.value());
+    if (!spread.ok()) return Fail(spread.error());
+    std::printf("\n%s", SpreadText(spread.value()).c_str());
+    json["spread"] = ToJson(spread.value());
+  }
+  if (flags.frames > 0) {
+    const Result<Json> rows = ShowSeconds(loaded, bodies.value(), physics.value(), flags.frames);
+    if (!rows.ok()) return Fail(rows.error());
+    json["seconds"] = rows.value();
+  }
+  if (flags.json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;
 }
 
 int Run() {
-  const Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
+  Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
   Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
   if (!loaded.ok()) return Fail(loaded.error());
   if (MaybeError error = CheckKindFlags(flags.value(), loaded.value().kind)) return Fail(*error);
+  if (MaybeError error = TakeChoice(&flags.value(), &loaded.value())) return Fail(*error);
   if (flags.value().observed > 0) loaded.value().settings.observed = flags.value().observed;
   const GeneratorData data = loaded.value().settings.data;
   if (data != flags.value().data) {

@@ -1,6 +1,7 @@
 // apps: pushid-train-generator: learned generators of motion.
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
@@ -10,6 +11,10 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
+#include "ident/results/fit.h"
+#include "ident/results/fit_setup.h"
+#include "ident/results/result_json.h"
+#include "ident/training/best_forecast.h"
 #include "ident/training/curve_json.h"
 #include "ident/training/curve_svg.h"
 #include "ident/training/generator_crossvalidation.h"
@@ -22,17 +27,23 @@ using Json = nlohmann::ordered_json;
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
-  const Result<ChainValidation> validation =
+  const Result<GeneratorValidation> validation =
       CrossValidateGenerator(recordings, flags.options,
                              {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
-                              flags.pendulum_input, flags.changes},
+                              flags.pendulum_input, flags.changes, {}, flags.samples},
                              [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
   std::printf("%s", BodyText(validation.value().evaluation).c_str());
+  const GroupSpread& spread = validation.value().spread;
+  if (spread.samples > 0) std::printf("\n%s", SpreadText(spread).c_str());
   if (flags.json_out.empty()) return kDone;
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(validation.value().evaluation, &json);
+  if (spread.samples > 0) {
+    json["spread"] = ToJson(spread);
+    json["spread_of_noise_alone"] = ToJson(validation.value().noise_alone);
+  }
   json["run"] = {{"training_seconds", validation.value().training_seconds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;
@@ -74,6 +85,71 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   return kDone;
 }
 
+constexpr int kFolds = 4;  // where --crossvalidate names no number
+const std::vector<double> kBlends = {0.25, 0.5, 0.75};
+
+Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
+                             const std::vector<PendulumRecording>& pendulums) {
+  if (flags.physics) return *flags.physics;
+  Result<FitOptions> options = MakeFitOptions({}, &pendulums);
+  if (!options.ok()) return options;
+  options.value().num_threads = flags.options.diffusion.num_threads;
+  if (MaybeError error = PrepareFit(pendulums, &options.value())) return *error;
+  return options;
+}
+
+MaybeError WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOptions& options,
+                        const std::string& file) {
+  FittedModel model;
+  model.fit = Fit(pendulums, options);
+  if (!model.fit.ok()) return Error{"the pendulum's fit failed: " + model.fit.message};
+  RunInfo run;
+  run.model_path = file;
+  return WriteJson(file, ToJson(model, run));
+}
+
+// --accuracy=best: compares, then writes physics and restoration of all recordings into --out; the
+// generator itself is still to be trained. Returns what is to forecast.
+Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
+                                   const std::vector<BodyRecording>& recordings) {
+  std::error_code failed;
+  std::filesystem::create_directories(flags.out, failed);
+  if (failed) return Error{"cannot make this folder: " + failed.message(), flags.out};
+  const auto in_out = [&flags](const char* name) {
+    return (std::filesystem::path(flags.out) / name).string();
+  };
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  const Result<FitOptions> physics = PhysicsOf(flags, pendulums);
+  if (!physics.ok()) return physics.error();
+  BestForecastOptions options;
+  options.chain.fit = physics.value();
+  options.chain.training.seed = flags.options.particles.seed;
+  options.chain.training.num_threads = flags.options.diffusion.num_threads;
+  options.generator = flags.options;
+  options.validation.observed = flags.observed;
+  options.validation.scheme = flags.scheme;
+  options.validation.folds = kFolds;
+  options.validation.changes = flags.changes;
+  options.validation.blends = kBlends;
+  TrainingLine line;
+  const RunProgress show = [&line](const std::string& step, double done) { line.Show(step, done); };
+  const auto candidates = CompareForecasts(recordings, options, show);
+  line.Finish();
+  if (!candidates.ok()) return candidates.error();
+  std::printf("%s", CandidatesText(candidates.value()).c_str());
+  MaybeError error = WriteJson(in_out("candidates.json"), ToJson(candidates.value()));
+  if (!error) error = WritePhysics(pendulums, physics.value(), in_out(kChosenPhysics));
+  if (error) return *error;
+  std::vector<int> all(recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  const auto restoration = TrainFromRecordings(recordings, all, options.chain, show);
+  line.Finish();
+  if (!restoration.ok()) return restoration.error();
+  error = WriteRestorationFile(in_out(kChosenRestoration), restoration.value().file);
+  if (error) return *error;
+  return candidates.value().front().choice;
+}
+
 int FromClips(const TrainGeneratorFlags& flags) {
   const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
   if (!mocap.ok()) return Fail(mocap.error());
@@ -108,7 +184,13 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   if (flags.pendulum_input) {
     hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.diffusion.seed);
   }
-  return Train(flags, SamplesOf(bodies.value(), learnt, held, flags.observed, hips), data);
+  GeneratorSamples samples = SamplesOf(bodies.value(), learnt, held, flags.observed, hips);
+  if (flags.accuracy == ForecastAccuracy::kBest) {
+    const Result<ForecastChoice> choice = TrainBeside(flags, bodies.value());
+    if (!choice.ok()) return Fail(choice.error());
+    samples.settings.choice = choice.value();
+  }
+  return Train(flags, samples, data);
 }
 
 int Run() {

@@ -42,9 +42,11 @@ DEFINE_int32(observed, kFlags.observed,
              "made for");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with, and to show");
+DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
+              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_int32(frames, kFlags.frames,
-             "diffusion: frames of the motion that is shown, also past the recording's end; 0: as "
-             "many as the recording has");
+             "diffusion: frames of the motion that is shown, also past the recording's end, and "
+             "what all groups do in each of its seconds; 0: as many as the recording has");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
@@ -81,6 +83,7 @@ MaybeError CheckRanges() {
         CheckRange("target_window", FLAGS_target_window, -1, 1e9),
         CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
         CheckRange("observed", FLAGS_observed, 0, 1000),
+        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
         CheckRange("frames", FLAGS_frames, 0, 10000),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
     if (error) return error;
@@ -105,6 +108,9 @@ MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
   }
+  if (Given("push_spread") && flags.samples == 0) {
+    return Error{"--push_spread is between sampled futures: give --samples"};
+  }
   if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
     return Error{"--blend needs to know with what: give --physics"};
   }
@@ -125,7 +131,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
                                       "person"};
   if (!diffuses) {
     foreign = DiffusionFlagNames();
-    foreign.insert(foreign.end(), {"observed", "physics", "frames"});
+    foreign.insert(foreign.end(), {"observed", "physics", "frames", "push_spread"});
   }
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
@@ -153,6 +159,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.changes.noise_memory = FLAGS_noise_memory;
   flags.changes.noise_scale = FLAGS_noise_scale;
   flags.changes.diffusion = diffusion.value();
+  flags.changes.diffusion.push_spread = FLAGS_push_spread;
   flags.changes.seed = FLAGS_seed;
   flags.observed = FLAGS_observed;
   flags.frames = FLAGS_frames;

@@ -12,10 +12,10 @@ DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
 
 namespace pushid {
 
-Result<FoldScheme> SchemeFromCommandLine(int crossvalidate) {
+Result<FoldScheme> SchemeFromCommandLine(bool takes_folds) {
   FoldScheme scheme = FoldScheme::kStratified;
   if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &scheme)) return *error;
-  if (crossvalidate == 0 && Given("scheme")) return Error{"--scheme goes with --crossvalidate"};
+  if (!takes_folds && Given("scheme")) return Error{"--scheme goes with --crossvalidate"};
   return scheme;
 }
 

@@ -6,7 +6,7 @@
 
 namespace pushid {
 
-// crossvalidate: folds, 0 for none. Errors: no such scheme, or one where there are no folds.
-Result<FoldScheme> SchemeFromCommandLine(int crossvalidate);
+// takes_folds: whether there are any. Errors: no such scheme, or one where there are no folds.
+Result<FoldScheme> SchemeFromCommandLine(bool takes_folds);
 
 }  // namespace pushid

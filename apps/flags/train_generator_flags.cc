@@ -32,6 +32,11 @@ DEFINE_string(
     dataset, pushid::NameOf(kFlags.data),
     "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings; "
     "diffusion learns from nothing else)");
+DEFINE_string(
+    accuracy, pushid::NameOf(kFlags.accuracy),
+    "diffusion: best compares it by four folds with physics and restored bodies, and with "
+    "blends of both, trains all of them, and pushid-generate uses what was nearest; or "
+    "usual");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: learn from the validation clips too, which then judge nothing");
@@ -51,6 +56,12 @@ DEFINE_bool(pendulum_input, kFlags.pendulum_input,
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
     "diffusion, --crossvalidate: share of the way from the forecast hip to the pendulum's");
+DEFINE_int32(
+    samples, kFlags.samples,
+    "diffusion, --crossvalidate: sampled futures of every recording held out, and how often "
+    "it lies among them; 0: none");
+DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
+              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_string(
     pooling, pushid::NameOf(kDiffusion.structure.pooling),
     "diffusion: how people see each other: local (by distance, ahead and behind), mean (all "
@@ -93,6 +104,8 @@ DEFINE_int32(num_threads, kParticles.num_threads,
 namespace pushid {
 namespace {
 
+bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
+
 constexpr int kShownToDiffusion = 1;  // frames
 
 MaybeError CheckRanges() {
@@ -101,7 +114,8 @@ MaybeError CheckRanges() {
         CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6),
         CheckRange("batch", FLAGS_batch, 0, 4096), CheckRange("observed", FLAGS_observed, 0, 1000),
         CheckRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0),
+        CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("samples", FLAGS_samples, 0, 10000),
+        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
         CheckRange("bystanders", FLAGS_bystanders, 0.0, 1.0),
         CheckRange("jitter", FLAGS_jitter, 0.0, 100.0),
         CheckRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6),
@@ -135,20 +149,28 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
                : refuse({"folder", "with_validation", "ridge_share", "ridge_penalty"}, cmu),
-        diffuses
-            ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
-                      "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
-                     particles)
-            : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input"}, diffusion),
-        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend"}, "--crossvalidate")}) {
+        diffuses ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
+                           "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
+                          particles)
+                 : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input", "samples",
+                           "accuracy"},
+                          diffusion),
+        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
+        FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;
+  }
+  if (Best() && (FLAGS_crossvalidate > 0 || FLAGS_pendulum_input)) {
+    return Error{
+        "--accuracy=best takes its own folds, and blends with physics afterwards; leave out "
+        "--crossvalidate and --pendulum_input"};
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
   if (uses_physics && FLAGS_physics.empty()) {
     return Error{"--blend and --pendulum_input need to know which pendulum: give --physics"};
   }
-  if (!uses_physics && !FLAGS_physics.empty()) {
-    return Error{"--physics is there for --pendulum_input and --blend: give one of them"};
+  if (!uses_physics && !Best() && !FLAGS_physics.empty()) {
+    return Error{
+        "--physics is there for --pendulum_input, --blend and --accuracy=best: give one of them"};
   }
   return std::nullopt;
 }
@@ -191,12 +213,13 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   for (const MaybeError& error :
        {ParseName("--kind", FLAGS_kind, &flags.options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
         ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
         ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
     if (error) return *error;
   }
-  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate);
+  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
   if (!scheme.ok()) return scheme.error();
   flags.scheme = scheme.value();
   if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
@@ -214,6 +237,8 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   flags.crossvalidate = FLAGS_crossvalidate;
   flags.json_out = FLAGS_json_out;
   flags.changes.diffusion.blend = FLAGS_blend;
+  flags.changes.diffusion.push_spread = FLAGS_push_spread;
+  flags.samples = FLAGS_samples;
   if (diffuses) flags.options.seeds = 1;
   if (FLAGS_seeds > 0) flags.options.seeds = FLAGS_seeds;
   SetDiffusion(&flags.options.diffusion);

@@ -8,9 +8,16 @@
 
 namespace pushid {
 
+// best: compares everything that may forecast groups, and keeps what it needs for it.
+enum class ForecastAccuracy { kUsual, kBest };
+constexpr EnumNames<ForecastAccuracy, 2> Names(ForecastAccuracy) {
+  return {{{"usual", ForecastAccuracy::kUsual}, {"best", ForecastAccuracy::kBest}}};
+}
+
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   GeneratorData data = GeneratorData::kCmu;
+  ForecastAccuracy accuracy = ForecastAccuracy::kUsual;
   std::string folder;            // of clips
   bool with_validation = false;  // learn from the validation clips too
   int observed = 20;             // frames of a push that the generator is shown
@@ -21,6 +28,7 @@ struct TrainGeneratorFlags {
   std::optional<FitOptions> physics;  // of the pendulum
   bool pendulum_input = false;        // it goes into diffusion
   GeneratorChanges changes;           // how held-out recordings are forecast
+  int samples = 0;                    // futures sampled of them; 0: none
   std::string json_out;               // scores of the cross-validation; empty: none
 };
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine();

@@ -110,7 +110,7 @@ Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
   if (MaybeError error = CheckFlags()) return *error;
   const Result<RestorationRunOptions> options = RunOptions();
   if (!options.ok()) return options.error();
-  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate);
+  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
   if (!scheme.ok()) return scheme.error();
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
   return TrainRestorationFlags{options.value(), FLAGS_out,      FLAGS_crossvalidate,

@@ -17,15 +17,6 @@ Json MetricsJson(const BodyMetrics& value) {
   return json;
 }
 
-Json MeanJson(const BodyMean& mean) {
-  Json json = MetricsJson(mean.value);
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    if (kBodyMetrics[m].with_error) json[kBodyMetrics[m].ErrorKey()] = mean.error[m];
-  }
-  json["recordings"] = mean.recordings;
-  return json;
-}
-
 Json GroupsJson(const std::map<std::string, BodyMean>& groups) {
   Json json = Json::object();
   for (const auto& [name, mean] : groups) json[name] = MeanJson(mean);
@@ -85,6 +76,15 @@ std::string GroupsText(const BodyEvaluation& evaluation) {
 }
 
 }  // namespace
+
+Json MeanJson(const BodyMean& mean) {
+  Json json = MetricsJson(mean.value);
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    if (kBodyMetrics[m].with_error) json[kBodyMetrics[m].ErrorKey()] = mean.error[m];
+  }
+  json["recordings"] = mean.recordings;
+  return json;
+}
 
 Json ToJson(const BodySummary& summary, bool with_recordings) {
   Json json;

@@ -14,6 +14,7 @@ namespace pushid {
 // siMLPe's), true_pendulum and recorded.
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
+nlohmann::ordered_json MeanJson(const BodyMean& mean);
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
 // A row per predictor, a column per metric; then the restoration by strength, setting and subject.

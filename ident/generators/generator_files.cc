@@ -79,6 +79,9 @@ Json SettingsJson(const TrainedNetworks& trained) {
   Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
                {"predicted", settings.predicted}, {"rate_hz", settings.rate},
                {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
+  if (settings.choice) {
+    json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
+  }
   for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(Name(kind));
   std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
   return json;
@@ -99,6 +102,13 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
     settings.push_kinds.push_back(*kind);
   }
   settings.layout = LayoutFrom(json.at("layout"));
+  if (json.contains("choice")) {
+    settings.choice.emplace();
+    ParseSetting(json["choice"], "by", &settings.choice->by);
+    settings.choice->blend = json["choice"].at("blend");
+    Demand(settings.choice->blend >= 0.0 && settings.choice->blend <= 1.0,
+           "blend must lie between 0 and 1");
+  }
   settings.training = folder.training;
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
          "observed, predicted and rate_hz must be positive");
@@ -150,7 +160,8 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (particles && changes.ridge_share.value_or(0.0) > 0.0 && particles->ridge_share <= 0.0) {
     return Error{"this generator was trained without a ridge; leave out --ridge_share", path};
   }
-  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes)};
+  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes),
+                         nullptr};
 }
 
 }  // namespace pushid

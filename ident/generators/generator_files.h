@@ -14,6 +14,7 @@
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 #include "models/push.h"
+#include "models/restoration/restoration.h"
 
 namespace pushid {
 
@@ -23,6 +24,20 @@ constexpr EnumNames<GeneratorData, 2> Names(GeneratorData) {
   return {{{"cmu", GeneratorData::kCmu}, {"pushes", GeneratorData::kPushes}}};
 }
 
+// Who forecasts best, as cross-validation found: the generator, `blend` of the way to physics, or
+// physics with restored bodies.
+enum class ForecastBy { kGenerator, kRestoration };
+constexpr EnumNames<ForecastBy, 2> Names(ForecastBy) {
+  return {{{"generator", ForecastBy::kGenerator}, {"restoration", ForecastBy::kRestoration}}};
+}
+struct ForecastChoice {
+  ForecastBy by = ForecastBy::kGenerator;
+  double blend = 0.0;
+};
+// Beside the generator in its folder, where there was a choice.
+inline constexpr const char* kChosenPhysics = "physics.json";
+inline constexpr const char* kChosenRestoration = "restoration";
+
 struct GeneratorSettings {
   GeneratorData data = GeneratorData::kCmu;
   int observed = 25;                      // frames that it is given
@@ -31,6 +46,7 @@ struct GeneratorSettings {
   bool pendulum = false;                  // whether it must be told where physics have the hips
   std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
+  std::optional<ForecastChoice> choice;                                // none: nothing was compared
   nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
 };
 
@@ -58,6 +74,7 @@ struct LoadedGenerator {
   GeneratorKind kind = GeneratorKind::kParticles;
   GeneratorSettings settings;
   std::unique_ptr<MotionGenerator> generator;
+  std::unique_ptr<Restoration> restoration;  // that forecasts in its place; usually none
 };
 
 // What may differ from the training; unset: as trained. Each kind has its own.

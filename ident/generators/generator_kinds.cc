@@ -113,8 +113,10 @@ std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
     const auto random = std::make_shared<Random>(seed);
     return NormalSource([random] { return random->Normal(); });
   };
+  DiffusionGeneratorOptions options = changes.diffusion;
+  options.window = settings.observed + settings.predicted;
   return std::make_unique<DiffusionGenerator>(settings.layout, trained.members, 1.0 / settings.rate,
-                                              changes.diffusion, noise);
+                                              options, noise);
 }
 
 }  // namespace pushid

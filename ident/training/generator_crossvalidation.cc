@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
 #include "ident/validation/crossvalidation.h"
@@ -23,6 +25,27 @@ class FoldJudge {
             const std::optional<IdentifiedModel>& model)
       : validation_(validation), trained_(trained), model_(model) {}
 
+  MaybeError AddSpreads(const BodyRecording& recording, GeneratorValidation* result) const {
+    GroupHips hips;
+    std::map<std::string, BodyScore> unused;
+    if (NeedsHips(validation_.changes)) {
+      Result<GroupHips> predicted = Hips(recording, validation_.observed, &unused);
+      if (!predicted.ok()) return predicted.error();
+      hips = std::move(predicted.value());
+    }
+    GeneratorChanges still = validation_.changes;
+    still.diffusion.push_spread = 0.0;
+    for (const auto& [changes, spread] :
+         {std::pair(&validation_.changes, &result->spread),
+          std::pair<const GeneratorChanges*, GroupSpread*>(&still, &result->noise_alone)}) {
+      Random random(changes->seed);
+      AddSpread(
+          *MakeGenerator(trained_, *changes), recording, hips, validation_.observed,
+          [&random] { return random.Normal(); }, spread);
+    }
+    return std::nullopt;
+  }
+
   MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
     const GeneratorChanges& changes = validation_.changes;
     if (MaybeError error = Add("generator", recording, validation_.observed, changes, scores)) {
@@ -34,6 +57,11 @@ class FoldJudge {
     if (changes.diffusion.blend > 0.0) {
       error = Add("generator_unblended", recording, validation_.observed, alone, scores);
     }
+    for (size_t b = 0; b < validation_.blends.size() && !error; ++b) {
+      alone.diffusion.blend = validation_.blends[b];
+      error = Add(BlendName(validation_.blends[b]), recording, validation_.observed, alone, scores);
+    }
+    alone.diffusion.blend = 0.0;
     if (!error && trained_.kind() == GeneratorKind::kDiffusion && validation_.observed != kShown &&
         recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
@@ -44,6 +72,10 @@ class FoldJudge {
   }
 
  private:
+  bool NeedsHips(const GeneratorChanges& changes) const {
+    return changes.diffusion.blend > 0.0 || trained_.settings.pendulum;
+  }
+
   // Where the fold's physics have everybody; nothing without physics.
   Result<GroupHips> Hips(const BodyRecording& recording, int observed,
                          std::map<std::string, BodyScore>* scores) const {
@@ -68,7 +100,7 @@ class FoldJudge {
     GeneratorSettings settings = trained_.settings;
     settings.observed = observed;
     GroupHips hips;
-    if (changes.diffusion.blend > 0.0 || trained_.settings.pendulum) {
+    if (NeedsHips(changes)) {
       Result<GroupHips> predicted = Hips(recording, observed, scores);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
@@ -89,16 +121,19 @@ class FoldJudge {
 
 }  // namespace
 
-Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                               const GeneratorTrainingOptions& options,
-                                               const GeneratorValidationOptions& validation,
-                                               const RunProgress& progress) {
+std::string BlendName(double blend) { return "generator_blend_" + Rounded(blend, 3); }
+
+Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                                   const GeneratorTrainingOptions& options,
+                                                   const GeneratorValidationOptions& validation,
+                                                   const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const auto made =
       MakeFolds(pendulums, validation.scheme, validation.folds, 1, options.particles.seed);
   if (!made.ok()) return made.error();
   const int total = static_cast<int>(recordings.size());
-  ChainValidation result;
+  GeneratorValidation result;
+  result.spread.samples = result.noise_alone.samples = validation.samples;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
@@ -125,7 +160,11 @@ Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>&
     result.training_seconds.push_back(Now() - before);
     const FoldJudge judge(validation, trained.value().networks, model);
     for (int i : fold.held_out) {
-      if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
+      MaybeError error = judge.Score(recordings[i], &by_recording[i]);
+      if (!error && validation.samples > 0) {
+        error = judge.AddSpreads(recordings[i], &result);
+      }
+      if (error) return *error;
     }
   }
   BodyScores all;

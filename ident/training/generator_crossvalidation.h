@@ -4,15 +4,18 @@
 //   generator                  the recording as far as it is shown, then the forecast
 //   generator_after_observed   the forecast alone
 //   generator_unblended        without the physics that the forecast is blended with
+//   generator_blend_0.25       the same with another share of physics, where such are compared
 //   rigid                      those physics alone, first poses carried by the rods' tips
 //   generator_shown_20         of diffusion, which is trained for it: shown 20 frames, no physics
 //   static, constant_velocity  as in body_evaluation.h
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
+#include "ident/generators/group_spread.h"
 #include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
 #include "ident/training/restoration_training_run.h"
@@ -26,13 +29,22 @@ struct GeneratorValidationOptions {
   std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
   bool pendulum_input = false;        // the pendulum goes into diffusion
   GeneratorChanges changes;           // as in its use
+  std::vector<double> blends;         // to compare with, besides that of changes
+  int samples = 0;                    // futures of diffusion for every recording; 0: none
 };
+
+struct GeneratorValidation : ChainValidation {
+  // Of the sampled futures of recordings held out, and of such that differ by noise alone.
+  GroupSpread spread, noise_alone;
+};
+
+std::string BlendName(double blend);
 
 // Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
 // optimum.
-Result<ChainValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
-                                               const GeneratorTrainingOptions& options,
-                                               const GeneratorValidationOptions& validation,
-                                               const RunProgress& progress = nullptr);
+Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
+                                                   const GeneratorTrainingOptions& options,
+                                                   const GeneratorValidationOptions& validation,
+                                                   const RunProgress& progress = nullptr);
 
 }  // namespace pushid

@@ -1,6 +1,7 @@
 // ident: groups compared.
 #include "ident/validation/group_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -80,6 +81,32 @@ SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                          CountTransitions(of_motions, states.num_symbols, which));
   };
   return {distance(Transitions::kAll), distance(Transitions::kChanges), std::nullopt};
+}
+
+std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>& recorded,
+                                                  const std::vector<GroupMotion>& motions,
+                                                  int seconds) {
+  const StateFunction states = SocialStateFunction();
+  const auto transitions = [&](const std::vector<Symbols>& people) {
+    return CountTransitions(people, states.num_symbols, Transitions::kAll);
+  };
+  const Eigen::MatrixXd reference = transitions(StatesOf(recorded, states));
+  const std::vector<Symbols> all = StatesOf(motions, states);
+  const auto of_second = static_cast<Symbols::difference_type>(kWordRate);
+  std::vector<SecondOfStates> rows(seconds);
+  for (int s = 0; s < seconds; ++s) {
+    std::vector<Symbols> within;
+    double standing = 0.0, frames = 0.0;
+    for (const Symbols& person : all) {
+      const auto begin = person.begin() + s * of_second;
+      within.emplace_back(begin, std::min(person.end(), begin + of_second + 1));
+      standing +=
+          static_cast<double>(std::count(within.back().begin(), within.back().end(), kStand));
+      frames += static_cast<double>(within.back().size());
+    }
+    rows[s] = {standing / std::max(1.0, frames), JensenShannon(reference, transitions(within))};
+  }
+  return rows;
 }
 
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,

@@ -38,6 +38,15 @@ struct SocialMetrics {
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                             const std::vector<GroupMotion>& motions,
                             const StateFunction& states = SocialStateFunction());
+// Each second of the motions against all that was recorded; the states of a frame count from frame
+// 0 of the whole motion.
+struct SecondOfStates {
+  double standing = 0.0;       // share of kStand
+  std::optional<double> sscp;  // no value where a second has no frames
+};
+std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>& recorded,
+                                                  const std::vector<GroupMotion>& motions,
+                                                  int seconds);
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions);
 

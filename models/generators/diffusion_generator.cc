@@ -48,27 +48,29 @@ DiffusionGenerator::DiffusionGenerator(ParticleLayout layout, std::vector<Diffus
       options_(options),
       noise_(std::move(noise)) {}
 
-Eigen::MatrixXf DiffusionGenerator::SampleRows(const std::vector<ObservedMotion>& people,
-                                               const DiffusionNetwork& network,
-                                               const GroupDenoiser& denoise, int frames,
-                                               const NormalSource& normal) const {
+std::vector<Trajectories> DiffusionGenerator::SampleWindow(
+    const std::vector<ObservedMotion>& people, const DiffusionNetwork& network, int frames,
+    const NormalSource& normal) const {
   const int count = static_cast<int>(people.size());
   const int seen = ObservedFrames(people);
+  const bool pendulum = network.structure.pendulum;
+  const GroupDenoiser denoise(network,
+                              FeaturesOf(people, network.scales, seen, frames, dt_, pendulum));
   std::vector<Eigen::MatrixXf> past;
   for (const ObservedMotion& person : people) {
-    past.push_back(MotionRows(person, network.scales, network.structure.pendulum));
+    past.push_back(MotionRows(person, network.scales, pendulum));
   }
   const std::vector<int> order = ByPlace(people);
   Eigen::MatrixXf fresh(kMotionRows, count * frames), estimate;
   Draw(order, normal, &fresh);
   Eigen::MatrixXf noisy = fresh;
-  for (int k = 0;; ++k) {
+  for (int k = 0; k < options_.steps; ++k) {
     const double step = static_cast<double>(kDiffusionTime) / options_.steps;
     const double t = kDiffusionTime - k * step;
     const double u = k + 1 == options_.steps ? 0.0 : t - step;
     estimate = denoise.Estimate(noisy, t);
     // The last estimate keeps what it makes of the frames seen: the seam is what it misses there.
-    if (u <= 0.0) return estimate;
+    if (u <= 0.0) break;
     for (int n = 0; n < count; ++n) estimate.middleCols(n * frames, seen) = past[n];
     const BackwardStep back = StepBack(options_.sampler, t, u);
     noisy = static_cast<float>(back.estimate) * estimate + static_cast<float>(back.noisy) * noisy;
@@ -76,28 +78,36 @@ Eigen::MatrixXf DiffusionGenerator::SampleRows(const std::vector<ObservedMotion>
     Draw(order, normal, &fresh);
     noisy += static_cast<float>(back.noise) * fresh;
   }
+  std::vector<Trajectories> motions;
+  for (int n = 0; n < count; ++n) {
+    motions.push_back(FromMotionRows(estimate.middleCols(n * frames, frames), people[n],
+                                     network.scales, pendulum));
+  }
+  return motions;
 }
 
-std::vector<std::vector<Trajectories>> DiffusionGenerator::Samples(
-    const std::vector<ObservedMotion>& people, int frames, int count,
-    const NormalSource& normal) const {
-  std::vector<std::vector<Trajectories>> samples;
-  for (size_t m = 0; m < members_.size(); ++m) {
-    const DiffusionNetwork& network = members_[m];
-    const bool pendulum = network.structure.pendulum;
-    const GroupDenoiser denoise(
-        network, FeaturesOf(people, network.scales, ObservedFrames(people), frames, dt_, pendulum));
-    for (size_t k = m; k < static_cast<size_t>(count); k += members_.size()) {
-      const Eigen::MatrixXf rows = SampleRows(people, network, denoise, frames, normal);
-      samples.emplace_back();
-      for (size_t n = 0; n < people.size(); ++n) {
-        samples.back().push_back(
-            FromMotionRows(rows.middleCols(static_cast<Eigen::Index>(n) * frames, frames),
-                           people[n], network.scales, pendulum));
-      }
+std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<ObservedMotion>& people,
+                                                          const DiffusionNetwork& network,
+                                                          int frames,
+                                                          const NormalSource& normal) const {
+  const int seen = ObservedFrames(people), window = std::max(options_.window, seen + kUsualPast);
+  std::vector<Trajectories> motions =
+      SampleWindow(people, network, std::min(frames, window), normal);
+  for (int done = std::min(frames, window); done < frames;) {
+    std::vector<ObservedMotion> now = people;
+    for (size_t n = 0; n < people.size(); ++n) now[n].frames = motions[n];
+    now = FromFrame(std::move(now), done - kUsualPast);
+    const int more = std::min(frames - done, window - kUsualPast);
+    const std::vector<Trajectories> next = SampleWindow(now, network, kUsualPast + more, normal);
+    for (size_t n = 0; n < people.size(); ++n) {
+      const Eigen::VectorXf way = motions[n].col(done - 1) - next[n].col(kUsualPast - 1);
+      Trajectories longer(motions[n].rows(), done + more);
+      longer << motions[n], next[n].rightCols(more).colwise() + way;
+      motions[n] = std::move(longer);
     }
+    done += more;
   }
-  return samples;
+  return motions;
 }
 
 Trajectories DiffusionGenerator::Finished(const ObservedMotion& person, Trajectories motion) const {
@@ -123,12 +133,15 @@ Trajectories DiffusionGenerator::Finished(const ObservedMotion& person, Trajecto
 std::vector<Trajectories> DiffusionGenerator::Forecast(const std::vector<ObservedMotion>& people,
                                                        int frames) const {
   if (people.empty()) return {};
-  const auto samples =
-      Samples(people, ObservedFrames(people) + frames, options_.averaged, noise_());
-  std::vector<Trajectories> mean = samples.front();
+  const NormalSource normal = noise_();
+  const int whole = ObservedFrames(people) + frames;
+  std::vector<Trajectories> mean = SampleWhole(people, Member(0), whole, normal);
+  for (int k = 1; k < options_.averaged; ++k) {
+    const std::vector<Trajectories> sample = SampleWhole(people, Member(k), whole, normal);
+    for (size_t n = 0; n < people.size(); ++n) mean[n] += sample[n];
+  }
   for (size_t n = 0; n < people.size(); ++n) {
-    for (size_t k = 1; k < samples.size(); ++k) mean[n] += samples[k][n];
-    mean[n] = Finished(people[n], mean[n] / static_cast<float>(samples.size()));
+    mean[n] = Finished(people[n], mean[n] / static_cast<float>(options_.averaged));
   }
   return mean;
 }
@@ -138,7 +151,11 @@ std::vector<std::vector<SampledFuture>> DiffusionGenerator::Sample(
     const NormalSource& normal) const {
   std::vector<std::vector<SampledFuture>> futures(people.size());
   if (people.empty()) return futures;
-  for (auto& sample : Samples(people, ObservedFrames(people) + frames, count, normal)) {
+  for (int k = 0; k < count; ++k) {
+    const double push =
+        options_.push_spread > 0.0 ? std::exp(options_.push_spread * normal()) : 1.0;
+    std::vector<Trajectories> sample =
+        SampleWhole(PushedBy(people, push), Member(k), ObservedFrames(people) + frames, normal);
     for (size_t n = 0; n < people.size(); ++n) {
       futures[n].push_back({Finished(people[n], std::move(sample[n]))});
     }

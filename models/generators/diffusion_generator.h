@@ -4,7 +4,10 @@
 // From noise at T to nothing of it in some steps; frames that were seen are put in the place of
 // what the network estimates for them, after every step (Eq. 6 of SDM). Networks of several seeds
 // take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
-// error asks for; with a pendulum's path its people are moved some of the way to it. Then each body
+// error asks for. Motions longer than a window go on from its last frames, which the next window
+// is shown: it begins where they do, and knows nothing of a push that is over. Sampled futures may
+// each be pushed a little harder or less, which stands for what differs between recordings of like
+// pushes. With a pendulum's path its people are moved some of the way to it. Then each body
 // is finished as restored ones are (postprocess.h): the seam at the last frame seen fades, bones
 // keep the length of frame 0, resting feet stay.
 //
@@ -23,8 +26,10 @@ namespace pushid {
 struct DiffusionGeneratorOptions {
   DiffusionSampler sampler = DiffusionSampler::kRenoised;
   int steps = 25;
-  int averaged = 8;    // samples of a forecast
-  double blend = 0.0;  // share of the way to the pendulum's hip
+  int averaged = 8;          // samples of a forecast
+  int window = 128;          // frames of one pass; more go on window after window
+  double blend = 0.0;        // share of the way to the pendulum's hip
+  double push_spread = 0.8;  // of the logarithm of the push, between sampled futures
   PostprocessOptions postprocess = {true, 20};
 };
 
@@ -42,14 +47,16 @@ class DiffusionGenerator : public MotionGenerator {
                                                  const NormalSource& normal) const override;
 
  private:
-  // Rows of everybody's motion, with what the network makes of the frames seen.
-  Eigen::MatrixXf SampleRows(const std::vector<ObservedMotion>& people,
-                             const DiffusionNetwork& network, const GroupDenoiser& denoise,
-                             int frames, const NormalSource& normal) const;
-  // Whole motions, [sample][person], before they are finished.
-  std::vector<std::vector<Trajectories>> Samples(const std::vector<ObservedMotion>& people,
-                                                 int frames, int count,
-                                                 const NormalSource& normal) const;
+  // Everybody's motion in one window, with what the network makes of the frames seen.
+  std::vector<Trajectories> SampleWindow(const std::vector<ObservedMotion>& people,
+                                         const DiffusionNetwork& network, int frames,
+                                         const NormalSource& normal) const;
+  // The same for any number of frames, before it is finished.
+  std::vector<Trajectories> SampleWhole(const std::vector<ObservedMotion>& people,
+                                        const DiffusionNetwork& network, int frames,
+                                        const NormalSource& normal) const;
+  // Networks take turns.
+  const DiffusionNetwork& Member(int sample) const { return members_[sample % members_.size()]; }
   // The frames after those seen.
   Trajectories Finished(const ObservedMotion& person, Trajectories motion) const;
 
