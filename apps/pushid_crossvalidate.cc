@@ -12,6 +12,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/validation/frontier_svg.h"
 #include "ident/validation/futures_validation.h"
@@ -141,7 +142,7 @@ int Run() {
   const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
   if (MaybeError error = CheckFlags(flags)) return Fail(*error);
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings();
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
@@ -161,13 +162,15 @@ int Run() {
   if (!folds.ok()) return Fail(folds.error());
 
   std::vector<CrossValidation> validations;
+  const RecordedBodies bodies = BodiesOfGroups(recordings.value());
   ProgressLine line;
   for (const auto& predictor : predictors.value()) {
+    const auto show = [&](int done, int total) {
+      line.Show(predictor->name + ": fold " + std::to_string(done) + " of " +
+                std::to_string(total));
+    };
     validations.push_back(
-        CrossValidate(pendulums, folds.value(), *predictor, NumThreads(), [&](int done, int total) {
-          line.Show(predictor->name + ": fold " + std::to_string(done) + " of " +
-                    std::to_string(total));
-        }));
+        CrossValidate(pendulums, folds.value(), *predictor, NumThreads(), show, bodies));
   }
   std::vector<HeldOutFutures> futures;
   for (const auto& [name, model] : noisy.value()) {

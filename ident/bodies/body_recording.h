@@ -7,6 +7,7 @@
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/prediction/prediction.h"
+#include "ident/validation/hip_group_metrics.h"
 #include "models/restoration/restoration.h"
 #include "models/rollout.h"
 
@@ -26,6 +27,8 @@ struct BodyRecording {
 Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping);
 Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
                                                       SkeletonMapping mapping);
+// Of all recordings; of none where not all have such a skeleton, or nobody is in a group.
+RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
 // People with predicted pendulums (and whether their feet stand, where a prediction says so, and

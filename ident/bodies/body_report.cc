@@ -68,20 +68,11 @@ std::string Spaced(std::string name) {
 
 // How groups move, where there are any.
 std::string GroupsText(const BodyEvaluation& evaluation) {
-  std::vector<std::string> header = GroupMetricsHeader();
-  header.insert(header.begin(), "groups");
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  TextTable table(header, left);
-  bool any = false;
+  std::vector<GroupMetricsRow> rows;
   for (const auto& [name, summary] : evaluation) {
-    if (!summary.groups) continue;
-    std::vector<std::string> row = GroupMetricsRow(*summary.groups);
-    row.insert(row.begin(), Spaced(name));
-    table.Add(row);
-    any = true;
+    if (summary.groups) rows.push_back({Spaced(name), &*summary.groups});
   }
-  return any ? "\n" + table.ToString() : "";
+  return rows.empty() ? "" : "\n" + GroupMetricsText(rows);
 }
 
 }  // namespace

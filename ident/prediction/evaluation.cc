@@ -79,6 +79,7 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
     score.after_hip_ade += total_after > 0.0 ? after / total_after / people : 0.0;
   }
   score.propagation = ScorePropagation(recording, predicted);
+  if (people > 1) score.predicted = predicted;
   return score;
 }
 

@@ -69,6 +69,7 @@ struct RecordingScore : HipMetrics {
   // One per person; empty where the model says nothing of steps, and after a failure.
   std::vector<StepPrediction> steps = {};
   EffectEstimate effect = {};  // of the recording, where first frames were seen
+  HipPaths predicted = {};     // of more than one person; groups are judged together
 };
 
 struct MeanScore : HipMetrics {

@@ -102,6 +102,18 @@ void AddFold(const FoldScore& fold, CrossValidation* result) {
   result->folds.push_back(fold);
 }
 
+std::vector<PredictedGroup> GroupsOf(const std::vector<Fold>& folds,
+                                     const std::vector<FoldPrediction>& predictions) {
+  std::vector<PredictedGroup> groups;
+  for (size_t f = 0; f < folds.size(); ++f) {
+    for (size_t k = 0; k < predictions[f].scores.size(); ++k) {
+      const RecordingScore& score = predictions[f].scores[k];
+      if (!score.predicted.empty()) groups.push_back({folds[f].held_out[k], score.predicted});
+    }
+  }
+  return groups;
+}
+
 // Of the recordings that were held out, each averaged over its folds.
 ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
                        Sums sums) {
@@ -126,7 +138,8 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
 
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
-                              int num_threads, const JobProgress& progress) {
+                              int num_threads, const JobProgress& progress,
+                              const RecordedBodies& bodies) {
   const int total = static_cast<int>(recordings.size());
   std::vector<FoldPrediction> predictions(folds.size());
   ParallelFor(
@@ -143,6 +156,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
     AddFold(ScoreOf(folds[f], predictions[f], &sums), &result);
   }
   result.summary = SummaryOf(recordings, predictor, std::move(sums));
+  result.groups = CompareHips(recordings, bodies, GroupsOf(folds, predictions));
   return result;
 }
 

@@ -13,6 +13,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
+#include "ident/validation/hip_group_metrics.h"
 
 namespace pushid {
 
@@ -55,11 +56,15 @@ struct CrossValidation {
   // fastest anybody still is two seconds after a push.
   int fits = 0, settling = 0, harder_farther = 0;
   double slowest_to_settle = 0.0;  // m/s
+  // Of all folds' recordings of more than one person together, if any.
+  std::optional<GroupMetrics> groups;
 };
 
+// bodies: of the recordings, where they are known.
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
-                              int num_threads, const JobProgress& progress = nullptr);
+                              int num_threads, const JobProgress& progress = nullptr,
+                              const RecordedBodies& bodies = {});
 
 // b minus a, recording by recording, with the standard error of its mean.
 struct PairedDifference : HipMetrics {

@@ -122,21 +122,35 @@ std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
   return Share(sum.sum, sum.words);
 }
 
-std::vector<int> OnsetFrames(const GroupMotion& group) {
+std::vector<int> OnsetFrames(const HipPaths& hips) {
   std::vector<int> onsets;
-  for (const BodyMotion& person : group.people) {
+  for (const HipPath& hip : hips) {
     int onset = kNever;
-    for (size_t t = 1; t < person.size() && onset == kNever; ++t) {
-      const double way = (person[t] - person[0]).col(kBodyHip).norm();
-      if (way > kOnsetWay) onset = static_cast<int>(t);
+    for (size_t t = 1; t < hip.size() && onset == kNever; ++t) {
+      if ((hip[t] - hip[0]).norm() > kOnsetWay) onset = static_cast<int>(t);
     }
     onsets.push_back(onset);
   }
   return onsets;
 }
 
+std::vector<int> OnsetFrames(const GroupMotion& group) {
+  HipPaths hips;
+  for (const BodyMotion& person : group.people) {
+    hips.emplace_back();
+    for (const Pose& pose : person) hips.back().push_back(pose.col(kBodyHip));
+  }
+  return OnsetFrames(hips);
+}
+
 void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics) {
-  const std::vector<int> truth = OnsetFrames(recorded), onsets = OnsetFrames(predicted);
+  AddOnsets({OnsetFrames(recorded), recorded.pushed_person, recorded.dt}, OnsetFrames(predicted),
+            metrics);
+}
+
+void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
+               OnsetMetrics* metrics) {
+  const std::vector<int>& truth = recorded.frames;
   ++metrics->recordings;
   if (FirstOf(onsets) == recorded.pushed_person) ++metrics->pushed_named;
   for (size_t a = 0; a < truth.size(); ++a) {
@@ -177,21 +191,34 @@ nlohmann::ordered_json ToJson(const GroupMetrics& metrics) {
           {"missed_movers", onsets.missed_movers}};
 }
 
-std::vector<std::string> GroupMetricsHeader() {
-  return {"SSCP",        "changes",        "NDMS",         "pushed named",
-          "onset order", "onset error, s", "false movers", "missed movers"};
+TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
+  const std::vector<std::string> header = {"groups",         "SSCP",         "changes",
+                                           "NDMS",           "pushed named", "onset order",
+                                           "onset error, s", "false movers", "missed movers"};
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  TextTable table(header, left);
+  for (const GroupMetricsRow& row : rows) {
+    const SocialMetrics& social = row.metrics->social;
+    const OnsetMetrics& onsets = row.metrics->onsets;
+    table.Add({row.predictor, Cell(social.sscp), Cell(social.sscp_changes), Cell(social.ndms),
+               std::to_string(onsets.pushed_named) + " of " + std::to_string(onsets.recordings),
+               Cell(Share(onsets.in_order, onsets.pairs)),
+               Cell(Share(onsets.error_sum, onsets.movers)), std::to_string(onsets.false_movers),
+               std::to_string(onsets.missed_movers)});
+  }
+  return table;
 }
 
-std::vector<std::string> GroupMetricsRow(const GroupMetrics& metrics) {
-  const OnsetMetrics& onsets = metrics.onsets;
-  return {Cell(metrics.social.sscp),
-          Cell(metrics.social.sscp_changes),
-          Cell(metrics.social.ndms),
-          std::to_string(onsets.pushed_named) + " of " + std::to_string(onsets.recordings),
-          Cell(Share(onsets.in_order, onsets.pairs)),
-          Cell(Share(onsets.error_sum, onsets.movers)),
-          std::to_string(onsets.false_movers),
-          std::to_string(onsets.missed_movers)};
+std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
+  if (rows.empty()) return "";
+  return GroupMetricsTable(rows).ToString() + GroupMetricsLegend() + "\n";
+}
+
+const char* GroupMetricsLegend() {
+  return "SSCP, changes (0 for the same) and NDMS (1 for the same) see how people move, at what "
+         "speed and how often they step,\nnot whether the right person does it at the right time: "
+         "that is what the onsets say, and they say nothing else";
 }
 
 }  // namespace pushid

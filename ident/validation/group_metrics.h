@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "ident/figures/text_table.h"
+#include "ident/results/model_rollout.h"
 #include "models/restoration/social_states.h"
 
 namespace pushid {
@@ -50,6 +52,7 @@ std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
 
 // The frame at which each person begins to move; -1: never.
 inline constexpr double kOnsetWay = 0.02;  // m
+std::vector<int> OnsetFrames(const HipPaths& hips);
 std::vector<int> OnsetFrames(const GroupMotion& group);
 
 struct OnsetMetrics {
@@ -59,6 +62,13 @@ struct OnsetMetrics {
   double error_sum = 0.0;       // s, over the movers
   int false_movers = 0, missed_movers = 0;
 };
+struct RecordedOnsets {
+  std::vector<int> frames;  // of each person
+  int pushed_person = 0;
+  double dt = 1.0 / 60.0;
+};
+void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
+               OnsetMetrics* metrics);
 void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics);
 
 struct GroupMetrics {
@@ -70,8 +80,15 @@ GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
                            const std::vector<GroupMotion>& predicted);
 
 nlohmann::ordered_json ToJson(const GroupMetrics& metrics);
-// A heading and a row for a table of predictors.
-std::vector<std::string> GroupMetricsHeader();
-std::vector<std::string> GroupMetricsRow(const GroupMetrics& metrics);
+
+// What predictors' groups do, one a row; empty without any.
+struct GroupMetricsRow {
+  std::string predictor;
+  const GroupMetrics* metrics;
+};
+TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows);
+// The same as text, with what the measures can see and what they cannot.
+std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
+const char* GroupMetricsLegend();
 
 }  // namespace pushid

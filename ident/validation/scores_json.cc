@@ -108,6 +108,7 @@ Json ToJson(const CrossValidation& validation) {
   json["failures"] = validation.failures;
   json["falls"] = validation.falls;
   json["falls_when_pushed_harder"] = validation.falls_harder;
+  if (validation.groups) json["group_metrics"] = ToJson(*validation.groups);
   if (validation.fits > 0) {
     json["fits"] = validation.fits;
     json["fits_that_settle"] = validation.settling;

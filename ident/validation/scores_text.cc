@@ -268,10 +268,13 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   if (!who_steps.empty()) text += "\n" + who_steps;
   if (!groups) return text;
   std::vector<PropagationColumn> columns;
+  std::vector<GroupMetricsRow> metrics;
   for (const CrossValidation& candidate : candidates) {
     columns.push_back({candidate.predictor, &candidate.summary.propagation});
+    if (candidate.groups) metrics.push_back({candidate.predictor, &*candidate.groups});
   }
-  return text + "\n" + PropagationText(columns);
+  return text + "\n" + PropagationText(columns) +
+         (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
 }
 
 }  // namespace pushid

@@ -59,6 +59,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
                      BehaviourSection(model),
                      PopulationSection(model),
                      StepSection(model, views),
+                     GroupSection(views),
                      FigureSection(views),
                      MotionSection(views),
                      VisualCheckSection(model, views),

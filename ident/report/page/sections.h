@@ -29,6 +29,7 @@ ReportSection ResidualSection(const FittedModel& model);
 ReportSection SolveSection(const FittedModel& model);
 ReportSection MotionSection(const std::vector<RecordingView>& views);
 ReportSection StepSection(const FittedModel& model, const std::vector<RecordingView>& views);
+ReportSection GroupSection(const std::vector<RecordingView>& views);
 ReportSection FigureSection(const std::vector<RecordingView>& views);
 ReportSection DesignSection(const ExperimentDesign& design);
 ReportSection ProvenanceSection(const FittedModel& model);

@@ -85,7 +85,7 @@ TEST(GroupMetricsTest, WhatIsNotDefinedHasNoNumber) {
   EXPECT_FALSE(metrics.social.sscp_changes.has_value());
   EXPECT_TRUE(ToJson(metrics)["sscp_changes"].is_null());
   EXPECT_TRUE(ToJson(metrics)["onset_error_s"].is_null());
-  EXPECT_EQ(GroupMetricsRow(metrics)[1], "none");
+  EXPECT_EQ(GroupMetricsTable({{"still", &metrics}}).rows()[1][2], "none");
   // Too short for a word.
   EXPECT_FALSE(CompareWords({Walkers(4, 10, 19)}, {Walkers(4, 10)}).has_value());
   EXPECT_FALSE(CompareWords({Walkers(4, 10)}, {Walkers(4, 10, 19)}).has_value());

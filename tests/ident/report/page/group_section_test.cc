@@ -1,0 +1,85 @@
+// What the report says of groups: of whom there are any, by whole bodies where these were read.
+#include <gtest/gtest.h>
+
+#include "ident/bodies/body_files.h"
+#include "ident/report/page/sections.h"
+#include "tests/models/body_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kFrames = 60;
+
+// People 0.6 m apart who go off one after the other, pushed from behind.
+Recording Walkers(int people) {
+  Recording recording;
+  recording.id = "walkers";
+  recording.fps = 60.0;
+  for (int n = 0; n < people; ++n) {
+    RecordedPerson person;
+    person.subject_id = "P" + std::to_string(n);
+    person.mass_kg = 80.0;
+    person.joint_names = DefaultJointNames();
+    person.joint_parents.assign(kBodyParents.begin(), kBodyParents.end());
+    for (int t = 0; t < kFrames; ++t) {
+      const double way = 0.015 * std::max(0, t - 4 - 8 * n);
+      const Pose pose = Placed(StandingPose(), 0.0, {0.6 * n + way, 0.0, 0.0});
+      person.joints.emplace_back();
+      for (int j = 0; j < kBodyJoints; ++j) person.joints.back().push_back(pose.col(j));
+      person.hip.push_back(pose.col(kBodyHip));
+      person.left_ankle.push_back(pose.col(kLeftAnkle));
+      person.right_ankle.push_back(pose.col(kRightAnkle));
+    }
+    recording.people.push_back(person);
+  }
+  recording.pushes.push_back({0, 0, {{80.0, 0.0, 0.0, 0.0}, {80.0, 0.0, 0.0, 0.0}}, ""});
+  return recording;
+}
+
+// Predicted as it was.
+RecordingView Seen(const Recording& recording) {
+  RecordingView view;
+  view.recording = &recording;
+  view.run.recording = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  view.run.prediction.status.ok = true;
+  view.run.prediction.hip = view.run.recording.hip;
+  return view;
+}
+
+TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
+  const Recording group = Walkers(3), alone = Walkers(1);
+  EXPECT_TRUE(GroupSection({Seen(alone)}).tables.empty());
+  const ReportSection section = GroupSection({Seen(alone), Seen(group)});
+  ASSERT_EQ(section.tables.size(), 1u);
+  const auto& rows = section.tables[0].table.rows();
+  ASSERT_EQ(rows.size(), 3u);
+  // SSCP, changes, NDMS, pushed named, order, error, false and missed movers.
+  const std::vector<std::string> exact = {"predicted", "0.000", "0.000", "1.000", "1 of 1",
+                                          "1.000",     "0.000", "0",     "0"};
+  EXPECT_EQ(rows[1], exact);
+  EXPECT_EQ(rows[2][0], "constant velocity");
+  EXPECT_NE(rows[2][1], "0.000") << "it ends with the push, before anybody goes off";
+  EXPECT_TRUE(Contains(section.paragraphs[0], "rigid"));
+}
+
+TEST(GroupSectionTest, WithoutBodiesOnsetsAreLeft) {
+  Recording group = Walkers(2);
+  for (RecordedPerson& person : group.people) person.joint_parents.clear();
+  const ReportSection section = GroupSection({Seen(group)});
+  ASSERT_EQ(section.tables.size(), 1u);
+  EXPECT_EQ(section.tables[0].table.rows()[1][1], "none");
+  EXPECT_EQ(section.tables[0].table.rows()[1][4], "1 of 1");
+  EXPECT_TRUE(Contains(section.paragraphs[0], "no whole bodies"));
+}
+
+TEST(GroupSectionTest, APredictionThatFailedIsLeftOut) {
+  const Recording group = Walkers(2);
+  RecordingView failed = Seen(group);
+  failed.run.prediction.status.ok = false;
+  failed.run.prediction.hip.clear();
+  EXPECT_TRUE(GroupSection({failed}).tables.empty());
+}
+
+}  // namespace
+}  // namespace pushid
