@@ -12,11 +12,11 @@ namespace {
 std::string g_program = "pushid";
 bool g_show_progress = true;
 
+}  // namespace
+
 double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-}  // namespace
 
 void SetProgramName(const std::string& path) {
   g_program = path.substr(path.find_last_of('/') + 1);

@@ -1,17 +1,9 @@
 // apps: progress of trainings.
 #include "apps/support/training_line.h"
 
-#include <chrono>
 #include <cmath>
 
 namespace pushid {
-namespace {
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 TrainingLine::TrainingLine() : made_(Now()) {}
 

@@ -216,9 +216,9 @@ std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
 }
 
 const char* GroupMetricsLegend() {
-  return "SSCP, changes (0 for the same) and NDMS (1 for the same) see how people move, at what "
-         "speed and how often they step,\nnot whether the right person does it at the right time: "
-         "that is what the onsets say, and they say nothing else";
+  return "SSCP, changes (0: the same) and NDMS (1: the same) see how people move and how often "
+         "they "
+         "step, not whether the right person does so in time; onsets see that, and nothing else.";
 }
 
 }  // namespace pushid

@@ -1,4 +1,5 @@
-// pushid-simulate --formation --generator, as a user runs it after pushid-train-generator.
+// pushid-simulate --formation --generator, as a user runs it after pushid-train-generator, and what
+// is said of pushes that a generator has not learned from.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -51,6 +52,23 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   flags.back() = "--blend=0.5";
   ASSERT_EQ(Simulate(flags).exit_code, 0);
   EXPECT_EQ(ReadText(Path("j.csv")), blended);
+}
+
+// Of recordings too: it learned from net pushes, and that is told once.
+TEST_F(FormationGeneratorTest, PushesOfAnotherKindAreToldOf) {
+  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
+  const auto generate = [&](const std::string& recordings) {
+    return RunApp("pushid-generate", {"--model=" + Path("g"), recordings, "--averaged=1",
+                                      "--sampling_steps=2", "--quiet"});
+  };
+  EXPECT_EQ(generate(Recordings()).err, "");
+  const AppRun other = generate(ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
+  }));
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  const size_t told = other.err.find("is given some of kind external");
+  EXPECT_NE(told, std::string::npos) << other.err;
+  EXPECT_EQ(other.err.find("is given", told + 20), std::string::npos) << other.err;
 }
 
 TEST_F(FormationGeneratorTest, MistakesAreNamed) {

@@ -1,0 +1,176 @@
+// apps: windows of clips forecast and sampled, and paths to a pose.
+#include "apps/generate_clips.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/flags/command_line.h"
+#include "apps/show_forecast.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
+#include "ident/generators/forecast_spread.h"
+#include "ident/generators/path_search.h"
+#include "ident/parameters/option_names.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// All windows are forecast together, in pieces that fit the memory.
+constexpr size_t kTogether = 64;
+
+std::vector<Trajectories> Forecasts(const MotionGenerator& generator,
+                                    const std::vector<ForecastWindow>& windows) {
+  std::vector<Trajectories> all;
+  for (size_t i = 0; i < windows.size(); i += kTogether) {
+    std::vector<ObservedMotion> people;
+    for (size_t k = i; k < std::min(i + kTogether, windows.size()); ++k) {
+      people.push_back({windows[k].observed});
+    }
+    for (Trajectories& motion : generator.Forecast(people, kForecastFrames)) {
+      all.push_back(std::move(motion));
+    }
+  }
+  return all;
+}
+
+std::vector<std::vector<SampledFuture>> Samples(const MotionGenerator& generator,
+                                                const std::vector<ForecastWindow>& windows,
+                                                const GenerateFlags& flags) {
+  Random random(flags.seed);
+  const NormalSource normal = [&random] { return random.Normal(); };
+  ProgressLine line;
+  std::vector<std::vector<SampledFuture>> all;
+  for (const ForecastWindow& window : windows) {
+    all.push_back(
+        generator.Sample({{window.observed}}, kForecastFrames, flags.samples, normal).front());
+    line.Show("sampling futures: window " + std::to_string(all.size()) + " of " +
+              std::to_string(windows.size()));
+  }
+  line.Finish();
+  return all;
+}
+
+// The windows of one action, all of the first where none is named.
+Result<size_t> FindWindow(const std::vector<ForecastWindow>& windows, const std::string& action,
+                          int number) {
+  int found = 0;
+  std::string of = action.empty() ? windows.front().action : action;
+  for (size_t i = 0; i < windows.size(); ++i) {
+    if (windows[i].action == of && found++ == number) return i;
+  }
+  return Error{"there are " + std::to_string(found) + " windows of " + Quoted(of) +
+               "; --window and --target_window count them from 0 on"};
+}
+
+// The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
+MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
+                      const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+  scene->title += ", towards the end of window " + std::to_string(flags.target_window);
+  if (flags.samples == 0) {
+    const Result<MinimizedPath> path =
+        PathToPose(generator, {scene->observed}, kForecastFrames, target);
+    if (!path.ok()) return path.error();
+    const MinimizedPath& found = path.value();
+    (*json)["path"] = {{"distance_m", found.distance},
+                       {"log_likelihood", found.log_likelihood},
+                       {"log_likelihood_of_forecast", found.of_forecast},
+                       {"iterations", found.iterations}};
+    std::printf(
+        "the most probable path to the end of window %d, %s m from it: log likelihood %s, of the "
+        "forecast %s (%d iterations)\n",
+        flags.target_window, Rounded(found.distance, 3).c_str(),
+        Rounded(found.log_likelihood, 4).c_str(), Rounded(found.of_forecast, 4).c_str(),
+        found.iterations);
+    scene->forecast = found.motion;
+    return std::nullopt;
+  }
+  const Result<PathChoice> path =
+      MostProbablePath(scene->futures, target, flags.target_distance, scene->layout);
+  if (!path.ok()) return path.error();
+  const PathChoice& choice = path.value();
+  (*json)["path"] = {{"future", choice.future + 1},
+                     {"near", choice.near},
+                     {"distance_m", choice.distance},
+                     {"log_likelihood", choice.log_likelihood}};
+  std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
+              choice.near, flags.samples, flags.target_window, choice.future + 1,
+              Rounded(choice.distance, 3).c_str());
+  scene->forecast = scene->futures[choice.future].motion;
+  return std::nullopt;
+}
+
+// The window's forecast and futures; of a search its outcome goes to `json`.
+Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                              const std::vector<ForecastWindow>& windows, Json* json) {
+  const Result<size_t> at = FindWindow(windows, flags.action, flags.window);
+  if (!at.ok()) return at.error();
+  const ForecastWindow& window = windows[at.value()];
+  ForecastScene scene;
+  scene.dt = 1.0 / loaded.settings.rate;
+  scene.layout = loaded.settings.layout;
+  scene.title = window.action + ", window " + std::to_string(flags.window);
+  scene.observed = window.observed;
+  scene.recorded = window.future;
+  scene.forecast = loaded.generator->Forecast({{window.observed}}, kForecastFrames).front();
+  if (flags.samples > 0) {
+    Random random(flags.seed);
+    const NormalSource normal = [&random] { return random.Normal(); };
+    scene.futures =
+        loaded.generator->Sample({{window.observed}}, kForecastFrames, flags.samples, normal)
+            .front();
+  }
+  if (flags.target_window < 0) return scene;
+  const Result<size_t> target = FindWindow(windows, flags.action, flags.target_window);
+  if (!target.ok()) return target.error();
+  const Eigen::VectorXf end = windows[target.value()].future.rightCols(1);
+  if (MaybeError error = SearchPath(*loaded.generator, flags, end, &scene, json)) return *error;
+  return scene;
+}
+
+}  // namespace
+
+int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags) {
+  const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
+  if (!mocap.ok()) return Fail(mocap.error());
+  const ParticleLayout& layout = loaded.settings.layout;
+  if (mocap.value().skeleton.layout.names != layout.names) {
+    return Fail(Error{"these clips have " +
+                          std::to_string(mocap.value().skeleton.layout.num_particles()) +
+                          " particles, other ones than the " +
+                          std::to_string(layout.num_particles()) + " that the generator knows",
+                      flags.folder});
+  }
+  const auto windows = MakeForecastWindows(mocap.value(), flags.protocol, flags.stride);
+  if (windows.empty()) {
+    return Fail(
+        Error{"no clip of --protocol=" + NameOf(flags.protocol) + " is long enough for a window",
+              flags.folder});
+  }
+  const double before = Now();
+  const ForecastErrors errors = ErrorsOf(windows, Forecasts(*loaded.generator, windows), layout);
+  const double per_window = (Now() - before) / static_cast<double>(windows.size());
+  std::printf("%s", ForecastErrorsText(errors).c_str());
+  Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  json.update(ToJson(errors));
+  json["baselines"]["zero_velocity"] = ToJson(ErrorsOf(windows, ZeroVelocity(windows), layout));
+  if (flags.samples > 0 && flags.target_window < 0) {
+    const ForecastSpread spread =
+        SpreadOf(windows, Samples(*loaded.generator, windows, flags), layout);
+    std::printf("\n%s", ForecastSpreadText(spread).c_str());
+    AddSpreadJson(spread, &json);
+  }
+  if (flags.Shows() || flags.target_window >= 0) {
+    const Result<ForecastScene> scene = SceneOf(loaded, flags, windows, &json);
+    if (!scene.ok()) return Fail(scene.error());
+    if (MaybeError error = ShowForecast(scene.value(), flags)) return Fail(*error);
+  }
+  json["run"] = {{"seconds_per_window", per_window}};
+  if (flags.json_out.empty()) return kDone;
+  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  return kDone;
+}
+
+}  // namespace pushid
