@@ -293,7 +293,7 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
       Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend goes with --crossvalidate"}));
   EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"give --physics"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}),
-                      {"--pendulum_input and --blend"}));
+                      {"--accuracy=best"}));
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"give --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
