@@ -124,7 +124,7 @@ std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
     return NormalSource([random] { return random->Normal(); });
   };
   DiffusionGeneratorOptions options = changes.diffusion;
-  options.window = settings.observed + settings.predicted;
+  options.learnt_frames = settings.observed + settings.predicted;
   return std::make_unique<DiffusionGenerator>(settings.layout, trained.members, 1.0 / settings.rate,
                                               options, noise);
 }

@@ -7,10 +7,9 @@ namespace pushid {
 namespace {
 
 constexpr double kObservedWeight = 0.1;
-constexpr int kLeastPast = 2, kMostPast = 30;                        // frames
+constexpr int kUsualPast = 20, kLeastPast = 2, kMostPast = 30;       // frames
 constexpr double kOneFrame = 0.5, kUsual = 0.3, kNothing = 0.15;     // shares of groups
 constexpr double kNearestBystander = 2.5, kFarthestBystander = 6.0;  // m
-constexpr int kLeastLater = 16;                                      // frames to forecast
 constexpr int kAloneEvery = 5;
 
 double Uniform(double low, double high) {
@@ -145,13 +144,6 @@ ObservedGroup DiffusionBatches::Varied(const ObservedGroup& group) const {
   return varied;
 }
 
-bool DiffusionBatches::Begun(ObservedGroup* group) const {
-  const int frames = FramesOf(*group), latest = frames - kUsualPast - kLeastLater;
-  if (latest < 1 || Uniform(0.0, 1.0) >= options_.later) return false;
-  *group = FromFrame(std::move(*group), 1 + static_cast<int>(Pick(latest)));
-  return true;
-}
-
 DiffusionBatch DiffusionBatches::Draw(int step) const {
   const bool of_groups = alone_.empty() || (!groups_.empty() && step % kAloneEvery != 0);
   const std::vector<ObservedGroup>& from = of_groups ? groups_ : alone_;
@@ -159,7 +151,7 @@ DiffusionBatch DiffusionBatches::Draw(int step) const {
   std::vector<int> past;
   for (int k = 0; k < (of_groups ? options_.groups : options_.people_alone); ++k) {
     drawn.push_back(Varied(from[Pick(from.size())]));
-    past.push_back(Begun(&drawn.back()) ? kUsualPast : DrawnPast(FramesOf(drawn.back())));
+    past.push_back(DrawnPast(FramesOf(drawn.back())));
   }
   return Joined(drawn, past, scales_, options_);
 }

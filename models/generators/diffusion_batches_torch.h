@@ -21,8 +21,6 @@ class DiffusionBatches {
  private:
   ObservedGroup Varied(const ObservedGroup& group) const;
   void AddBystanders(ObservedGroup* group) const;
-  // Whether the group is now seen from a later frame on, in the middle of what it does.
-  bool Begun(ObservedGroup* group) const;
 
   const JointScales scales_;
   const DiffusionTrainingOptions& options_;

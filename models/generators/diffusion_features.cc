@@ -159,22 +159,6 @@ std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
   return changed;
 }
 
-std::vector<ObservedMotion> FromFrame(std::vector<ObservedMotion> group, int first) {
-  for (ObservedMotion& person : group) {
-    const Eigen::Vector3f way(person.frames(0, first) - person.frames(0, 0),
-                              person.frames(1, first) - person.frames(1, 0), 0.0f);
-    person.place += way.head<2>();
-    person.frames = Trajectories(person.frames.rightCols(person.frames.cols() - first));
-    person.frames.colwise() -= Eigen::VectorXf(way.replicate<kBodyJoints, 1>());
-    const Eigen::Index pushed = person.controls.cols() - first;
-    person.controls = Eigen::MatrixXf(person.controls.rightCols(std::max<Eigen::Index>(0, pushed)));
-    if (person.pendulum.size() == 0) continue;
-    person.pendulum = Eigen::MatrixXf(person.pendulum.rightCols(person.pendulum.cols() - first));
-    person.pendulum.colwise() -= Eigen::VectorXf(way);
-  }
-  return group;
-}
-
 std::vector<ObservedMotion> PushedBy(std::vector<ObservedMotion> group, double factor) {
   for (ObservedMotion& person : group) person.controls *= static_cast<float>(factor);
   return group;

@@ -20,7 +20,6 @@ namespace pushid {
 inline constexpr int kMotionRows = 3 * kBodyJoints;
 inline constexpr int kPushRows = 4;
 inline constexpr int kStaticRows = 3 * (kBodyJoints - 1) + 2 + 1 + 1 + 1 + kPushRows + 1;
-inline constexpr int kUsualPast = 20;  // frames shown where more than the first are
 inline int GivenRows(bool pendulum) { return kMotionRows + 1 + kPushRows + (pendulum ? 3 : 0); }
 
 // m, by joint: what a unit of a motion's row is.
@@ -54,8 +53,6 @@ struct GroupChange {
 std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
                                     const GroupChange& change);
 
-// The same people from frame `first` on, as if they had been seen from there.
-std::vector<ObservedMotion> FromFrame(std::vector<ObservedMotion> group, int first);
 // Pushed harder or less; what they do stays.
 std::vector<ObservedMotion> PushedBy(std::vector<ObservedMotion> group, double factor);
 

@@ -33,6 +33,16 @@ Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
   return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
 }
 
+// From frame `first` on, steps fade to 1/e in so many frames.
+void Settle(int first, double frames, Trajectories* motion) {
+  const Trajectories before = *motion;
+  for (Eigen::Index t = first; t < motion->cols(); ++t) {
+    const double fade = std::exp(-static_cast<double>(t - first) / frames);
+    motion->col(t) =
+        motion->col(t - 1) + static_cast<float>(fade) * (before.col(t) - before.col(t - 1));
+  }
+}
+
 int ObservedFrames(const std::vector<ObservedMotion>& people) {
   return static_cast<int>(people.front().frames.cols());
 }
@@ -48,9 +58,10 @@ DiffusionGenerator::DiffusionGenerator(ParticleLayout layout, std::vector<Diffus
       options_(options),
       noise_(std::move(noise)) {}
 
-std::vector<Trajectories> DiffusionGenerator::SampleWindow(
-    const std::vector<ObservedMotion>& people, const DiffusionNetwork& network, int frames,
-    const NormalSource& normal) const {
+std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<ObservedMotion>& people,
+                                                          const DiffusionNetwork& network,
+                                                          int frames,
+                                                          const NormalSource& normal) const {
   const int count = static_cast<int>(people.size());
   const int seen = ObservedFrames(people);
   const bool pendulum = network.structure.pendulum;
@@ -83,30 +94,8 @@ std::vector<Trajectories> DiffusionGenerator::SampleWindow(
     motions.push_back(FromMotionRows(estimate.middleCols(n * frames, frames), people[n],
                                      network.scales, pendulum));
   }
-  return motions;
-}
-
-std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<ObservedMotion>& people,
-                                                          const DiffusionNetwork& network,
-                                                          int frames,
-                                                          const NormalSource& normal) const {
-  const int seen = ObservedFrames(people), window = std::max(options_.window, seen + kUsualPast);
-  std::vector<Trajectories> motions =
-      SampleWindow(people, network, std::min(frames, window), normal);
-  for (int done = std::min(frames, window); done < frames;) {
-    std::vector<ObservedMotion> now = people;
-    for (size_t n = 0; n < people.size(); ++n) now[n].frames = motions[n];
-    now = FromFrame(std::move(now), done - kUsualPast);
-    const int more = std::min(frames - done, window - kUsualPast);
-    const std::vector<Trajectories> next = SampleWindow(now, network, kUsualPast + more, normal);
-    for (size_t n = 0; n < people.size(); ++n) {
-      const Eigen::VectorXf way = motions[n].col(done - 1) - next[n].col(kUsualPast - 1);
-      Trajectories longer(motions[n].rows(), done + more);
-      longer << motions[n], next[n].rightCols(more).colwise() + way;
-      motions[n] = std::move(longer);
-    }
-    done += more;
-  }
+  for (Trajectories& motion : motions)
+    Settle(options_.learnt_frames, options_.settling / dt_, &motion);
   return motions;
 }
 

@@ -4,8 +4,8 @@
 // From noise at T to nothing of it in some steps; frames that were seen are put in the place of
 // what the network estimates for them, after every step (Eq. 6 of SDM). Networks of several seeds
 // take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
-// error asks for. Motions longer than a window go on from its last frames, which the next window
-// is shown: it begins where they do, and knows nothing of a push that is over. Sampled futures may
+// error asks for. Recordings end before people stand still: past the longest one learnt from, what
+// the network has them go on with fades, and they come to rest. Sampled futures may
 // each be pushed a little harder or less, which stands for what differs between recordings of like
 // pushes. With a pendulum's path its people are moved some of the way to it. Then each body
 // is finished as restored ones are (postprocess.h): the seam at the last frame seen fades, bones
@@ -27,7 +27,8 @@ struct DiffusionGeneratorOptions {
   DiffusionSampler sampler = DiffusionSampler::kRenoised;
   int steps = 25;
   int averaged = 8;          // samples of a forecast
-  int window = 128;          // frames of one pass; more go on window after window
+  int learnt_frames = 128;   // of the longest motion learnt from; later ones settle
+  double settling = 0.5;     // s, in which steps of later frames fade to 1/e
   double blend = 0.0;        // share of the way to the pendulum's hip
   double push_spread = 0.8;  // of the logarithm of the push, between sampled futures
   PostprocessOptions postprocess = {true, 20};
@@ -47,11 +48,7 @@ class DiffusionGenerator : public MotionGenerator {
                                                  const NormalSource& normal) const override;
 
  private:
-  // Everybody's motion in one window, with what the network makes of the frames seen.
-  std::vector<Trajectories> SampleWindow(const std::vector<ObservedMotion>& people,
-                                         const DiffusionNetwork& network, int frames,
-                                         const NormalSource& normal) const;
-  // The same for any number of frames, before it is finished.
+  // Everybody's motion, with what the network makes of the frames seen, before it is finished.
   std::vector<Trajectories> SampleWhole(const std::vector<ObservedMotion>& people,
                                         const DiffusionNetwork& network, int frames,
                                         const NormalSource& normal) const;

@@ -8,8 +8,7 @@
 //
 // where observed frames weigh 0.1 and those after the recording's end nothing. Into some groups
 // people are put who stand far from all others and do nothing: from groups alone the network cannot
-// know that a push does not reach everybody. Some are seen from a later frame on, as in a forecast
-// that goes on window after window. AdamW, a warm-up, the rate down to a fiftieth by a
+// know that a push does not reach everybody. AdamW, a warm-up, the rate down to a fiftieth by a
 // cosine, gradients clipped; what is used is the exponential mean of the weights.
 #pragma once
 
@@ -37,7 +36,6 @@ struct DiffusionTrainingOptions {
   double averaging = 0.998;  // of the weights, from step to step
   double dropout = 0.1;      // of the statics
   double bystanders = 0.3;   // share of groups that get one or two
-  double later = 0.2;        // share of groups that are seen from a later frame on
   double turn = 0.12;        // rad, largest
   double size = 0.05;        // share, largest
   double dt = 1.0 / 60.0;    // s

@@ -131,7 +131,7 @@ def seconds():
     for name, by in (("diffusion", "generator"), ("physics", "rigid")):
         for key, title in (("hip_speed_m_s", "hip speed, m/s"), ("hip_way_m", "way of the hip, m"),
                            ("standing", "share who stand"), ("sscp", "SSCP")):
-            rows.append([f"{name}: {title}", *(number(row[key]) for row in json[by])])
+            rows.append([f"{name}: {title}", *(f"{row[key]:.2f}" for row in json[by])])
     return studies.table(["every group for six seconds", *(f"{row['second']}. s" for row in json["generator"])], rows)
 
 

@@ -93,28 +93,6 @@ TEST(DiffusionFeaturesTest, ChangesAreUndone) {
   EXPECT_EQ(mirrored[0].frames(3 * kLeftWrist + 1, 5), -group[0].frames(3 * kRightWrist + 1, 5));
 }
 
-// A later frame becomes frame 0: nobody is anywhere else in the world, and what is left of the push
-// goes along.
-TEST(DiffusionFeaturesTest, FromALaterFrame) {
-  std::vector<ObservedMotion> group = PushedGroup(2, 40);
-  for (ObservedMotion& person : group) person.pendulum = person.frames.topRows(3);
-  const std::vector<ObservedMotion> later = FromFrame(group, 4);
-  for (size_t n = 0; n < group.size(); ++n) {
-    EXPECT_EQ(later[n].frames.cols(), 36);
-    EXPECT_NEAR(later[n].frames(0, 0), group[n].frames(0, 0), 1e-6f);
-    for (const int t : {0, 20, 35}) {
-      const Eigen::Vector2f here = later[n].frames.col(t).head<2>() + later[n].place;
-      const Eigen::Vector2f there = group[n].frames.col(t + 4).head<2>() + group[n].place;
-      EXPECT_LT((here - there).norm(), 1e-6f) << n << " " << t;
-      EXPECT_LT((later[n].pendulum.col(t) - later[n].frames.col(t).head<3>()).norm(), 1e-6f);
-    }
-  }
-  EXPECT_EQ(later[0].controls(0, 1), 4.0f);
-  EXPECT_EQ(later[0].controls(0, 2), 0.0f) << "the push ends with frame 5";
-  group[0].controls = Eigen::MatrixXf(group[0].controls.leftCols(6));
-  EXPECT_EQ(FromFrame(group, 10)[0].controls.cols(), 0) << "over by then";
-}
-
 TEST(PoolingWeightsTest, NearPeopleCountAndFarOnesFade) {
   Eigen::Matrix2Xf places(2, 3);
   places << 0.0f, 0.5f, 9.0f, 0.0f, 0.0f, 0.0f;
@@ -287,25 +265,25 @@ TEST_F(DiffusionGeneratorTest, ABlendGoesSomeOfTheWayToThePendulum) {
   EXPECT_LT((blended.col(7).segment<3>(3 * kBodyHead) - moved - (head - hip)).norm(), 1e-5f);
 }
 
-// Window after window: earlier frames stay, and nobody jumps where the next one begins.
-TEST_F(DiffusionGeneratorTest, GoesOnPastAWindow) {
+// Past what was learnt people come to rest, and nothing before it changes.
+TEST_F(DiffusionGeneratorTest, LongForecastsSettle) {
   options_.postprocess = {false, 0, false, false};
   options_.averaged = 1;
-  options_.window = 60;
+  options_.learnt_frames = 60;
+  options_.settling = 0.25;
   const std::vector<ObservedMotion> people = Seen(2, 1);
-  const auto first = Generator().Forecast(people, 59), whole = Generator().Forecast(people, 200);
-  ASSERT_EQ(whole[1].cols(), 200);
-  EXPECT_EQ(Trajectories(whole[1].leftCols(59)), first[1]);
-  // The untrained network shakes by itself: windows may not add to it.
-  const auto largest = [&whole](int begin, int end) {
-    float step = 0.0f;
-    for (int t = begin; t < end; ++t) {
-      step = std::max(step, (whole[1].col(t) - whole[1].col(t - 1)).norm());
-    }
-    return step;
+  const Trajectories whole = Generator().Forecast(people, 200)[1];
+  ASSERT_EQ(whole.cols(), 200);
+  options_.learnt_frames = 1000;
+  const Trajectories restless = Generator().Forecast(people, 200)[1];
+  EXPECT_EQ(Trajectories(whole.leftCols(58)), Trajectories(restless.leftCols(58)));
+  const auto step = [](const Trajectories& motion, int t) {
+    return (motion.col(t) - motion.col(t - 1)).norm();
   };
-  EXPECT_LT(largest(55, 65), 3.0f * largest(20, 50));
-  EXPECT_TRUE(whole[1].allFinite());
+  // Column 59 is frame 60; a quarter of a second later a step has lost 1 - 1/e of its size.
+  EXPECT_NEAR(step(whole, 59), step(restless, 59), 1e-5f);
+  EXPECT_NEAR(step(whole, 74), std::exp(-1.0) * step(restless, 74), 1e-4f);
+  EXPECT_LT(step(whole, 199), 1e-3f * step(restless, 199) + 1e-6f);
 }
 
 // A future under a push drawn larger is that of a larger push; forecasts are under the push itself.
