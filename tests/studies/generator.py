@@ -76,9 +76,9 @@ def spread():
 def ablations():
     rows = []
     for name, flags in ABLATIONS:
-        model = train(*ALONE, "--steps=600", "--noise_steps=0", *flags)
+        model = train(*ALONE, "--steps=600", "--noise_steps=0", "--correction=false", *flags)
         rows.append(by_horizon(name, evaluate(model, "--project_bones=false", "--mirror=false")["mean"]["MPJPE_mm"]))
-    return studies.table(["one network, 600 steps, `--mirror=false`; mean joint error, mm", *IN_MS], rows)
+    return studies.table(["one network, 600 steps, `--mirror=false --correction=false`; mean joint error, mm", *IN_MS], rows)
 
 
 METRICS = ["hipADE_m", "hipFDE_m", "MBLE_m"]
