@@ -29,8 +29,14 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
   TrainingLine line;
   const Result<GeneratorValidation> validation =
       CrossValidateGenerator(recordings, flags.options,
-                             {flags.observed, flags.scheme, flags.crossvalidate, flags.physics,
-                              flags.pendulum_input, flags.changes, {}, flags.samples},
+                             {flags.observed,
+                              flags.scheme,
+                              flags.crossvalidate,
+                              flags.physics,
+                              flags.pendulum_input,
+                              flags.changes,
+                              {},
+                              flags.samples},
                              [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
   if (!validation.ok()) return Fail(validation.error());
@@ -125,6 +131,9 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   options.chain.fit = physics.value();
   options.chain.training.seed = flags.options.particles.seed;
   options.chain.training.num_threads = flags.options.diffusion.num_threads;
+  // A generator of few steps, a try, is compared with a restoration of few.
+  options.chain.training.effort =
+      static_cast<double>(flags.options.diffusion.steps) / DiffusionTrainingOptions{}.steps;
   options.generator = flags.options;
   options.validation.observed = flags.observed;
   options.validation.scheme = flags.scheme;

@@ -1,0 +1,137 @@
+// Diffusion by pushid-train-generator and pushid-generate, as a user runs them.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class DiffusionAppTest : public AppTest {
+ protected:
+  AppRun Train(std::vector<std::string> more) const {
+    more.insert(more.end(),
+                {"--kind=diffusion", Recordings(), "--steps=20", "--batch=2", "--quiet"});
+    return RunApp("pushid-train-generator", more);
+  }
+  AppRun Generate(std::vector<std::string> more) const {
+    more.insert(more.end(), {"--model=" + Path("g"), Recordings(), "--averaged=1",
+                             "--sampling_steps=2", "--quiet"});
+    return RunApp("pushid-generate", more);
+  }
+};
+
+TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
+  const AppRun train = Train({"--out=" + Path("g")});
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  EXPECT_TRUE(Contains(ReadText(Path("g/curve.svg")), "<svg"));
+  const AppRun run = Generate({"--id=" + id_, "--frames=90", "--page_out=" + Path("p.html"),
+                               "--poses_out=" + Path("p.csv"), "--strip_out=" + Path("s.svg"),
+                               "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = Json(Path("e.json"));
+  EXPECT_GT(json["mean"]["MPJPE_m"].get<double>(), 0.0);
+  EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 5e-3);
+  EXPECT_GT(json["run"]["seconds_per_recording"].get<double>(), 0.0);
+  EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_ + ", diffusion"));
+  EXPECT_TRUE(Contains(ReadText(Path("p.csv")), "\n89,")) << "past the recording's end";
+  ASSERT_EQ(Generate({"--observed=20", "--samples=19", "--json_out=" + Path("e.json")}).exit_code,
+            0);
+  const auto spread = Json(Path("e.json"))["spread"];
+  EXPECT_GE(spread["hip_x_inside"].get<double>(), 0.0);
+  EXPECT_LE(spread["hip_x_inside"].get<double>(), 1.0);
+  EXPECT_GT(spread["hip_x_width_m"].get<double>(), 0.0);
+}
+
+TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
+  const AppRun fit = RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const AppRun run =
+      Train({"--crossvalidate=2", "--scheme=interleaved", "--physics=" + Path("m.json"),
+             "--blend=0.5", "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto json = Json(Path("e.json"));
+  for (const char* name : {"generator_unblended", "generator_shown_20", "rigid", "static"}) {
+    EXPECT_TRUE(json["baselines"][name]["mean"].contains("MPJPE_m")) << name;
+  }
+  EXPECT_NE(json["mean"]["hipADE_m"], json["baselines"]["generator_unblended"]["mean"]["hipADE_m"]);
+  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
+  EXPECT_EQ(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}).exit_code, 0);
+}
+
+// Physics go in, and must be there whenever such a generator is used.
+TEST_F(DiffusionAppTest, CorrectsPhysics) {
+  const std::string physics = "--physics=" + Path("m.json");
+  ASSERT_EQ(RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")}).exit_code, 0);
+  const AppRun train = Train({"--out=" + Path("g"), physics, "--pendulum_input"});
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  const AppRun run = Generate({physics, "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_LT(Json(Path("e.json"))["mean"]["hipADE_m"].get<double>(), 0.06)
+      << "hardly trained, it leaves the hips where physics have them";
+  const AppRun alone = Generate({});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_TRUE(Contains(alone.err, "--physics"));
+}
+
+// Everything that may forecast is compared and written, and what won is used without being asked.
+TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
+  const AppRun train = Train({"--out=" + Path("g"), "--accuracy=best"});
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  EXPECT_TRUE(Contains(train.out, "chosen: "));
+  const auto candidates = Json(Path("g/candidates.json"));
+  ASSERT_EQ(candidates.size(), 5u);
+  for (size_t i = 1; i < candidates.size(); ++i) {
+    EXPECT_LE(candidates[i - 1]["mean"]["MPJPE_m"], candidates[i]["mean"]["MPJPE_m"]);
+  }
+  const auto choice = Json(Path("g/generator.json"))["settings"]["choice"];
+  EXPECT_EQ(choice["by"], candidates[0]["by"]);
+  EXPECT_EQ(choice["blend"], candidates[0]["blend"]);
+  const AppRun chosen = Generate({"--json_out=" + Path("e.json")});
+  ASSERT_EQ(chosen.exit_code, 0) << chosen.err;
+  EXPECT_TRUE(Contains(chosen.out, "as cross-validation chose: "));
+  // Hardly trained, diffusion loses to the synthetic people's own physics.
+  const AppRun asked = Generate(
+      {"--physics=" + Path("g/physics.json"), "--blend=0", "--json_out=" + Path("a.json")});
+  ASSERT_EQ(asked.exit_code, 0) << asked.err;
+  EXPECT_FALSE(Contains(asked.out, "as cross-validation chose"));
+  EXPECT_LT(Json(Path("e.json"))["mean"]["MPJPE_m"], Json(Path("a.json"))["mean"]["MPJPE_m"]);
+}
+
+TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
+  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
+  const AppRun run = Generate({"--frames=241", "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "generator, second"));
+  const auto seconds = Json(Path("e.json"))["seconds"]["generator"];
+  ASSERT_EQ(seconds.size(), 4u);
+  EXPECT_LT(seconds[3]["hip_speed_m_s"].get<double>(), 0.02) << "they have come to rest";
+}
+
+TEST_F(DiffusionAppTest, MistakesAreNamed) {
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=best", "--crossvalidate=2"}),
+                      {"takes its own folds"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=good"}), {"--accuracy is 'good'"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--push_spread=1"}),
+                      {"--push_spread goes with --samples"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--dataset=cmu"}), {"give --dataset=pushes"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--jitter=1"}),
+                      {"--jitter goes with --kind=particles"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--pooling=all"}), {"--pooling is 'all'"}));
+  EXPECT_TRUE(
+      Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend goes with --crossvalidate"}));
+  EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"give --physics"}));
+  EXPECT_TRUE(
+      Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}), {"--accuracy=best"}));
+  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
+  EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"give --physics"}));
+  EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
+  EXPECT_TRUE(Refused(Generate({"--nomirror"}), {"--mirror", "of diffusion"}));
+  EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
+  EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));
+}
+
+}  // namespace
+}  // namespace pushid
