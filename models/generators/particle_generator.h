@@ -25,7 +25,7 @@ struct ParticleGeneratorOptions {
   // Of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1), times
   // scale. Both were chosen on the validation split, where the noise that was learned, drawn anew
   // every frame, covers 80 ms but too little of 1000 ms: errors of a forecast last.
-  double noise_memory = 0.2, noise_scale = 1.0;
+  double noise_memory = 0.32, noise_scale = 1.0;
   bool correlated_noise = true;               // off: coordinates are drawn independently
   bool mirror = true;                         // members also look in the mirror
   std::vector<float> mirrored_controls = {};  // the sign of each control there
