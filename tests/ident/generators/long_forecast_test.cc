@@ -65,6 +65,8 @@ class FixedFutures : public MotionGenerator {
 TEST(GroupSpreadTest, InsideAndWidthByHand) {
   BodyRecording recording;
   recording.bodies = {BodyMotion(10, StandingPose())};
+  recording.pendulum.hip = {{}};
+  recording.pendulum.hip[0].resize(10);
   recording.pendulum.scene.people.resize(1);
   recording.pendulum.scene.people[0].body.mass = 70.0;
   GroupSpread spread;
