@@ -110,7 +110,7 @@ def of_fold(fold):
 
 def crowds():
     rows = []
-    for name, flags in [(f"`{p}`", [f"--pooling={p}"]) for p in POOLINGS[:3]] + [
+    for name, flags in [(f"`{p}`", [f"--pooling={p}"]) for p in POOLINGS[:2]] + [
             ("`local`, `--bystanders=0`", ["--bystanders=0"])]:
         model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion",
                                       f"--leave_out={of_fold(0)}", *flags, out="out").path
