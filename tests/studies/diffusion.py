@@ -2,7 +2,6 @@
 
 groups     errors of the 49 recordings of groups, four folds, beside physics and baselines
 motion     what groups do: social states, words of motion, who moved first; with the same runs
-poolings   how people see each other, over the same folds; half an hour
 crowds     people who were not recorded, ahead of a group and beside it
 spread     whether sampled futures hold what was recorded; with the first run
 seconds    six seconds of every group, beside physics
@@ -18,7 +17,6 @@ from studies import number, with_error
 
 BLEND = 0.5  # chosen on these folds
 SAMPLES = 19  # their range is a 90 % interval
-POOLINGS = ["local", "mean", "attention", "none"]
 FOLDS = ["--crossvalidate=4", "--scheme=interleaved"]
 
 
@@ -81,18 +79,6 @@ def spread():
                          [[name, f"{of['hip_x_inside']:.2f}", number(of["hip_x_width_m"])] for name, of in rows])
 
 
-def poolings():
-    rows = []
-    for pooling in POOLINGS:
-        if pooling == "local":
-            json = diffused()["baselines"]["generator_unblended"]
-        else:
-            json = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
-                                         f"--pooling={pooling}").json
-        rows.append([f"`{pooling}`", *errors(json)[:3]])
-    return studies.table(["`--pooling`, held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m"], rows)
-
-
 def of_fold(fold):
     """The ids of the recordings of groups that the interleaved fold holds out."""
     with open(studies.MANIFEST, encoding="utf-8") as file:
@@ -110,7 +96,7 @@ def of_fold(fold):
 
 def crowds():
     rows = []
-    for name, flags in [(f"`{p}`", [f"--pooling={p}"]) for p in POOLINGS[:2]] + [
+    for name, flags in [(f"`{p}`", [f"--pooling={p}"]) for p in ("local", "mean")] + [
             ("`local`, `--bystanders=0`", ["--bystanders=0"])]:
         model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion",
                                       f"--leave_out={of_fold(0)}", *flags, out="out").path
@@ -136,5 +122,4 @@ def seconds():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "poolings": poolings,
-                            "crowds": crowds, "seconds": seconds})
+    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "crowds": crowds, "seconds": seconds})
