@@ -77,12 +77,13 @@ MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
   const std::optional<ForecastChoice> choice = loaded->settings.choice;
   if (!choice || !flags->physics.empty()) return std::nullopt;
   const std::filesystem::path folder(flags->model);
-  flags->physics = (folder / kChosenPhysics).string();
+  const bool restores = choice->by == ForecastBy::kRestoration;
+  // A choice without physics does not fail where physics do.
+  if (restores || choice->blend > 0.0) flags->physics = (folder / kChosenPhysics).string();
   flags->changes.diffusion.blend = choice->blend;
   Result<LoadedGenerator> again = LoadGenerator(flags->model, flags->changes);
   if (!again.ok()) return again.error();
   *loaded = std::move(again.value());
-  const bool restores = choice->by == ForecastBy::kRestoration;
   if (restores) {
     auto restoration = LoadRestoration((folder / kChosenRestoration).string());
     if (!restoration.ok()) return restoration.error();

@@ -1,7 +1,5 @@
 // apps: pushid-fit: recordings in, identified parameters out.
-#include <chrono>
 #include <cstdio>
-#include <ctime>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/confidence_flags.h"
@@ -9,6 +7,7 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
+#include "apps/support/model_file.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
@@ -22,14 +21,6 @@
 namespace {
 
 using namespace pushid;
-using Clock = std::chrono::steady_clock;
-
-std::string Today() {
-  char text[32];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
-  return text;
-}
 
 // The recordings of a bootstrap's replica, those drawn several times standing there several times.
 std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
@@ -45,33 +36,8 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
   return drawn;
 }
 
-Provenance FromHere() {
-  Provenance from;
-  from.version = Version();
-  from.configuration = EffectiveFlags();
-  // Where the data lay is no part of what was found; the hash is.
-  from.configuration.erase("recordings");
-  from.changed_flags = ChangedFlags();
-  const RecordingFlags flags = RecordingFlagsFromCommandLine();
-  from.manifest = flags.manifest;
-  from.setting = flags.setting;
-  const Result<std::string> hash = HashFile(flags.manifest);
-  if (hash.ok()) from.manifest_hash = hash.value();
-  return from;
-}
-
-MaybeError WriteModel(const std::string& path, const FittedModel& model, Clock::time_point begin) {
-  RunInfo run;
-  run.date = Today();
-  run.host = HostName();
-  run.model_path = path;
-  run.num_threads = NumThreads();
-  run.total_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  return WriteJson(path, ToJson(model, run));
-}
-
 int Run() {
-  const auto begin = Clock::now();
+  const double begin = Now();
   const Result<FitFlags> flags = FitFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
   if (flags.value().list_parameters) {
@@ -122,7 +88,7 @@ int Run() {
   }
   if (MaybeError error = AddConfidence(pendulums, &model)) return Fail(*error);
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
-  model.provenance = FromHere();
+  model.provenance = ProvenanceOfRun();
   model.advice = Advise(model);
   const Result<std::string> design = FlaggedDesign(pendulums, result);
   if (!design.ok()) return Fail(design.error());
@@ -130,7 +96,8 @@ int Run() {
   std::printf("%s%s%s", ReportText(model).c_str(), FlaggedPopulation(result).c_str(),
               design.value().c_str());
   if (!model_out.empty()) {
-    if (MaybeError error = WriteModel(model_out, model, begin)) return Fail(*error);
+    if (MaybeError error = WriteModelFile(model_out, model, NumThreads(), begin))
+      return Fail(*error);
     std::printf("model written to %s\n", model_out.c_str());
   }
   if (result.converged) return kDone;

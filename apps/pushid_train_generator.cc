@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_generator_flags.h"
+#include "apps/support/model_file.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
@@ -24,6 +25,17 @@ namespace {
 
 using namespace pushid;
 using Json = nlohmann::ordered_json;
+
+MaybeError MakeFolder(const std::string& folder) {
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
+  return std::nullopt;
+}
+
+std::string Inside(const std::string& folder, const char* name) {
+  return (std::filesystem::path(folder) / name).string();
+}
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
@@ -57,14 +69,8 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
 
 // data: which clips or recordings, by name and hash.
 int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
-  std::error_code failed;
-  std::filesystem::create_directories(flags.out, failed);
-  if (failed) return Fail(Error{"cannot make this folder: " + failed.message(), flags.out});
-  const auto in_out = [&flags](const char* name) {
-    return (std::filesystem::path(flags.out) / name).string();
-  };
   SetForData(samples, &flags.options);
-  flags.options.checkpoint = in_out("checkpoint.bin");
+  flags.options.checkpoint = Inside(flags.out, "checkpoint.bin");
   if (MaybeError error = CheckWritable(flags.options.checkpoint)) return Fail(*error);
   TrainingLine line;
   Result<TrainedGenerator> trained =
@@ -79,7 +85,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   settings.training["curve"] = CurveJson(trained.value().curve);
   const std::string title = NameOf(flags.options.kind) + ", " + NameOf(flags.data) + ", " +
                             std::to_string(data.size()) + " motions";
-  if (MaybeError error = WriteFileAtomically(in_out("curve.svg"),
+  if (MaybeError error = WriteFileAtomically(Inside(flags.out, "curve.svg"),
                                              TrainingCurveSvg(trained.value().curve, title))) {
     return Fail(*error);
   }
@@ -87,11 +93,11 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
               Rounded(line.Seconds(), 3).c_str(),
               trained.value().resumed ? " (resumed from a checkpoint)" : "",
-              in_out("generator.json").c_str());
+              Inside(flags.out, "generator.json").c_str());
   return kDone;
 }
 
-constexpr int kFolds = 4;  // where --crossvalidate names no number
+constexpr int kFolds = 4;  // of the comparison
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
 
 Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
@@ -106,24 +112,18 @@ Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
 
 MaybeError WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOptions& options,
                         const std::string& file) {
+  const double begin = Now();
   FittedModel model;
   model.fit = Fit(pendulums, options);
   if (!model.fit.ok()) return Error{"the pendulum's fit failed: " + model.fit.message};
-  RunInfo run;
-  run.model_path = file;
-  return WriteJson(file, ToJson(model, run));
+  model.provenance = ProvenanceOfRun();
+  return WriteModelFile(file, model, options.num_threads, begin);
 }
 
 // --accuracy=best: compares, then writes physics and restoration of all recordings into --out; the
 // generator itself is still to be trained. Returns what is to forecast.
 Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
                                    const std::vector<BodyRecording>& recordings) {
-  std::error_code failed;
-  std::filesystem::create_directories(flags.out, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), flags.out};
-  const auto in_out = [&flags](const char* name) {
-    return (std::filesystem::path(flags.out) / name).string();
-  };
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const Result<FitOptions> physics = PhysicsOf(flags, pendulums);
   if (!physics.ok()) return physics.error();
@@ -146,15 +146,15 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   line.Finish();
   if (!candidates.ok()) return candidates.error();
   std::printf("%s", CandidatesText(candidates.value()).c_str());
-  MaybeError error = WriteJson(in_out("candidates.json"), ToJson(candidates.value()));
-  if (!error) error = WritePhysics(pendulums, physics.value(), in_out(kChosenPhysics));
+  MaybeError error = WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates.value()));
+  if (!error) error = WritePhysics(pendulums, physics.value(), Inside(flags.out, kChosenPhysics));
   if (error) return *error;
   std::vector<int> all(recordings.size());
   std::iota(all.begin(), all.end(), 0);
   const auto restoration = TrainFromRecordings(recordings, all, options.chain, show);
   line.Finish();
   if (!restoration.ok()) return restoration.error();
-  error = WriteRestorationFile(in_out(kChosenRestoration), restoration.value().file);
+  error = WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.value().file);
   if (error) return *error;
   return candidates.value().front().choice;
 }
@@ -162,6 +162,7 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
 int FromClips(const TrainGeneratorFlags& flags) {
   const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
   if (!mocap.ok()) return Fail(mocap.error());
+  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
   Json data = Json::array();
   for (const MocapClip& clip : mocap.value().clips) {
     if (clip.is_test) continue;
@@ -178,6 +179,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
       MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
   if (!bodies.ok()) return Fail(bodies.error());
   if (flags.crossvalidate > 0) return CrossValidate(flags, bodies.value());
+  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
   Json data = Json::array();
   std::vector<int> all, learnt, held;
   for (const BodyRecording& body : bodies.value()) {

@@ -35,8 +35,8 @@ DEFINE_string(
 DEFINE_string(
     accuracy, pushid::NameOf(kFlags.accuracy),
     "diffusion: best compares it by four folds with physics and restored bodies, and with "
-    "blends of both, trains all of them, and pushid-generate uses what was nearest; or "
-    "usual");
+    "blends of both, trains all of them, and pushid-generate uses what was nearest (broken off, it "
+    "compares anew); or usual");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: learn from the validation clips too, which then judge nothing");

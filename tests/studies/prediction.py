@@ -55,7 +55,7 @@ def summary():
 
     names = ["static", "constant velocity", "ridge", "physics (`tail`, `group`)", "diffusion and physics"]
     rows = [[name, cell(of_one.get(name)), cell(of_groups.get(name))] for name in names]
-    rows.append(["LDP's claims, on recordings of its own choice", "0.086 / 0.171", "0.092 / 0.218"])
+    rows.append(["LDP's claims, on the evaluation recordings", "0.086 / 0.171", "0.092 / 0.218"])
     return studies.table(["error of the hip, mean / at the end, m", "a person who was not in the fit",
                           "groups, four folds"], rows)
 
