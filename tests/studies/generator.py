@@ -6,8 +6,7 @@ ablations    one network of 600 steps with something left out, changed or charge
 pushes       the published pushes of single people, four folds, beside what physics and restorations score
 
 PUSHID_MOCAP is the folder of the clips (default ../shared/cmu_mocap beside the source). Trainings take two to
-three minutes of one core a network, half of that in the ablations, and longer where LibTorch finds ATLAS instead
-of OpenBLAS. Needs pushid-train-generator, which is built where LibTorch is found.
+three minutes of one core a network, half of that in the ablations, and twice as long with ATLAS as with OpenBLAS. Needs pushid-train-generator, which is built where LibTorch is found.
 """
 import os
 import sys
