@@ -9,7 +9,7 @@
 #include "apps/flags/batch_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/support/child_process.h"
-#include "datasets/manifest/manifest.h"
+#include "datasets/manifest/merged_manifest.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/document_files.h"
 
@@ -129,7 +129,7 @@ int Run() {
   const BatchFlags& flags = read.value();
   const Result<BatchPlan> plan = ReadPlan(flags.plan);
   if (!plan.ok()) return Fail(plan.error());
-  const Result<Manifest> manifest = ReadManifest(plan.value().manifest);
+  const Result<Manifest> manifest = ReadManifests(plan.value().manifest);
   if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
   const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
   if (!all.ok()) return Fail(all.error());

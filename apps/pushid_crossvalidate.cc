@@ -210,6 +210,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::JoinRepeated("compare", ';', argc, argv);
   return pushid::RunApp(
       argc, argv,
       "pushid-crossvalidate fits on some recordings and scores the predictions of "

@@ -10,6 +10,7 @@
 #include "apps/sensor_push.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/push_csv.h"
+#include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/recording_names.h"
 #include "ident/push/push_estimation.h"
 
@@ -22,6 +23,12 @@ struct MadePush {
   Push push;
   PushKind kind;
   std::string how;
+  double start_speed = 0.0;  // m/s; inverse dynamics only
+};
+
+struct RecordingsPush {
+  std::string id, file;
+  MadePush made;
 };
 
 // As the manifest needs it: relative to its folder.
@@ -45,6 +52,7 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
   PushEstimationOptions options;
   options.person = flags.person;
   options.smoothing_frames = flags.smoothing;
+  options.initial_velocity = flags.initial_velocity;
   if (flags.smoothing > recording.num_frames()) {
     return Error{"--smoothing is longer than recording " + recording.id + ", which has " +
                  std::to_string(recording.num_frames()) + " frames"};
@@ -68,45 +76,122 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
       push.value().push, push.value().kind,
       "by inverse dynamics, " +
           (flags.smoothing > 0 ? "smoothed over " + std::to_string(flags.smoothing) + " frames"
-                               : std::string("unsmoothed"))};
+                               : std::string("unsmoothed")),
+      push.value().start_speed};
 }
 
-void PrintPush(const MadePush& made, double dt, const std::string& file) {
+void WarnOfFirstRow(const std::string& id, const MadePush& made) {
+  if (!FirstRowStandsOut(made.push)) return;
+  const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
+  Warn("recording " + id + ": the first row, " + force +
+       " N, stands out: who moves before the window begins is not pushed there; begin earlier "
+       "(--first_frame), or --initial_velocity=estimated" +
+       (made.push.start_frame == 0 ? " in the manifest" : ""));
+}
+
+void PrintPush(const RecordingsPush& of, double dt) {
+  const MadePush& made = of.made;
   Vector4<double> impulse = Vector4<double>::Zero();
   double peak = 0.0;
   for (const Eigen::Vector4d& row : made.push.force) {
     impulse += dt * row;
     peak = std::max(peak, row.head<2>().norm());
   }
-  std::printf("push on person %d, %d rows from frame %d, %s\n", made.push.person,
+  std::printf("%s: push on person %d, %d rows from frame %d, %s\n", of.id.c_str(), made.push.person,
               made.push.EndFrame() - made.push.start_frame, made.push.start_frame,
               made.how.c_str());
+  if (made.start_speed > 0.0) {
+    std::printf("the cart moves at %s m/s where it begins\n", Rounded(made.start_speed, 3).c_str());
+  }
   std::printf("impulse %s N s forwards, %s N s to the left; peak %s N\n",
               Rounded(impulse[0], 3).c_str(), Rounded(impulse[1], 3).c_str(),
               Rounded(peak, 3).c_str());
+  std::printf("written to %s\n", of.file.c_str());
+}
+
+void PrintEntry(const RecordingsPush& of) {
   std::printf(
-      "written to %s; in the recording's entry of the manifest put, instead of any push_csv:\n",
-      file.c_str());
-  std::printf("  \"push_kind\": \"%s\",\n", Name(made.kind).c_str());
+      "in the recording's entry of the manifest put, instead of any push_csv "
+      "(--into_manifest does it):\n");
+  std::printf("  \"push_kind\": \"%s\",\n", Name(of.made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
-              made.push.person, nlohmann::json(PathFromManifest(file)).dump().c_str(),
-              made.push.start_frame);
+              of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
+              of.made.push.start_frame);
+}
+
+// The push in the place of what the entry says of pushes on this person.
+MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry) {
+  const int person = of.made.push.person;
+  std::string there = entry->pushed_person == person ? entry->push_csv : "";
+  std::vector<ManifestPush> others;
+  for (const ManifestPush& push : entry->pushes) {
+    if (push.person != person) others.push_back(push);
+    if (push.person == person) there = push.csv;
+  }
+  const auto where = [&](const std::string& what) {
+    return Error{"recording " + of.id + " " + what, entry->manifest, entry->line};
+  };
+  if (!there.empty() && !overwrite) {
+    return where("has a push on person " + std::to_string(person) + " already, " + there +
+                 "; --overwrite puts the new one in its place");
+  }
+  const bool others_stay = !others.empty() || (there.empty() && !entry->push_csv.empty());
+  if (others_stay && entry->push_kind != of.made.kind) {
+    return where("has pushes on other people of the kind " + Name(entry->push_kind) +
+                 ", and this one is " + Name(of.made.kind) + "; an entry has one kind");
+  }
+  if (entry->pushed_person == person) entry->push_csv.clear();
+  entry->pushes = std::move(others);
+  entry->pushes.push_back({person, PathFromManifest(of.file), of.made.push.start_frame});
+  entry->push_kind = of.made.kind;
+  return std::nullopt;
+}
+
+Result<Manifest> WithPushes(const std::vector<RecordingsPush>& pushes, bool overwrite) {
+  Result<Manifest> manifest = ReadManifest(RecordingFlagsFromCommandLine().manifest);
+  if (!manifest.ok()) return manifest;
+  for (ManifestRecording& entry : manifest.value().recordings) {
+    for (const RecordingsPush& push : pushes) {
+      if (push.id != entry.id) continue;
+      if (MaybeError error = SetPush(push, overwrite, &entry)) return *error;
+    }
+  }
+  return manifest;
 }
 
 int Run() {
   const Result<PushFlags> read = PushFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const PushFlags& flags = read.value();
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id});
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings(flags.ids);
   if (!recordings.ok()) return Fail(recordings.error());
-  const PendulumRecording recording =
-      MakePendulumRecording(recordings.value().front(), SkeletonMapping::kExact);
-  const Result<MadePush> made = flags.sensor.sensors.empty()
-                                    ? ByInverseDynamics(flags, recording)
-                                    : FromSensor(flags, recordings.value().front(), recording);
-  if (!made.ok()) return Fail(made.error());
-  if (MaybeError error = WritePushCsv(flags.out, made.value().push.force)) return Fail(*error);
-  PrintPush(made.value(), recording.scene.dt, flags.out);
+  std::vector<RecordingsPush> pushes;
+  for (const Recording& recorded : recordings.value()) {
+    const PendulumRecording recording = MakePendulumRecording(recorded, SkeletonMapping::kExact);
+    const Result<MadePush> made = flags.sensor.sensors.empty()
+                                      ? ByInverseDynamics(flags, recording)
+                                      : FromSensor(flags, recorded, recording);
+    if (!made.ok()) return Fail(made.error());
+    WarnOfFirstRow(recorded.id, made.value());
+    pushes.push_back({recorded.id, flags.OutOf(recorded.id), made.value()});
+  }
+  // Every refusal comes before the first file is written.
+  Manifest manifest;
+  if (flags.into_manifest) {
+    Result<Manifest> with = WithPushes(pushes, flags.overwrite);
+    if (!with.ok()) return Fail(with.error());
+    manifest = std::move(with.value());
+  }
+  for (size_t i = 0; i < pushes.size(); ++i) {
+    if (MaybeError error = WritePushCsv(pushes[i].file, pushes[i].made.push.force)) {
+      return Fail(*error);
+    }
+    PrintPush(pushes[i], 1.0 / recordings.value()[i].fps);
+    if (!flags.into_manifest) PrintEntry(pushes[i]);
+  }
+  if (!flags.into_manifest) return kDone;
+  if (MaybeError error = WriteManifest(manifest.path, manifest)) return Fail(*error);
+  std::printf("entries of %zu recordings written to %s\n", pushes.size(), manifest.path.c_str());
   return kDone;
 }
 

@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_generator_flags.h"
+#include "apps/support/interruption.h"
 #include "apps/support/model_file.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
@@ -72,6 +73,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   SetForData(samples, &flags.options);
   flags.options.checkpoint = Inside(flags.out, "checkpoint.bin");
   if (MaybeError error = CheckWritable(flags.options.checkpoint)) return Fail(*error);
+  SayWhenInterrupted(KeptCheckpoints(flags.out));
   TrainingLine line;
   Result<TrainedGenerator> trained =
       TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {

@@ -6,6 +6,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
+#include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
@@ -60,6 +61,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   if (MaybeError error = CheckWritable(options.training.checkpoint)) return Fail(*error);
   std::vector<int> all(recordings.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  SayWhenInterrupted(KeptCheckpoints(flags.out));
   TrainingLine line;
   Result<TrainedRestoration> trained =
       TrainFromRecordings(recordings, all, options,

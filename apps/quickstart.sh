@@ -26,10 +26,10 @@ cmake --build --preset quickstart --parallel "$(nproc)" --target \
   pushid-crossvalidate
 
 say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
-"$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1
+"$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite
 
 say "Making recordings of two other people, held out: the same parameters, other bodies and pushes"
-"$bin/pushid-simulate" --out="$out/held-out" --people=2 --recordings_per_person=3 --seed=2 | tail -n 1
+"$bin/pushid-simulate" --out="$out/held-out" --people=2 --recordings_per_person=3 --seed=2 --overwrite | tail -n 1
 
 say "Identifying friction, balance gains and the push tail from the four people's recordings"
 # With default flags: the priors know nothing of this truth.

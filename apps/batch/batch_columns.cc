@@ -89,7 +89,7 @@ JobColumn ParameterDataShareColumn(const std::string& name) {
 
 JobColumn HeldOutColumn(const HipMetric& metric) {
   return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
-          std::string("held-out ") + metric.name + ", " + metric.unit, false, true,
+          std::string("held-out ") + metric.name + ", " + metric.unit, false, false,
           [value = metric.value](const JobResult& row) {
             return row.held_out ? Number(*row.held_out.*value, 3) : Nothing();
           }};

@@ -47,10 +47,10 @@ Result<std::string> CommonHash(const Manifest& manifest) {
   return hash.Hex();
 }
 
-Result<std::string> RecordingHash(const Manifest& manifest, const ManifestRecording& entry) {
+Result<std::string> RecordingHash(const ManifestRecording& entry) {
   ContentHash hash;
   AddPiece(entry.json.dump(), &hash);
-  if (MaybeError error = HashFiles(entry.json, manifest.path, &hash)) return *error;
+  if (MaybeError error = HashFiles(entry.json, entry.manifest, &hash)) return *error;
   return hash.Hex();
 }
 
@@ -101,13 +101,13 @@ PendulumRecording AsKnown(const ManifestRecording& entry) {
 }
 
 struct Part {
-  std::string name;
+  std::string group, name;
   std::vector<int> train, held_out;  // indices into the manifest
 };
 
 Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifest,
                                   const std::string& group, const std::vector<int>& members) {
-  if (plan.folds == 0) return std::vector<Part>{{group, members, {}}};
+  if (plan.folds == 0) return std::vector<Part>{{group, group, members, {}}};
   std::vector<PendulumRecording> known;
   for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
   const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
@@ -117,8 +117,10 @@ Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifes
   }
   std::vector<Part> parts;
   for (size_t f = 0; f < folds.value().size(); ++f) {
-    Part part{
-        group + " fold " + std::to_string(f + 1) + " of " + std::to_string(plan.folds), {}, {}};
+    Part part{group,
+              group + " fold " + std::to_string(f + 1) + " of " + std::to_string(plan.folds),
+              {},
+              {}};
     const std::vector<int>& out = folds.value()[f].held_out;
     for (int k = 0; k < static_cast<int>(members.size()); ++k) {
       const bool held = std::find(out.begin(), out.end(), k) != out.end();
@@ -160,7 +162,7 @@ class Expander {
     hashes_.resize(manifest_.recordings.size());
     std::vector<std::pair<std::string, std::vector<int>>> groups;
     for (int i : chosen.value()) {
-      const Result<std::string> hash = RecordingHash(manifest_, manifest_.recordings[i]);
+      const Result<std::string> hash = RecordingHash(manifest_.recordings[i]);
       if (!hash.ok()) return hash.error();
       hashes_[i] = hash.value();
       const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
@@ -198,6 +200,7 @@ class Expander {
       BatchJob job;
       job.variant = variant.name;
       job.group = part.name;
+      if (!part.held_out.empty()) job.folded = part.group;
       job.replica = replica;
       for (int i : part.train) job.recordings.push_back(manifest_.recordings[i].id);
       for (int i : part.held_out) job.held_out.push_back(manifest_.recordings[i].id);

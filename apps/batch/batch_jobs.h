@@ -16,6 +16,7 @@ struct BatchJob {
   std::string id;       // 32 hexadecimal digits
   std::string variant;  // by name
   std::string group;    // "X05", "row_1", "all"; of a fold "X05 fold 2 of 4"
+  std::string folded;   // the group that the fold is of: "X05"
   int replica = 0;      // 0: the recordings as they are
   std::vector<std::string> recordings, held_out;  // ids
   std::vector<std::string> fit_flags;             // of pushid-fit, without outputs and recordings

@@ -23,6 +23,7 @@
 #include <set>
 
 #include "apps/support/overwrite_check.h"
+#include "datasets/manifest/merged_manifest.h"
 
 namespace pushid {
 namespace {
@@ -134,9 +135,11 @@ class PlanReader {
     Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
     KeepLines(*data);
     std::string manifest;
-    Get(*data, "recordings", "a text: the manifest's path", &manifest);
+    Get(*data, "recordings", "a text: the manifest's path, or several, comma-separated", &manifest);
     if (manifest.empty()) Fail(*data, "[data] needs recordings = \"M/manifest.json\"");
-    plan_.manifest = Resolve(manifest);
+    for (const std::string& path : ManifestPaths(manifest)) {
+      plan_.manifest += (plan_.manifest.empty() ? "" : ",") + Resolve(path);
+    }
     Get(*data, "setting", "a text", &plan_.setting);
     GetStrings(*data, "ids", &plan_.ids);
     GetStrings(*data, "leave_out", &plan_.leave_out);

@@ -81,6 +81,10 @@ Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   variants.title = "Variants";
   variants.tables = {{"estimates over groups", VariantTable(rows)}};
   const TextTable bootstrap = BootstrapTable(rows), warned = WarningTable(rows);
+  const TextTable held_out = HeldOutTable(rows);
+  if (held_out.rows().size() > 1) {
+    variants.tables.push_back({"errors of what the folds held out", held_out});
+  }
   if (bootstrap.rows().size() > 1) {
     variants.tables.push_back({"bootstrap: each group over its replicas", bootstrap});
   }
@@ -125,7 +129,9 @@ MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& row
 
 std::string SummaryText(const std::vector<JobResult>& rows) {
   const TextTable bootstrap = BootstrapTable(rows), failed = FailureTable(rows);
+  const TextTable held_out = HeldOutTable(rows);
   std::string text = VariantTable(rows).ToString();
+  if (held_out.rows().size() > 1) text += "\n" + held_out.ToString();
   if (bootstrap.rows().size() > 1 && bootstrap.rows().size() <= kMostRowsInText) {
     text += "\n" + bootstrap.ToString();
   }

@@ -35,7 +35,104 @@ std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<
   return variants;
 }
 
+// The folds of one group: what each variant scored on each.
+struct FoldScores {
+  std::vector<std::string> variants;  // in the plan's order
+  std::vector<std::string> folds;
+  std::map<std::pair<std::string, std::string>, HipMetrics> scores;  // by variant and fold
+
+  bool Has(const std::string& variant, const std::string& fold) const {
+    return scores.count({variant, fold}) > 0;
+  }
+  std::vector<std::string> FoldsOfAll() const {
+    std::vector<std::string> of_all;
+    for (const std::string& fold : folds) {
+      const bool all = std::all_of(variants.begin(), variants.end(),
+                                   [&](const std::string& v) { return Has(v, fold); });
+      if (all) of_all.push_back(fold);
+    }
+    return of_all;
+  }
+};
+
+void AddOnce(const std::string& name, std::vector<std::string>* names) {
+  if (std::find(names->begin(), names->end(), name) == names->end()) names->push_back(name);
+}
+
+std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobResult>& rows) {
+  std::vector<std::pair<std::string, FoldScores>> groups;
+  for (const JobResult& row : rows) {
+    if (row.job->held_out.empty() || row.job->replica > 0) continue;
+    auto at = std::find_if(groups.begin(), groups.end(),
+                           [&row](const auto& one) { return one.first == row.job->folded; });
+    if (at == groups.end()) at = groups.insert(groups.end(), {row.job->folded, {}});
+    AddOnce(row.job->variant, &at->second.variants);
+    AddOnce(row.job->group, &at->second.folds);
+    if (row.done() && row.held_out) {
+      at->second.scores[{row.job->variant, row.job->group}] = *row.held_out;
+    }
+  }
+  return groups;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (double value : values) sum += value;
+  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
+}
+
+// "0.0123 +- 0.0045" of paired values; the error over folds.
+std::string MeanWithError(const std::vector<double>& values) {
+  if (values.size() < 2) return "-";
+  const double mean = Mean(values), n = static_cast<double>(values.size());
+  double squares = 0.0;
+  for (double value : values) squares += (value - mean) * (value - mean);
+  return Rounded(mean, 3) + " +- " + Rounded(std::sqrt(squares / (n - 1.0) / n), 2);
+}
+
+std::vector<std::string> HeldOutRow(const std::string& group, const std::string& variant,
+                                    const FoldScores& of) {
+  const std::vector<std::string> compared = of.FoldsOfAll();
+  std::string missing;
+  for (const std::string& fold : of.folds) {
+    // "X05 fold 2 of 4": the group stands in the row already.
+    if (!of.Has(variant, fold))
+      missing += (missing.empty() ? "" : ", ") + fold.substr(group.size() + 1);
+  }
+  std::vector<std::string> cells = {
+      group, variant, std::to_string(compared.size()) + " of " + std::to_string(of.folds.size())};
+  for (const HipMetric& metric : kHipMetrics) {
+    std::vector<double> values, differences;
+    for (const std::string& fold : compared) {
+      values.push_back(of.scores.at({variant, fold}).*metric.value);
+      differences.push_back(values.back() - of.scores.at({of.variants[0], fold}).*metric.value);
+    }
+    cells.push_back(Rounded(Mean(values), 3));
+    cells.push_back(variant == of.variants[0] ? "-" : MeanWithError(differences));
+  }
+  cells.push_back(missing.empty() ? "-" : missing);
+  return cells;
+}
+
 }  // namespace
+
+TextTable HeldOutTable(const std::vector<JobResult>& rows) {
+  std::vector<std::string> header = {"group", "variant", "folds compared"};
+  for (const HipMetric& metric : kHipMetrics) {
+    header.push_back(std::string("held-out ") + metric.name + ", " + metric.unit);
+    header.push_back("beside the first variant");
+  }
+  header.push_back("folds missing");
+  std::vector<bool> words(header.size(), false);
+  words[0] = words[1] = words.back() = true;
+  TextTable table(header, words);
+  for (const auto& [group, scores] : ByGroup(rows)) {
+    for (const std::string& variant : scores.variants) {
+      table.Add(HeldOutRow(group, variant, scores));
+    }
+  }
+  return table;
+}
 
 TextTable VariantTable(const std::vector<JobResult>& rows) {
   TextTable table({"variant", "jobs done", "failed", "open", "over groups", "mean", "std deviation",

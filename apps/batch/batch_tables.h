@@ -15,6 +15,11 @@ inline constexpr size_t kMostRowsOnPage = 2000;
 // Counts of each variant, and how its estimates (replica 0) differ between groups.
 TextTable VariantTable(const std::vector<JobResult>& rows);
 
+// Errors of what was held out, a row a group and variant: means over those folds alone that all
+// variants have, so that none is judged by easier ones, and the difference to the first variant
+// with its standard error over folds. Says which folds are missing.
+TextTable HeldOutTable(const std::vector<JobResult>& rows);
+
 // A parameter of one group over the bootstrap replicas of that group.
 struct BootstrapSpread {
   const BatchJob* job;  // replica 0

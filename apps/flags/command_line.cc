@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <list>
 #include <new>
 #include <set>
 #include <sstream>
 
+#include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
@@ -120,12 +122,36 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
+  SayWhenInterrupted("files are written whole or not at all; the same command begins anew");
   try {
     return CheckPrinted(run());
   } catch (const std::bad_alloc&) {
     return Fail("out of memory");
   } catch (const std::exception& exception) {
     return Fail(std::string("unexpected: ") + exception.what());
+  }
+}
+
+void JoinRepeated(const std::string& flag, char separator, int argc, char** argv) {
+  // Every occurrence gets the whole text, so that it does not matter which one counts.
+  std::vector<char**> places;  // "--flag=value", or the word behind "--flag"
+  std::string joined;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const size_t dashes = word.rfind("--", 0) == 0 ? 2 : 1;
+    const bool next = word.substr(dashes) == flag && word[0] == '-' && i + 1 < argc;
+    if (!next && (word[0] != '-' || word.compare(dashes, flag.size() + 1, flag + "=") != 0)) {
+      continue;
+    }
+    if (next) ++i;
+    places.push_back(&argv[i]);
+    if (places.size() > 1) joined += separator;
+    joined += next ? argv[i] : word.substr(dashes + flag.size() + 1);
+  }
+  static std::list<std::string> kept;  // argv only points
+  for (char** place : places) {
+    const bool next = **place != '-' || std::string(*place).find(flag + "=") == std::string::npos;
+    *place = kept.emplace_back(next ? joined : "--" + flag + "=" + joined).data();
   }
 }
 

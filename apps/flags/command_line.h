@@ -17,6 +17,10 @@ namespace pushid {
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words = nullptr);
 
+// A flag that is given several times would keep its last value alone: all of them, with the
+// separator between. Before RunApp.
+void JoinRepeated(const std::string& flag, char separator, int argc, char** argv);
+
 // "--recordings is missing ..." when a flag that is needed is empty.
 MaybeError Require(const std::string& flag, const std::string& value, const std::string& what);
 

@@ -9,6 +9,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
+#include "apps/support/interruption.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
@@ -153,6 +154,10 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
     options.file = FLAGS_bootstrap_file;
     options.num_threads = NumThreads();
     options.by = BootstrapBy();
+    if (!options.file.empty()) {
+      SayWhenInterrupted("replicas so far are in " + options.file +
+                         ", and the same command goes on from there");
+    }
     if (MaybeError error =
             AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), model)) {
       return *error;

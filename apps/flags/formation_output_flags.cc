@@ -7,7 +7,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/diffusion_flags.h"
-#include "apps/support/output_folder.h"
+#include "apps/flags/overwrite_flag.h"
 #include "ident/formations/formation_pictures.h"
 
 DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");

@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/overwrite_flag.h"
 #include "datasets/manifest/recording_names.h"
 
 DEFINE_string(folder, "", "the folder that holds the recordings, in it and below");
@@ -29,6 +30,8 @@ DEFINE_string(up, "", "the files' axis that points up (z unless given)");
 DEFINE_string(forward, "", "the files' axis that points in the push direction (x unless given)");
 DEFINE_string(length_unit, "", "the files' unit: mm, cm or m");
 DEFINE_string(out, "", "write the manifest here (JSON)");
+DEFINE_bool(update, pushid::ManifestFlags{}.update,
+            "add to the manifest that is there: its entries stay as they are, by id");
 
 namespace pushid {
 namespace {
@@ -47,6 +50,11 @@ MaybeError CheckManifestFlags() {
     return Error{"--fps must be from 1 to 10000 frames per second"};
   }
   if (FLAGS_pushed_person < 0) return Error{"--pushed_person counts from 0"};
+  if (!FLAGS_update) {
+    const MaybeError kept =
+        CheckNew("out", FLAGS_out, ", --update adds what is new and keeps its entries");
+    if (kept) return kept;
+  }
   return CheckOutputFiles({FLAGS_out});
 }
 
@@ -71,9 +79,11 @@ MaybeError ReadNamed(ManifestOptions* options) {
 
 }  // namespace
 
-Result<ManifestOptions> ManifestOptionsFromCommandLine() {
+Result<ManifestFlags> ManifestFlagsFromCommandLine() {
   if (MaybeError error = CheckManifestFlags()) return *error;
-  ManifestOptions options;
+  ManifestFlags flags;
+  flags.update = FLAGS_update;
+  ManifestOptions& options = flags.options;
   options.folder = FLAGS_folder;
   options.pattern = FLAGS_pattern;
   options.push_pattern = FLAGS_push_pattern;
@@ -87,7 +97,7 @@ Result<ManifestOptions> ManifestOptionsFromCommandLine() {
   options.up = FLAGS_up;
   options.forward = FLAGS_forward;
   if (MaybeError error = ReadNamed(&options)) return *error;
-  return options;
+  return flags;
 }
 
 }  // namespace pushid

@@ -5,7 +5,10 @@
 
 namespace pushid {
 
-// manifest_path is where --out says.
-Result<ManifestOptions> ManifestOptionsFromCommandLine();
+struct ManifestFlags {
+  ManifestOptions options;  // manifest_path is where --out says
+  bool update = false;      // add to what is there
+};
+Result<ManifestFlags> ManifestFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -4,10 +4,20 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/overwrite_flag.h"
+#include "apps/flags/recording_flags.h"
+#include "datasets/manifest/merged_manifest.h"
+#include "datasets/manifest/recording_names.h"
 
-DEFINE_string(id, "", "the recording");
+namespace {
+constexpr char kAuto[] = "auto";
+}
+
+DEFINE_string(id, "", "the recording; or several by --ids");
 DEFINE_int32(person, pushid::PushFlags{}.person, "who is pushed, counted from 0");
-DEFINE_string(out, "", "write the push here (CSV)");
+DEFINE_string(out, "", "write the push here (CSV); {id} in it stands for the recording's id");
+DEFINE_bool(into_manifest, pushid::PushFlags{}.into_manifest,
+            "write the push's entry into the manifest");
 
 DEFINE_int32(first_frame, pushid::PushFlags{}.window.start,
              "inverse dynamics: first frame of the window; -1: found by itself");
@@ -17,12 +27,18 @@ DEFINE_int32(smoothing, pushid::PushFlags{}.smoothing,
              "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
              "noise then make 600 N)");
 
+DEFINE_string(initial_velocity, kAuto,
+              "inverse dynamics: how fast the person is where the window begins: zero, estimated, "
+              "or auto (estimated where the hip moves faster than 0.1 m/s)");
+
 namespace pushid {
 namespace {
 
+constexpr char kPlace[] = "{id}";  // in --out
+
 // A flag of the other way would be taken and do nothing.
 MaybeError CheckInverseDynamics() {
-  for (const char* flag : {"first_frame", "end_frame", "smoothing"}) {
+  for (const char* flag : {"first_frame", "end_frame", "smoothing", "initial_velocity"}) {
     if (SensorGiven() && Given(flag)) {
       return Error{std::string("--") + flag + " belongs to inverse dynamics, not to --sensor"};
     }
@@ -33,13 +49,40 @@ MaybeError CheckInverseDynamics() {
   return std::nullopt;
 }
 
+// Inputs and outputs of one recording, or of several.
+MaybeError CheckRecordings(const PushFlags& flags) {
+  const std::vector<std::string>& ids = flags.ids;
+  if (ids.size() > 1 && flags.out.find(kPlace) == std::string::npos) {
+    return Error{"--out needs {id} for " + std::to_string(ids.size()) +
+                 " recordings, as in push/{id}.csv"};
+  }
+  if (ids.size() > 1 && SensorGiven()) {
+    return Error{"a sensor measured one recording; name it by --id"};
+  }
+  const std::string manifest = RecordingFlagsFromCommandLine().manifest;
+  if (flags.into_manifest && ManifestPaths(manifest).size() > 1) {
+    return Error{"--into_manifest writes into one manifest; --recordings names several"};
+  }
+  for (const std::string& id : ids) {
+    if (MaybeError error = CheckNew("out", flags.OutOf(id))) return error;
+    if (MaybeError error = CheckOutputFiles({flags.OutOf(id)})) return error;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
+std::string PushFlags::OutOf(const std::string& id) const {
+  std::string path = out;
+  const size_t at = path.find(kPlace);
+  return at == std::string::npos ? path : path.replace(at, sizeof kPlace - 1, id);
+}
+
 Result<PushFlags> PushFlagsFromCommandLine() {
-  for (MaybeError missing : {Require("id", FLAGS_id, "name a recording of the manifest"),
-                             Require("out", FLAGS_out, "name the CSV file to write")}) {
-    if (missing) return *missing;
-  }
+  PushFlags flags;
+  flags.ids = FLAGS_id.empty() ? RecordingFlagsFromCommandLine().ids : std::vector{FLAGS_id};
+  if (flags.ids.empty()) return Error{"--id is missing: name a recording of the manifest"};
+  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) return *missing;
   if (MaybeError error = CheckInverseDynamics()) return *error;
   if (Given("resample_fps")) {
     return Error{
@@ -47,10 +90,22 @@ Result<PushFlags> PushFlagsFromCommandLine() {
   }
   const Result<SensorFlags> sensor = SensorFlagsFromCommandLine();
   if (!sensor.ok()) return sensor.error();
-  if (MaybeError error = CheckOutputFiles({FLAGS_out})) return *error;
-  return PushFlags{
-      FLAGS_id,       FLAGS_person, FLAGS_out, sensor.value(), {FLAGS_first_frame, FLAGS_end_frame},
-      FLAGS_smoothing};
+  flags.person = FLAGS_person;
+  flags.out = FLAGS_out;
+  flags.into_manifest = FLAGS_into_manifest;
+  flags.overwrite = OverwriteGiven();
+  flags.sensor = sensor.value();
+  flags.window = {FLAGS_first_frame, FLAGS_end_frame};
+  flags.smoothing = FLAGS_smoothing;
+  if (FLAGS_initial_velocity != kAuto) {
+    flags.initial_velocity = InitialVelocityFromName(FLAGS_initial_velocity);
+    if (!flags.initial_velocity || *flags.initial_velocity == InitialVelocity::kFree) {
+      return Error{"--initial_velocity is '" + FLAGS_initial_velocity +
+                   "'; it must be zero, estimated or auto"};
+    }
+  }
+  if (MaybeError error = CheckRecordings(flags)) return *error;
+  return flags;
 }
 
 }  // namespace pushid

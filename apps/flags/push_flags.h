@@ -1,7 +1,9 @@
 // apps: the flags of pushid-push alone; those of sensors are in sensor_flags.h.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/flags/sensor_flags.h"
 #include "ident/push/push_estimation.h"
@@ -9,14 +11,19 @@
 namespace pushid {
 
 struct PushFlags {
-  std::string id;      // the recording
-  int person = 0;      // who is pushed
-  std::string out;     // the push (CSV)
-  SensorFlags sensor;  // what measured the push; without it, inverse dynamics
+  std::vector<std::string> ids;  // the recordings
+  int person = 0;                // who is pushed
+  std::string out;               // the push (CSV); {id} in it stands for the recording's id
+  bool into_manifest = false;    // the entry too
+  bool overwrite = false;        // what is there already
+  SensorFlags sensor;            // what measured the push; without it, inverse dynamics
 
   // Inverse dynamics. A frame below zero is found from the motion.
   PushWindow window{-1, -1};
-  int smoothing = 9;  // Savitzky-Golay window in frames; 0: none
+  int smoothing = 9;                                // Savitzky-Golay window in frames; 0: none
+  std::optional<InitialVelocity> initial_velocity;  // as PushEstimationOptions has it
+
+  std::string OutOf(const std::string& id) const;
 };
 Result<PushFlags> PushFlagsFromCommandLine();
 

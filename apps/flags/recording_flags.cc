@@ -5,8 +5,9 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/manifest/merged_manifest.h"
 
-DEFINE_string(recordings, "", "manifest.json of the recordings");
+DEFINE_string(recordings, "", "manifest.json of the recordings, or several, comma-separated");
 DEFINE_string(setting, pushid::LoadOptions{}.setting,
               "which recordings: settings of the manifest, comma-separated; groups (more than one "
               "person); all");
@@ -52,7 +53,7 @@ Result<LoadOptions> LoadOptionsOfFlags() {
 
 RecordingFlags RecordingFlagsFromCommandLine() {
   const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
-  return {FLAGS_recordings, FLAGS_setting, chosen};
+  return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
 }
 
 MaybeError CheckRecordingFlags() {
@@ -81,14 +82,14 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) return recordings;
   // Pushes may be written again where they were read; a motion cannot be had back.
-  const Result<Manifest> manifest = ReadManifest(FLAGS_recordings);
+  const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
   if (!manifest.ok()) return manifest.error();
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;
     if (!entry.mapping.empty()) files.push_back(entry.mapping);
     for (const std::string& file : files) {
       const MaybeError error =
-          CheckNoOutput("recording " + entry.id, ResolvePath(FLAGS_recordings, file));
+          CheckNoOutput("recording " + entry.id, ResolvePath(entry.manifest, file));
       if (error) return *error;
     }
   }

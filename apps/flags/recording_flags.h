@@ -15,9 +15,10 @@ DECLARE_string(setting);
 namespace pushid {
 
 struct RecordingFlags {
-  std::string manifest;  // manifest.json of the recordings
-  std::string setting;   // which of them, as LoadOptions has it
-  bool chosen = false;   // by setting or id: not simply all of the manifest
+  std::string manifest;          // manifest.json of the recordings, or several, comma-separated
+  std::string setting;           // which of them, as LoadOptions has it
+  std::vector<std::string> ids;  // only these; empty: all of the setting
+  bool chosen = false;           // by setting or id: not simply all of the manifest
 };
 RecordingFlags RecordingFlagsFromCommandLine();
 

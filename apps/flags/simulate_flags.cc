@@ -5,7 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
-#include "apps/support/output_folder.h"
+#include "apps/flags/overwrite_flag.h"
 #include "datasets/manifest/recording_names.h"
 #include "ident/parameters/option_names.h"
 

@@ -8,6 +8,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/manifest/merged_manifest.h"
 
 namespace pushid {
 namespace {
@@ -31,7 +32,7 @@ Provenance ProvenanceOfRun() {
   const RecordingFlags flags = RecordingFlagsFromCommandLine();
   from.manifest = flags.manifest;
   from.setting = flags.setting;
-  const Result<std::string> hash = HashFile(flags.manifest);
+  const Result<std::string> hash = HashManifests(flags.manifest);
   if (hash.ok()) from.manifest_hash = hash.value();
   return from;
 }

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/manifest/merged_manifest.h"
+
 namespace pushid {
 namespace {
 
@@ -63,8 +65,9 @@ MaybeError CheckOutputs() {
     gflags::CommandLineFlagInfo flag;
     const bool known = gflags::GetCommandLineFlagInfo(input, &flag);
     if (!known || flag.is_default || flag.current_value.empty()) continue;
-    const MaybeError error = CheckNoOutput("--" + flag.name, flag.current_value);
-    if (error) return error;
+    for (const std::string& path : ManifestPaths(flag.current_value)) {
+      if (MaybeError error = CheckNoOutput("--" + flag.name, path)) return error;
+    }
   }
   return std::nullopt;
 }

@@ -5,6 +5,10 @@
 
 namespace pushid {
 
+std::string KeptCheckpoints(const std::string& folder) {
+  return "the last checkpoint is in " + folder + ", and the same command goes on from there";
+}
+
 TrainingLine::TrainingLine() : made_(Now()) {}
 
 double TrainingLine::Seconds() const { return Now() - made_; }

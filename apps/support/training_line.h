@@ -7,6 +7,9 @@
 
 namespace pushid {
 
+// What Ctrl-C is told of a training into this folder.
+std::string KeptCheckpoints(const std::string& folder);
+
 // "window, epoch 12: 43 %, 12 s left"; the time left from the share done so far. Steps are told
 // apart by what stands before their last word.
 class TrainingLine {

@@ -4,6 +4,9 @@
 //   Result<C3dFile> file = ReadC3d("trial.c3d");
 //   file.value().points[file.value().FindPoint("LASI")][frame]   // in file.point_unit
 //
+// Poses of segments (group ROTATION, as markerless systems write them) become points: each
+// segment's origin, under its name.
+//
 // Three processors wrote them (Intel, DEC with VAX floats, MIPS big-endian), with points and
 // samples as scaled 16-bit integers or as floats; all six are read and written. The reader is
 // strict: what points outside the file, contradicts itself or is cut short is an Error with the

@@ -9,6 +9,7 @@
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/c3d_bytes.h"
 #include "datasets/formats/c3d_parameters.h"
+#include "datasets/formats/c3d_rotations.h"
 
 namespace pushid {
 namespace {
@@ -33,6 +34,7 @@ class Reader {
     if (MaybeError failed = ReadHeader()) return *std::move(failed);
     ReadNames();
     if (MaybeError failed = ReadFrames()) return *std::move(failed);
+    if (MaybeError failed = AddC3dRotations(bytes_, &file_)) return *std::move(failed);
     file_.events = ReadC3dEvents(file_.parameters, bytes_);
     if (MaybeError failed = ReadC3dPlatforms(&file_)) return *std::move(failed);
     return std::move(file_);
@@ -157,6 +159,10 @@ class Reader {
     const std::size_t frame_size =
         word * (4 * static_cast<std::size_t>(num_points_) +
                 static_cast<std::size_t>(num_channels_) * samples_per_frame_);
+    if (frame_size == 0 && HasC3dRotations(file_)) {
+      file_.frames_without_points = file_.announced_frames;
+      return std::nullopt;
+    }
     if (frame_size == 0) return At(2, "the file has neither points nor analog channels");
     const std::size_t available = data_ < bytes_.size() ? (bytes_.size() - data_) / frame_size : 0;
     std::size_t frames = file_.announced_frames;

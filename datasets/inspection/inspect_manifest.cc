@@ -6,6 +6,7 @@
 
 #include "datasets/files/list_of_names.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/inspection/plausibility.h"
 #include "datasets/loading/load_recordings.h"
 
 namespace pushid {
@@ -15,6 +16,7 @@ MaybeError InspectManifest(Inspection* found) {
   std::map<std::string, int> settings, formats;
   std::set<std::string> subjects;
   int pushed = 0, read = 0;
+  PlausibilityCheck plausible;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     ++settings[entry.setting];
     ++formats[Title(entry.motion_format)];
@@ -23,8 +25,10 @@ MaybeError InspectManifest(Inspection* found) {
     const Result<Recording> recording =
         LoadRecording(manifest.value(), entry, {}, &found->warnings);
     if (recording.ok()) ++read;
+    if (recording.ok()) plausible.Look(recording.value());
     if (!recording.ok()) found->Warn(recording.error().ToString());
   }
+  for (const std::string& warning : plausible.Warnings()) found->Warn(warning);
   const auto counts = [](const std::map<std::string, int>& of) {
     std::vector<std::string> texts;
     for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));

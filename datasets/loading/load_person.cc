@@ -27,16 +27,16 @@ class PersonLoader {
   PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
                const LoadOptions& options, std::vector<std::string>* warnings)
       : manifest_(manifest), entry_(entry), index_(index), options_(options), warnings_(warnings) {
-    path_ = ResolvePath(manifest.path, entry.motion[index]);
+    path_ = ResolvePath(entry.manifest, entry.motion[index]);
   }
 
   Result<LoadedPerson> Load() {
     if (!entry_.mapping.empty()) {
       Result<ColumnMapping> mapping =
-          ReadColumnMapping(ResolvePath(manifest_.path, entry_.mapping));
+          ReadColumnMapping(ResolvePath(entry_.manifest, entry_.mapping));
       if (!mapping.ok()) return mapping.error();
       mapping_ = std::move(mapping.value());
-      const Result<std::string> hash = HashFile(ResolvePath(manifest_.path, entry_.mapping));
+      const Result<std::string> hash = HashFile(ResolvePath(entry_.manifest, entry_.mapping));
       if (!hash.ok()) return hash.error();
       mapping_hash_ = hash.value();
     }

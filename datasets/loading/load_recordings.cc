@@ -7,6 +7,7 @@
 #include "datasets/formats/push_csv.h"
 #include "datasets/loading/load_person.h"
 #include "datasets/manifest/manifest_keys.h"
+#include "datasets/manifest/merged_manifest.h"
 #include "datasets/manifest/select_recordings.h"
 
 namespace pushid {
@@ -18,12 +19,12 @@ Error OfRecording(const ManifestRecording& entry, Error error) {
   return error;
 }
 
-Result<Push> LoadPush(const Manifest& manifest, const ManifestPush& entry, int num_frames,
+Result<Push> LoadPush(const std::string& manifest, const ManifestPush& entry, int num_frames,
                       ContentHash* hash) {
   Push push;
   push.person = entry.person;
   push.start_frame = entry.start_frame;
-  push.file = ResolvePath(manifest.path, entry.csv);
+  push.file = ResolvePath(manifest, entry.csv);
   Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(push.file);
   if (!force.ok()) return force.error();
   push.force = std::move(force.value());
@@ -95,7 +96,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
   }
   for (const ManifestPush& push : pushes) {
-    Result<Push> loaded = LoadPush(manifest, push, recording.num_frames(), &hash);
+    Result<Push> loaded = LoadPush(entry.manifest, push, recording.num_frames(), &hash);
     if (!loaded.ok()) return OfRecording(entry, loaded.error());
     recording.pushes.push_back(std::move(loaded.value()));
   }
@@ -106,11 +107,11 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   return recording;
 }
 
-Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
+Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options,
                                               std::vector<std::string>* warnings) {
   if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
-  const Result<Manifest> manifest = ReadManifest(manifest_path);
+  const Result<Manifest> manifest = ReadManifests(manifests);
   if (!manifest.ok()) return manifest.error();
   const Result<std::vector<int>> selected =
       SelectRecordings(manifest.value(), options.setting, options.ids, options.leave_out);

@@ -37,7 +37,8 @@ struct LoadOptions {
   PreparationOptions preparation{};
 };
 
-// Reads and checks the selected recordings, in the manifest's order. Things that look unusual but
+// Reads and checks the selected recordings of a manifest, or of several ("a.json,b.json"), in their
+// order. Things that look unusual but
 // can be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
 // `warnings`.
 //
@@ -45,7 +46,7 @@ struct LoadOptions {
 // fewer than three frames, a number of frames
 // other than the manifest's `frames`, people with different numbers of frames, a push longer than
 // the motion or starting after it, hip heights that show wrong units, joints not found.
-Result<std::vector<Recording>> LoadRecordings(const std::string& manifest_path,
+Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
                                               std::vector<std::string>* warnings = nullptr);
 

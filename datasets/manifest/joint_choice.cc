@@ -124,8 +124,15 @@ Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
     for (const std::string& name : NamesOnSide(side, part)) candidates.push_back({name});
   }
   if (!source.is_bvh()) {
-    for (const std::string& name : {letter + "ank", letter + "anklelat", letter + "mal",
-                                    letter + "lm", "mal" + letter, "malext" + letter}) {
+    // The middle of both malleoli, where there are both: ISB's L_FAL and L_TAM, LAL and LAM, ...
+    for (const auto& [outer, inner] :
+         {std::pair("fal", "tam"), std::pair("al", "am"), std::pair("latmal", "medmal"),
+          std::pair("lmal", "mmal"), std::pair("anklelat", "anklemed")}) {
+      candidates.push_back({letter + outer, letter + inner});
+    }
+    for (const std::string& name :
+         {letter + "ank", letter + "mall", letter + "fal", letter + "anklelat", letter + "mal",
+          letter + "lm", "mal" + letter, "malext" + letter}) {
       candidates.push_back({name});
     }
   }

@@ -35,7 +35,8 @@ Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSk
 // "Anna:LASI") where that is clear. Defaults:
 //   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
 //           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
-//   ankles  the names above, LANK, L.Ankle.Lat, LMAL, ...
+//   ankles  the names above, the middle of both malleoli (L_FAL and L_TAM, LAL and LAM, ...), LANK,
+//           L.Ankle.Lat, LMAL, ...
 //   toes, heels  the names above, LTOE, L.Toe.Tip, LMT2, LHEE, LCAL, ...: with the ankle's prefix
 //           ("Anna:") where several people have them
 // Errors besides the above: a default or a short name that several people's points answer to.

@@ -93,7 +93,8 @@ struct ManifestRecording {
   std::optional<int> frames;     // checked against the file when given
   int first_frame = 0;           // of the file, from 0, that becomes frame 0
   std::optional<int> end_frame;  // of the file, behind the last one used
-  int line = 0;                  // where the entry starts in the manifest, for messages
+  std::string manifest;          // the file it stands in, whose folder its files are named from
+  int line = 0;                  // where it starts there, for messages
 
   // The entry as read, with the keys this program does not know. Writing starts from it and sets
   // the fields above on top.
@@ -101,7 +102,7 @@ struct ManifestRecording {
 };
 
 struct Manifest {
-  std::string path;                       // the file it was read from, for messages
+  std::string path;                       // the file (or files) it was read from, for messages
   std::optional<LengthUnit> length_unit;  // for recordings that do not give their own
   std::vector<ManifestRecording> recordings;
   nlohmann::ordered_json json =

@@ -186,6 +186,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     ManifestRecording recording = ReadRecording(document, recordings[i], static_cast<int>(i), &top);
     if (top.is_wrong()) return *top.error();
+    recording.manifest = path;
     recording.line = lines[i];
     const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
     if (!is_new && !top.failed()) {

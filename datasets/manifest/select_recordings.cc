@@ -91,7 +91,7 @@ Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::s
       return Error{"recording " + Quoted(id) + " has the setting " +
                        Quoted(manifest.recordings[i].setting) + ", which --setting=" + setting +
                        " leaves out",
-                   manifest.path, manifest.recordings[i].line};
+                   manifest.recordings[i].manifest, manifest.recordings[i].line};
     }
   }
   for (const std::string& id : ids) {

@@ -35,6 +35,12 @@ std::vector<SmoothedSample> SmoothedHip(const PendulumRecording& recording, int 
   return SavitzkyGolay(hip, std::max(5, 2 * half + 1), recording.scene.dt);
 }
 
+bool StartsAtRest(const PendulumRecording& recording, int start,
+                  const PushEstimationOptions& options) {
+  if (options.initial_velocity) return *options.initial_velocity == InitialVelocity::kZero;
+  return SmoothedHip(recording, options.person)[start].rate.norm() <= options.onset_speed;
+}
+
 }  // namespace
 
 Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
@@ -93,9 +99,12 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
       if (t > 0) states[t].qd = (states[t].q - states[t - 1].q) / dt;
     }
   }
-  if (window.start > 0 && options.at_rest_at_start) states[window.start].qd.setZero();
+  if (window.start > 0 && StartsAtRest(recording, window.start, options)) {
+    states[window.start].qd.setZero();
+  }
 
   EstimatedPush result;
+  result.start_speed = states[window.start].qd.head<2>().norm();
   result.kind = options.friction_taken_out != 0.0 ? PushKind::kNetWithoutFriction : PushKind::kNet;
   result.push.person = options.person;
   result.push.start_frame = window.start;

@@ -13,6 +13,7 @@
 // hence the smoothing; its price is that a sharp onset is spread over half the smoothing window.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,10 @@ struct PushEstimationOptions {
   // Window of the zero-phase smoothing of q (Savitzky-Golay, cubic) in frames; odd and at least 5,
   // or 0 for none, which keeps the inverse exact.
   int smoothing_frames = 0;
-  // Standing still at the window's start, as the published pushes have it; otherwise the backward
-  // difference, for a person who already moves. At frame 0 the recording's own start velocity.
-  bool at_rest_at_start = true;
+  // How fast the person is where the window begins: not at all (zero), or the backward difference
+  // (estimated), of which noise makes a first row as large as any. Not said: estimated where the
+  // smoothed hip is faster than onset_speed. At frame 0 the recording's own start velocity.
+  std::optional<InitialVelocity> initial_velocity;
   // N s/m. Not zero: friction of this size is taken out of the force, which then is a push of kind
   // net_without_friction (kPublishedFriction of models/stance.h).
   double friction_taken_out = 0.0;
@@ -51,6 +53,7 @@ struct EstimatedPush {
   std::vector<PendulumState<double>> motion;
   Vector4<double> impulse = Vector4<double>::Zero();  // N s, N s, N m s, N m s
   double peak_force = 0.0;                            // N, horizontal
+  double start_speed = 0.0;                           // m/s, of the cart, at the window's start
 };
 
 // From the frame where the hip sets off (slowest before it first moves at onset_speed) to the end

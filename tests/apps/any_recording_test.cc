@@ -187,6 +187,58 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_EQ(CountFiles(), files) << "something was written";
 }
 
+// What was edited by hand stays.
+TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
+  const std::vector<std::string> flags = {"--folder=" + folder_.string(), "--mass_kg=80",
+                                          "--pattern=bvh/{subject}_{take}.bvh",
+                                          "--out=" + Path("made.json")};
+  ASSERT_EQ(RunApp("pushid-manifest", flags).exit_code, 0);
+  nlohmann::ordered_json json = Json(Path("made.json"));
+  const std::string missing = json["recordings"][3]["id"];
+  json["recordings"].erase(3);
+  json["recordings"][0]["magnitude"] = "by hand";
+  json["recordings"][1]["id"] = "renamed";
+  const std::string edited = json.dump(1);
+  WriteText("made.json", edited);
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-manifest", flags), {Path("made.json"), "--overwrite", "--update"}));
+  EXPECT_EQ(ReadText(Path("made.json")), edited);
+  std::vector<std::string> update = flags;
+  update.push_back("--update");
+  const AppRun run = RunApp("pushid-manifest", update);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "11 recordings kept as they were, 2 added"));
+  EXPECT_TRUE(Contains(run.out, missing));
+  EXPECT_TRUE(Contains(run.out, "does not find them: renamed"));
+  const auto after = Json(Path("made.json"))["recordings"];
+  ASSERT_EQ(after.size(), 13u);
+  for (int i = 0; i < 11; ++i) EXPECT_EQ(after[i], json["recordings"][i]);
+  update.back() = "--overwrite";
+  ASSERT_EQ(RunApp("pushid-manifest", update).exit_code, 0);
+  EXPECT_EQ(Json(Path("made.json"))["recordings"].size(), 12u);
+}
+
+// Found before a fit: kilonewtons, the wrong axes, a hip that is none.
+TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
+  AppRun run = RunApp("pushid-inspect", {manifest_});
+  EXPECT_EQ(run.out.find(" in 1 case"), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.find(" cases ("), std::string::npos) << run.out;
+  std::string rows = "frame,fx,fy,ftheta,fphi\n";
+  for (int t = 0; t < 5; ++t) rows += std::to_string(t) + (t == 0 ? ",1500" : ",20") + ",0,0,0\n";
+  WriteText("push/strong.csv", rows);
+  nlohmann::ordered_json json = Json(manifest_);
+  json["recordings"][0]["push_csv"] = "push/strong.csv";
+  json["recordings"][1]["forward"] = "-x";
+  json["recordings"][2]["joints"]["hip"] = "LeftKnee";
+  WriteText("odd.json", json.dump(1));
+  run = RunApp("pushid-inspect", {Path("odd.json")});
+  const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
+  EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
+  EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
+  EXPECT_TRUE(Contains(run.out, "goes elsewhere than pushed in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "no person's distance from the ankles in 1 case (" + id(2)));
+}
+
 // The push of a recording through a C3D channel, a list of two halves, and with its clock wrong.
 TEST_F(AnyRecordingTest, PushesFromSensors) {
   SyntheticOptions options;
@@ -216,7 +268,8 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   }
   ASSERT_FALSE(WriteC3d(Path("rod.c3d"), c3d));
   const std::vector<std::string> common = {"--recordings=" + Path("external/manifest.json"),
-                                           "--id=" + recording.id, "--out=" + Path("p.csv")};
+                                           "--id=" + recording.id, "--out=" + Path("p.csv"),
+                                           "--overwrite"};
   const auto with = [&common](std::vector<std::string> flags) {
     flags.insert(flags.end(), common.begin(), common.end());
     return RunApp("pushid-push", flags);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/number_text.h"
 #include "tests/apps/batch_fixture.h"
 
 namespace pushid {
@@ -112,10 +113,31 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
                        "solve_s,seconds"));
   EXPECT_TRUE(Contains(run.out, "held-out hipFDE, m"));
   const std::string page = ReadText(Path("out/summary.html"));
+  EXPECT_TRUE(Contains(run.out, "3 of 3"));
   for (const char* column : {"held-out hipADE, m", "held-out hipFDE, m", "solve s", "seconds"}) {
     EXPECT_TRUE(Contains(page, std::string(">") + column + "</th>")) << column;
   }
   EXPECT_TRUE(Contains(page, " +- "));
+}
+
+// A variant that lost a fold is compared on the folds that both have.
+TEST_F(BatchTest, FoldsAreComparedInPairs) {
+  const std::string plan =
+      Plan("folds = 3", {{"physics", ""}, {"linear", "\"--self_force=linear\""}});
+  ASSERT_EQ(Batch(plan, {"--jobs=2"}).exit_code, 0);
+  const auto jobs = Json(Path("out/summary.json"))["jobs"];
+  std::map<std::string, std::vector<double>> ade;
+  for (const auto& job : jobs) {
+    ade[job["variant"]].push_back(job["held_out"]["hipADE_m"].get<double>());
+  }
+  std::filesystem::remove_all(Path("out/jobs/" + jobs.back()["id"].get<std::string>()));
+  const AppRun gathered = Batch(plan, {"--gather"});
+  EXPECT_TRUE(Contains(gathered.out, "2 of 3"));
+  EXPECT_TRUE(Contains(gathered.out, "fold 3 of 3")) << gathered.out;
+  for (const char* variant : {"physics", "linear"}) {
+    const std::vector<double>& errors = ade[variant];
+    EXPECT_TRUE(Contains(gathered.out, Rounded(0.5 * (errors[0] + errors[1]), 3))) << variant;
+  }
 }
 
 // Those held out are filtered and resampled as those that were fitted.

@@ -50,6 +50,34 @@ TEST_F(CommandLineTest, UnknownFlagsAndLooseWordsAreRefused) {
   }
 }
 
+TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
+  const auto interrupted = [](const std::string& program, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"--preserve-status", "--signal=INT", "2",
+                                 std::string(PUSHID_BIN_DIR) + "/" + program});
+    return RunProgram("/usr/bin/timeout", flags);
+  };
+  AppRun run = interrupted("pushid-fit", {Recordings(), "--bootstrap=1000000", "--quiet",
+                                          "--model_out=" + Path("m.json")});
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; files are written whole or not at all"));
+  EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
+  const std::string kept = Path("replicas.csv");
+  run = interrupted("pushid-fit",
+                    {Recordings(), "--bootstrap=1000000", "--quiet", "--bootstrap_file=" + kept});
+  EXPECT_EQ(run.exit_code, 130) << run.err;
+  EXPECT_TRUE(
+      Contains(run.err, "replicas so far are in " + kept + ", and the same command goes on"));
+}
+
+TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
+  const AppRun run =
+      RunApp("pushid-crossvalidate",
+             {Recordings(), "--folds=2", "--yardsticks=false", "--compare=one: --preset=ldp",
+              "--compare", "two: --self_force=linear; three: --fix=mu"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* name : {"one", "two", "three"}) EXPECT_TRUE(Contains(run.out, name));
+}
+
 TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {}), {"--recordings", "manifest.json"}));
   EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {}), {"--recordings", "manifest.json"}));

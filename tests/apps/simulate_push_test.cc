@@ -75,13 +75,19 @@ TEST_F(SimulateAppTest, ParametersMayVary) {
   EXPECT_TRUE(Contains(run_.out, "0.1 between recordings, 0.05 between people"));
 }
 
-TEST_F(SimulateAppTest, ReplacesItsOwnOutputOnly) {
-  Simulate("made", {"--people=2"});
-  Simulate("made", {"--people=1"});
+TEST_F(SimulateAppTest, ReplacesItsOwnOutputOnlyAndOnlyWhenTold) {
+  const std::string manifest = Simulate("made", {"--people=2"});
+  const std::string before = ReadText(manifest);
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path("made"), "--people=1"}),
+                      {manifest, "--overwrite"}));
+  EXPECT_EQ(ReadText(manifest), before);
+  Simulate("made", {"--people=1", "--overwrite"});
+  EXPECT_NE(ReadText(manifest), before);
   WriteText("real/manifest.json", R"({"recordings": []})");
   for (const char* folder : {"real", "manifest.json", "real/manifest.json"}) {
     SCOPED_TRACE(folder);
-    EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path(folder)}), {Path(folder)}));
+    EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path(folder), "--overwrite"}),
+                        {Path(folder)}));
   }
   EXPECT_EQ(ReadText(Path("real/manifest.json")), R"({"recordings": []})");
 }
@@ -136,7 +142,8 @@ TEST_F(PushAppTest, ASensorsForceGivesLinesForTheManifest) {
   const AppRun fit = FitWithPrintedLines(made);
   EXPECT_EQ(fit.exit_code, 0) << fit.err;
   // The sensor's clock: the same push at frame 0.
-  EXPECT_TRUE(Contains(MakePush({sensor, "--sensor_start=0.1"}).out, "\"start_frame\": 0"));
+  EXPECT_TRUE(
+      Contains(MakePush({sensor, "--sensor_start=0.1", "--overwrite"}).out, "\"start_frame\": 0"));
 }
 
 TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
@@ -149,6 +156,82 @@ TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
   EXPECT_TRUE(Refused(MakePush({sensor, "--idle_force=nan"}), {"--idle_force"}));
   EXPECT_TRUE(Refused(MakePush({"--smoothing=1001"}), {"--smoothing", id_}));
   EXPECT_FALSE(std::filesystem::exists(Path("made/push.csv")));
+}
+
+TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
+  ASSERT_EQ(MakePush({}).exit_code, 0);
+  const std::string before = ReadText(Path("made/push.csv"));
+  EXPECT_TRUE(Refused(MakePush({"--first_frame=2", "--end_frame=9"}),
+                      {Path("made/push.csv"), "--overwrite"}));
+  EXPECT_EQ(ReadText(Path("made/push.csv")), before);
+}
+
+// Inside a motion: who is taken to be at rest there needs a blow.
+TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
+  const AppRun usual = MakePush({"--first_frame=15", "--end_frame=30"});
+  ASSERT_EQ(usual.exit_code, 0) << usual.err;
+  EXPECT_TRUE(Contains(usual.out, "m/s where it begins"));
+  EXPECT_EQ(usual.err.find("stands out"), std::string::npos) << usual.err;
+  const AppRun at_rest =
+      MakePush({"--first_frame=15", "--end_frame=30", "--initial_velocity=zero", "--overwrite"});
+  ASSERT_EQ(at_rest.exit_code, 0) << at_rest.err;
+  EXPECT_TRUE(Contains(at_rest.err, "the first row"));
+  EXPECT_TRUE(Contains(at_rest.err, "stands out"));
+  EXPECT_TRUE(
+      Refused(MakePush({"--initial_velocity=free", "--overwrite"}), {"--initial_velocity"}));
+}
+
+TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
+  const auto before = Json(manifest_)["recordings"];
+  const std::string ids =
+      before[0]["id"].get<std::string>() + "," + before[1]["id"].get<std::string>();
+  const std::vector<std::string> flags = {Recordings(), "--ids=" + ids, "--into_manifest",
+                                          "--out=" + Path("made/{id}.csv")};
+  std::filesystem::create_directories(Path("made"));
+  // Both have a push already.
+  EXPECT_TRUE(Refused(RunApp("pushid-push", flags), {manifest_, "already", "--overwrite"}));
+  EXPECT_FALSE(std::filesystem::exists(Path("made/" + id_ + ".csv")));
+  std::vector<std::string> told = flags;
+  told.push_back("--overwrite");
+  const AppRun run = RunApp("pushid-push", told);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "entries of 2 recordings"));
+  const auto after = Json(manifest_)["recordings"];
+  for (int i : {0, 1}) {
+    EXPECT_FALSE(after[i].contains("push_csv"));
+    ASSERT_EQ(after[i]["pushes"].size(), 1u);
+    EXPECT_EQ(after[i]["pushes"][0]["csv"], "made/" + after[i]["id"].get<std::string>() + ".csv");
+  }
+  EXPECT_EQ(after[2], before[2]);
+  EXPECT_EQ(RunApp("pushid-fit", {Recordings()}).exit_code, 0);
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-push", {Recordings(), "--ids=" + ids, "--out=" + Path("x.csv")}),
+              {"--out", "{id}"}));
+}
+
+// Two manifests are one set of recordings; what they both name is told.
+TEST_F(PushAppTest, ManifestsMerge) {
+  const auto split = [this](const std::string& name, int first, int count) {
+    nlohmann::ordered_json json = Json(manifest_);
+    nlohmann::ordered_json some = nlohmann::ordered_json::array();
+    for (int i = first; i < first + count; ++i) {
+      some.push_back(json["recordings"][i]);
+      for (auto& file : some.back()["bvh"]) file = "../" + file.get<std::string>();
+      some.back()["push_csv"] = "../" + some.back()["push_csv"].get<std::string>();
+    }
+    json["recordings"] = some;
+    return WriteText(name, json.dump(1));
+  };
+  const std::string a = split("one/a.json", 0, 6), b = split("two/b.json", 6, 6);
+  const AppRun whole = RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("whole.json")});
+  const AppRun merged =
+      RunApp("pushid-fit", {"--recordings=" + a + "," + b, "--model_out=" + Path("merged.json")});
+  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  EXPECT_EQ(Json(Path("merged.json"))["values"], Json(Path("whole.json"))["values"]);
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=" + a + "," + manifest_}),
+                      {"manifest.json:", id_, "stands in " + a}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=" + a + "," + b, "--model_out=" + b}),
+                      {"--recordings and --model_out both name"}));
 }
 
 }  // namespace

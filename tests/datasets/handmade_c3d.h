@@ -25,6 +25,8 @@ class HandmadeC3d {
   int last_frame = 3;            // as the header says, from 1
   std::vector<int> raw;          // the sample of each channel, as 16 bits hold it
   bool floating = false;         // raw samples as floats
+  int points = 1;                // 0: none
+  std::string behind;            // from the block behind the data on
   std::vector<C3dEvent> events;  // of the header; labels of four letters
 
   // Parameters belong to the group before them.
@@ -43,6 +45,14 @@ class HandmadeC3d {
     std::string data;
     for (double value : values) AppendC3dReal(value, processor_, &data);
     Parameter(name, C3dType::kReal, dimensions, data);
+  }
+  void Texts(const std::string& name, const std::vector<std::string>& texts, int length) {
+    std::string data;
+    for (std::string text : texts) {
+      text.resize(length, ' ');
+      data += text;
+    }
+    Parameter(name, C3dType::kText, {length, static_cast<int>(texts.size())}, data);
   }
   void Text(const std::string& name, const std::string& text) {
     Parameter(name, C3dType::kText, {static_cast<int>(text.size())}, text);
@@ -84,7 +94,7 @@ class HandmadeC3d {
   // that 151 counts the events, whose times are from 153 and labels from 199.
   std::string Header(std::size_t parameter_blocks) const {
     std::string header = "\2\x50";
-    for (int word : {1, static_cast<int>(raw.size()), 1, last_frame, 0}) Word(word, &header);
+    for (int word : {points, static_cast<int>(raw.size()), 1, last_frame, 0}) Word(word, &header);
     AppendC3dReal(floating ? -1.0 : 1.0, processor_, &header);
     Word(2 + static_cast<int>(parameter_blocks), &header);
     Word(1, &header);
@@ -110,11 +120,13 @@ class HandmadeC3d {
       }
     };
     for (int frame = 0; frame < frames; ++frame) {
-      for (int value : {frame % 1000, 200, 300, 0}) append(value);
+      for (int value : {frame % 1000, 200, 300, 0}) {
+        if (points > 0) append(value);
+      }
       for (int value : raw) append(value);
     }
     data.resize((data.size() + 511) / 512 * 512, '\0');
-    return data;
+    return data + behind;
   }
 
   const C3dProcessor processor_;

@@ -8,7 +8,7 @@ bin=${PUSHID_BIN:-build/release/bin}
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-"$bin/pushid-simulate" --out="$work/recordings" >/dev/null
+"$bin/pushid-simulate" --out="$work/recordings" --overwrite >/dev/null
 # Nobody is touched in these recordings: contact is held, and acts in the line.
 "$bin/pushid-fit" --recordings="$work/recordings/manifest.json" --interaction=contact \
   --fix=contact_stiffness,contact_damping,contact_distance,contact_kappa --model_out="$work/model.json" >/dev/null

@@ -58,7 +58,7 @@ def offsets_at(noise):
             r.update(fps=FPS / EVERY, frames=1440 // EVERY)
             with open(manifest, "w", encoding="utf-8") as file:
                 json.dump({"recordings": [r]}, file)
-            told = studies.run("pushid-push", f"--recordings={manifest}", f"--id={r['id']}", f"--sensor={sensor}",
+            told = studies.run("pushid-push", "--overwrite", f"--recordings={manifest}", f"--id={r['id']}", f"--sensor={sensor}",
                                "--estimate_offset", f"--out={folder}/push.csv", out=None, keep=False).text
             value, error = re.search(r"(-?[\d.e-]+) \+- ([\d.e-]+) s", told).groups()
             found.append((float(value) - TRUTH, float(error)))

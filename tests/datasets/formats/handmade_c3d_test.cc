@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -147,6 +149,56 @@ TEST_F(HandmadeC3dTest, MoreFramesThanTheHeaderCounts) {
   HandmadeC3d cut = TrialC3d(kFrames);
   cut.frames = 70000;
   EXPECT_TRUE(Contains(Problem(cut), "of 105536 frames: it is truncated"));
+}
+
+// Poses of two segments a frame, the second one turned and once not seen, and nothing else, as
+// Theia3D writes them; or beside a point.
+HandmadeC3d Poses(C3dProcessor processor, int points, int ratio) {
+  HandmadeC3d file(processor);
+  file.points = points;
+  file.Group("ROTATION");
+  file.Integers("USED", {2}, {});
+  file.Integers("DATA_START", {points > 0 ? 4 : 3}, {});  // behind head, parameters and points
+  file.Integers("RATIO", {ratio}, {});
+  file.Texts("LABELS", {"pelvis_4X4", "l_foot"}, 12);
+  for (int frame = 0; frame < file.frames * ratio; ++frame) {
+    for (const auto& [turned, x] : {std::pair(false, 100.0), std::pair(true, 200.0)}) {
+      const bool hidden = turned && frame == ratio;  // in the second frame
+      const double c = turned ? 0.0 : 1.0, s = turned ? 1.0 : 0.0;
+      for (double value : {c, s, 0.0, 0.0, -s, c, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, x + frame, 7.0, 8.0,
+                           1.0, hidden ? -1.0 : 0.0}) {
+        AppendC3dReal(value, processor, &file.behind);
+      }
+    }
+  }
+  return file;
+}
+
+TEST_F(HandmadeC3dTest, OriginsOfSegmentsArePoints) {
+  for (C3dProcessor processor : kProcessors) {
+    for (int points : {0, 1}) {
+      for (int ratio : {1, 2}) {
+        SCOPED_TRACE(Name(processor) + " " + std::to_string(points) + std::to_string(ratio));
+        const C3dFile read = Read(Poses(processor, points, ratio));
+        ASSERT_EQ(read.points.size(), points + 2u);
+        EXPECT_EQ(read.num_frames(), 3);
+        const int pelvis = read.FindPoint("pelvis"), foot = read.FindPoint("l_foot");
+        ASSERT_GE(pelvis, 0);
+        ASSERT_GE(foot, 0);
+        for (int t = 0; t < 3; ++t) {
+          EXPECT_EQ(read.points[pelvis][t], Eigen::Vector3d(100.0 + t * ratio, 7.0, 8.0));
+        }
+        EXPECT_EQ(read.points[foot][2], Eigen::Vector3d(200.0 + 2 * ratio, 7.0, 8.0));
+        EXPECT_TRUE(std::isnan(read.points[foot][1].x()));
+      }
+    }
+  }
+}
+
+TEST_F(HandmadeC3dTest, PosesCutShortAreAnError) {
+  HandmadeC3d file = Poses(C3dProcessor::kIntel, 0, 1);
+  file.behind.resize(file.behind.size() - 1);
+  EXPECT_TRUE(Contains(Problem(file), "the file ends before the last pose of 3 frames"));
 }
 
 }  // namespace

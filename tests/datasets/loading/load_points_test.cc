@@ -222,6 +222,23 @@ TEST_F(LoadPointsTest, ToesAndHeelsWhereThereAreSome) {
   EXPECT_TRUE(warnings_.empty()) << warnings_[0];
 }
 
+// The middle of both malleoli, as the common marker sets name them.
+TEST_F(LoadPointsTest, AnklesOfTheCommonMarkerSets) {
+  const std::vector<std::pair<std::vector<std::string>, std::vector<int>>> sets = {
+      {{"Pelvis", "L_FAL", "L_TAM", "R_FAL", "R_TAM"}, {1, 2}},
+      {{"Pelvis", "LAL", "LAM", "RAL", "RAM"}, {1, 2}},
+      {{"Pelvis", "l mall", "r mall"}, {1}},
+      {{"Pelvis", "L_FAL", "R_FAL"}, {1}},
+      {{"pelvis", "l_foot", "r_foot"}, {1}},
+  };
+  for (const auto& [names, left] : sets) {
+    const auto chosen = ChoosePendulumPoints("x", names, {});
+    ASSERT_TRUE(chosen.ok()) << chosen.error().ToString();
+    EXPECT_EQ(chosen.value().left_ankle, left) << names[1];
+    EXPECT_EQ(chosen.value().right_ankle.size(), left.size()) << names[1];
+  }
+}
+
 // The toe of whose ankle it is; a foot beside an ankle is the toe of SMPL's skeletons.
 TEST_F(LoadPointsTest, ToesOfSeveralPeople) {
   const std::vector<std::string> names = {"A:Hips", "A:L_Ankle", "A:R_Ankle", "A:L_Foot", "B:Hips",

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "datasets/inspection/plausibility.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "models/rollout.h"
@@ -75,11 +76,13 @@ TEST(PushEstimation, RolloutReproducesTheMotionExactly) {
   for (const SyntheticRecording& made : Make(options)) {
     const PendulumRecording recording = Pendulum(made);
     for (int smoothing : {0, 9}) {
-      for (bool at_rest : {true, false}) {
+      for (const auto& velocity :
+           {std::optional<InitialVelocity>(), std::optional(InitialVelocity::kZero),
+            std::optional(InitialVelocity::kEstimated)}) {
         for (double friction : {0.0, 100.0}) {
           PushEstimationOptions estimation;
           estimation.smoothing_frames = smoothing;
-          estimation.at_rest_at_start = at_rest;
+          estimation.initial_velocity = velocity;
           estimation.friction_taken_out = friction;
           for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
             const EstimatedPush estimated = Estimate(recording, window, estimation);
@@ -95,6 +98,33 @@ TEST(PushEstimation, RolloutReproducesTheMotionExactly) {
         }
       }
     }
+  }
+}
+
+// A window that begins inside a motion: a person who is taken to be at rest there would need
+// kilonewtons to be as fast one frame later.
+TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
+  SyntheticOptions options;
+  options.joint_noise_m = 0.0;
+  options.push_start_frame = 10;
+  options.strengths = {{"strong", 6.0}};
+  for (const SyntheticRecording& made : Make(options)) {
+    const PendulumRecording recording = Pendulum(made);
+    PushEstimationOptions estimation;
+    estimation.smoothing_frames = 9;
+    const PushWindow inside{30, 50};
+    const EstimatedPush usual = Estimate(recording, inside, estimation);
+    EXPECT_FALSE(FirstRowStandsOut(usual.push));
+    EXPECT_GT(usual.start_speed, 0.1);
+    estimation.initial_velocity = InitialVelocity::kZero;
+    const EstimatedPush at_rest = Estimate(recording, inside, estimation);
+    EXPECT_TRUE(FirstRowStandsOut(at_rest.push));
+    EXPECT_EQ(at_rest.start_speed, 0.0);
+    EXPECT_GT(at_rest.peak_force, 1000.0);
+    EXPECT_LT(usual.peak_force, 0.3 * at_rest.peak_force);
+    // Before the push people stand still, and are taken to.
+    estimation.initial_velocity.reset();
+    EXPECT_EQ(Estimate(recording, {5, 45}, estimation).start_speed, 0.0);
   }
 }
 

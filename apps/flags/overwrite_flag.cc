@@ -1,11 +1,24 @@
-// apps: what may be overwritten.
-#include "apps/support/output_folder.h"
+// apps: --overwrite.
+#include "apps/flags/overwrite_flag.h"
+
+#include <gflags/gflags.h>
 
 #include <filesystem>
 
 #include "datasets/files/json_file.h"
 
+DEFINE_bool(overwrite, false, "replace what is there: recordings, a manifest, a push");
+
 namespace pushid {
+
+bool OverwriteGiven() { return FLAGS_overwrite; }
+
+MaybeError CheckNew(const std::string& flag, const std::string& file, const std::string& besides) {
+  std::error_code ignored;
+  if (FLAGS_overwrite || !std::filesystem::exists(file, ignored)) return std::nullopt;
+  return Error{
+      "is there already; --overwrite replaces it" + besides + "; or name another --" + flag, file};
+}
 
 MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {
   namespace fs = std::filesystem;
@@ -17,7 +30,9 @@ MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder)
   const std::string manifest = (fs::path(folder) / "manifest.json").string();
   if (!fs::exists(manifest, ignored)) return std::nullopt;
   const Result<JsonDocument> document = ReadJsonDocument(manifest);
-  if (document.ok() && document.value().content.contains("synthetic")) return std::nullopt;
+  if (document.ok() && document.value().content.contains("synthetic")) {
+    return CheckNew(flag, manifest);
+  }
   return Error{"is no output of pushid-simulate and would be overwritten; name another --" + flag,
                manifest};
 }

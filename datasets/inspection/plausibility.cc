@@ -1,0 +1,82 @@
+// datasets: doubts about recordings.
+#include "datasets/inspection/plausibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/list_of_names.h"
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kStrong = 1000.0;                  // N
+constexpr double kStandsOut = 3.0;                  // times the largest of the other rows
+constexpr double kShortRod = 0.6, kLongRod = 1.2;   // m
+constexpr double kSeen = 0.5;                       // s after the push began
+constexpr double kMoved = 0.05;                     // m; less has no direction
+constexpr double kElsewhere = 60.0 * M_PI / 180.0;  // rad between push and way
+
+double Horizontal(const Eigen::Vector4d& row) { return row.head<2>().norm(); }
+
+std::string Case(const std::string& id, double value, const char* unit) {
+  return id + ": " + (value > 100.0 ? std::to_string(std::lround(value)) : Rounded(value, 3)) +
+         " " + unit;
+}
+
+// rad between the push's impulse and where the hip goes; 0 where either is nothing.
+double AngleToWay(const Recording& recording, const Push& push) {
+  const std::vector<Eigen::Vector3d>& hip = recording.people[push.person].hip;
+  const int end = std::min<int>(static_cast<int>(hip.size()) - 1,
+                                push.start_frame + static_cast<int>(kSeen * recording.fps));
+  Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector4d& row : push.force) impulse += row.head<2>();
+  const Eigen::Vector2d way = (hip[end] - hip[push.start_frame]).head<2>();
+  if (way.norm() < kMoved || !(impulse.norm() > 0.0)) return 0.0;
+  return std::acos(std::clamp(impulse.normalized().dot(way.normalized()), -1.0, 1.0));
+}
+
+}  // namespace
+
+bool FirstRowStandsOut(const Push& push) {
+  if (push.force.size() < 3) return false;
+  double others = 0.0;
+  for (size_t t = 1; t < push.force.size(); ++t) {
+    others = std::max(others, Horizontal(push.force[t]));
+  }
+  return Horizontal(push.force[0]) > kStandsOut * others;
+}
+
+void PlausibilityCheck::Look(const Recording& recording) {
+  for (const Push& push : recording.pushes) {
+    double peak = 0.0;
+    for (const Eigen::Vector4d& row : push.force) peak = std::max(peak, Horizontal(row));
+    if (peak > kStrong) strong_.cases.push_back(Case(recording.id, peak, "N"));
+    if (FirstRowStandsOut(push)) {
+      first_.cases.push_back(Case(recording.id, Horizontal(push.force[0]), "N"));
+    }
+    const double angle = AngleToWay(recording, push);
+    if (angle > kElsewhere) {
+      way_.cases.push_back(Case(recording.id, std::round(angle * 180.0 / M_PI), "degrees off"));
+    }
+  }
+  for (const RecordedPerson& person : recording.people) {
+    const double rod =
+        (person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0])).norm();
+    if (rod >= kShortRod && rod <= kLongRod) continue;
+    rod_.cases.push_back(recording.id + ", " + Case(person.subject_id, rod, "m"));
+  }
+}
+
+std::vector<std::string> PlausibilityCheck::Warnings() const {
+  std::vector<std::string> warnings;
+  for (const Doubt* doubt : {&strong_, &first_, &way_, &rod_}) {
+    if (doubt->cases.empty()) continue;
+    warnings.push_back(doubt->what + " in " + std::to_string(doubt->cases.size()) +
+                       (doubt->cases.size() == 1 ? " case (" : " cases (") +
+                       ListOfNames(doubt->cases) + "); " + doubt->advice);
+  }
+  return warnings;
+}
+
+}  // namespace pushid

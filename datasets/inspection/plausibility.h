@@ -1,0 +1,43 @@
+// datasets: what no recording of a pushed person should have, though every file of it can be read.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+
+// Whether the first row is more than three times as large as any other, as inverse dynamics makes
+// it where the person is faster at the push's begin than was assumed.
+bool FirstRowStandsOut(const Push& push);
+
+// The kinds of doubt, and which recordings they are of.
+class PlausibilityCheck {
+ public:
+  // Pushes above 1 kN, or whose first row stands out; a person who goes elsewhere than the push
+  // (wrong axes, or the wrong sign); a rod (ankles' midpoint to hip, frame 0) unlike people's.
+  void Look(const Recording& recording);
+
+  // One sentence a kind: "the push is above 1 kN in 2 recordings (a: 1650 N; b: 1219 N); ...".
+  std::vector<std::string> Warnings() const;
+
+ private:
+  struct Doubt {
+    std::string what, advice;
+    std::vector<std::string> cases;
+  };
+  Doubt strong_{
+      "the push is above 1 kN", "people hardly push so: is its unit N, its window right?", {}};
+  Doubt first_{"the push's first row stands out",
+               "who moves before a push begins is not pushed there: see pushid-push "
+               "--initial_velocity",
+               {}};
+  Doubt way_{"the person goes elsewhere than pushed",
+             "are `up` and `forward` right, and the push's sign?",
+             {}};
+  Doubt rod_{
+      "the hip is at no person's distance from the ankles", "are `joints` and the unit right?", {}};
+};
+
+}  // namespace pushid
