@@ -8,7 +8,8 @@ build_packages=(g++ cmake ninja-build ccache
   libxxhash-dev)
 # LibTorch trains restorations and generators, with OpenBLAS in half the time; everything else builds and
 # runs without them.
-test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium)
+test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium
+  python3)
 fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 # The workflow's tests are skipped without them: Snakemake takes 44 s and 683 MB to install.
 workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
