@@ -23,7 +23,6 @@ ALONE = ["--seeds=1", "--ridge_share=0"]
 ABLATIONS = [("as it is", []),
              ("without displacements, `--particles=false`", ["--particles=false"]),
              ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),
-             ("`--correction` (default)", ["--correction"]),
              ("`--cell=lstm`", ["--cell=lstm"]),
              ("`--bone_weight=1`", ["--bone_weight=1"]),
              ("`--critic_weight=0.001`", ["--critic_weight=0.001"]),
