@@ -172,8 +172,8 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
           {"--id=" + id_, "--out=" + Path("m.bvh"), "--restoration=rigid", "--postprocess=magic"},
           {"--postprocess", "magic", "fade"});
   refused("pushid-animate", {"--id=" + id_}, {"--out"});
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--html_out=x.html"}),
-                      {"--html_out", "--restoration"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--joints_out=x.csv"}),
+                      {"--joints_out", "--restoration"}));
 }
 
 }  // namespace
