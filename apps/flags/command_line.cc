@@ -40,16 +40,16 @@ bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
 }
 
 // gflags prints 0.2 as 0.20000000000000001.
-std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
+std::string WithoutDust(const gflags::CommandLineFlagInfo& flag, const std::string& text) {
   double value = 0.0;
-  if (flag.type != "double" || !ParseDouble(flag.default_value, &value)) return flag.default_value;
-  return DoubleText(value);
+  return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
 }
 
 void PrintHelp(const std::string& usage) {
   std::printf("%s\n\nflags:\n", usage.c_str());
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const std::string value = flag.default_value.empty() ? "" : "=" + DefaultText(flag);
+    const std::string value =
+        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
     std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
   }
   std::printf("  --flagfile=FILE\n      read flags from a file, one a line\n");
@@ -171,7 +171,7 @@ bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag)
 std::map<std::string, std::string> EffectiveFlags() {
   std::map<std::string, std::string> flags;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    if (IsPartOfResult(flag)) flags[flag.name] = flag.current_value;
+    if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
   }
   return flags;
 }

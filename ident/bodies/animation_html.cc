@@ -18,7 +18,7 @@ constexpr char kScript[] =
 let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],span=[1,1];
 const names=[...new Set(data.people.map(p=>p.name))],pushed=new Set(data.pushes.map(p=>p.person));
 const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
-const last=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
+const frameOf=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
 const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
 (function extent(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
  for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
@@ -39,14 +39,15 @@ function words(text,x,y,colour,bold){pen.font=(bold?'600 ':'')+13*(devicePixelRa
 function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1;
  const cx=origin[0]+Math.round((centre[0]-origin[0])/step)*step,cy=origin[1]+Math.round((centre[1]-origin[1])/step)*step;
  for(let i=-n;i<=n;i++){line([cx+i*step,cy-n*step,0],[cx+i*step,cy+n*step,0],grid,0.5);line([cx-n*step,cy+i*step,0],[cx+n*step,cy+i*step,0],grid,0.5);}
- const d=devicePixelRatio||1,front=origin[1]-Math.max(500,span[1]/2);
+ const d=devicePixelRatio||1,front=Math.min(origin[1],centre[1]-span[1]/2)-100;
  for(let i=-n;i<=n;i++){const m=Math.round((cx-origin[0])/step)+i;if(m%2)continue;
   const p=project(origin[0]+m*step,front,0);words(String(m/2).replace('-','\u2212')+' m',p[0],p[1]+14*d,style('--ink'));}}
 function body(f,colour){for(let j=1;j<22;j++)line(at(f,parents[j]),at(f,j),colour,28);dot(at(f,5),95,colour);}
-function arrow(from,force){const n=Math.hypot(...force);if(n<5)return;const c=style('--push'),d=devicePixelRatio||1;
- const end=[from[0]+force[0],from[1]+force[1],from[2]],u=[force[0]/n,force[1]/n];line(from,end,c,30);
- for(const s of [1,-1])line(end,[end[0]-110*u[0]-s*60*u[1],end[1]-110*u[1]+s*60*u[0],end[2]],c,30);
- const p=project(...end);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
+// Ends where it meets the hip.
+function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=style('--push'),d=devicePixelRatio||1;
+ const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
+ for(const s of [1,-1])line(hip,[hip[0]-110*u[0]-s*60*u[1],hip[1]-110*u[1]+s*60*u[0],hip[2]],c,30);
+ const p=project(...tail);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
 function ring(p,r,colour){pen.strokeStyle=colour;pen.setLineDash([]);pen.lineWidth=2.5*(devicePixelRatio||1);pen.beginPath();pen.arc(p[0],p[1],r,0,7);pen.stroke();}
 function colourOf(p){return p.recorded?style('--recorded'):data.colours[(data.whats.length>1?p.what:names.indexOf(p.name))%data.colours.length];}
 const shown=p=>p.recorded?on('recorded'):on('predicted')&&on('what'+p.what);
@@ -55,12 +56,12 @@ function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio
  pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
  const k=Math.min((w-20*d)/span[0],(h-34*d)/span[1]),place=q=>[x0+w/2+k*(q[0]-centre[0]),y0+h/2+8*d-k*(q[1]-centre[1])];
  words('from above',x0+42*d,y0+16*d,style('--ink'));
- for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,last(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
+ for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,frameOf(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
   if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
  const hips=new Map();
- for(const p of data.people){const f=last(p),colour=colourOf(p);
+ for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
   if(!shown(p))continue;
   hips.set(p.name,hip(p,f));
   if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p.body[f],colour);pen.globalAlpha=1;}
@@ -70,7 +71,7 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
    const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
  for(const [name,h] of hips){const p=project(...h);
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
-  if(on('names')){const top=project(h[0],h[1],h[2]+900);words(name,top[0],top[1]-(names.indexOf(name)%2?20:6)*d,style('--ink'));}}
+  if(on('names')){const top=project(h[0],h[1],h[2]+900);words(name,top[0],Math.max(16*d,top[1]-(6+15*(names.indexOf(name)%3))*d),style('--ink'));}}
  for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
  inset();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}

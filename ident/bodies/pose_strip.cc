@@ -67,20 +67,19 @@ class Panel {
     Bone(person.tip[t], person.tip[t] + force / kNewtonsPerMetre, kForceLook);
   }
 
-  // A ring round the hip of who is pushed; while it acts the push with its size.
+  // A ring round the hip of who is pushed; while it acts the push, which ends there, and its size.
   void Mark(const Eigen::Vector3d& hip, const AnimatedPush& push, int t) {
     svg_->Circle(X(hip), Y(hip), 7, PushLook());
     if (t < push.start || t >= push.start + static_cast<int>(push.force.size())) return;
     const Vector4<double>& force = push.force[t - push.start];
     const double size = force.head<2>().norm();
     if (size < kLeastForce) return;
-    const Eigen::Vector3d end = hip + Eigen::Vector3d(force[0], force[1], 0.0) / kNewtonsPerMetre;
-    Bone(hip, end, PushLook());
+    Bone(hip - Eigen::Vector3d(force[0], force[1], 0.0) / kNewtonsPerMetre, hip, PushLook());
     const double back = force[0] < 0.0 ? 6.0 : -6.0;
     for (const double side : {-4.0, 4.0}) {
-      svg_->Line(X(end), Y(end), X(end) + back, Y(end) + side, PushLook());
+      svg_->Line(X(hip), Y(hip), X(hip) + back, Y(hip) + side, PushLook());
     }
-    svg_->Text(X(hip) - 10, Y(hip) - 10, Rounded(std::round(size), 6) + " N", "ink small end");
+    svg_->Text(X(hip), kTop + 4, SvgNumber(std::round(size)) + " N", "ink small middle");
   }
 
  private:
@@ -176,10 +175,11 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
   const double scale = (kStripHeight - kTop - kBottom) / kHighest;
   const double panel = scale * (high - low) + kSide;
   const double floor = kStripHeight - kBottom;
-  const double width = std::max(480.0, panel * poses + kSide);
+  const std::vector<LegendEntry> legend = LegendOf(animation);
+  const double width = std::max({480.0, panel * poses + kSide, 2.0 * kSide + LegendWidth(legend)});
   SvgPicture svg(width, kStripHeight, animation.title);
   svg.Text(kSide, 18, animation.title, "ink bold");
-  DrawLegend(LegendOf(animation), kSide, 38, &svg);
+  DrawLegend(legend, kSide, 38, &svg);
   svg.Line(0, floor, width, floor, "axis");
   const std::vector<std::string> whats = WhatsOf(animation);
   const std::vector<int> frames = FramesByMotion(animation, poses);

@@ -9,6 +9,7 @@ namespace pushid {
 namespace {
 
 constexpr double kAbove = 22, kBelow = 36, kBefore = 52, kAfter = 12;
+constexpr int kYTicks = 3;    // about
 constexpr double kLane = 12;  // height, as that of its name
 
 struct Range {
@@ -37,6 +38,11 @@ Range RangeOf(const Chart& chart, double std::pair<double, double>::*axis) {
     range.Add(band.upper, axis);
   }
   return range;
+}
+
+// Of its line, its name and the room after it.
+double EntryWidth(const LegendEntry& entry) {
+  return 46 + 6.2 * static_cast<double>(entry.name.size());
 }
 
 class Panel {
@@ -131,7 +137,7 @@ class Panel {
       grid.push_back({left_, y, right_, y});
       svg_.Text(left_ - 6, y + 4, chart_.y_categories[i], "ink small end");
     }
-    for (double tick : chart_.y_categories.empty() ? y_.Ticks(4) : std::vector<double>()) {
+    for (double tick : chart_.y_categories.empty() ? y_.Ticks(kYTicks) : std::vector<double>()) {
       if (chart_.logarithmic && tick != std::floor(tick)) continue;
       grid.push_back({left_, y_(tick), right_, y_(tick)});
       // The names of lanes stand below.
@@ -173,6 +179,12 @@ std::string DrawCharts(const std::vector<Chart>& charts, const std::string& titl
   return svg.ToInline();
 }
 
+double LegendWidth(const std::vector<LegendEntry>& entries) {
+  double width = 0.0;
+  for (const LegendEntry& entry : entries) width += EntryWidth(entry);
+  return width;
+}
+
 void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg) {
   for (const LegendEntry& entry : entries) {
     const bool filled = entry.look.find("stroke:none") != std::string::npos ||
@@ -183,7 +195,7 @@ void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, Svg
       svg->Polyline({{x, y - 4}, {x + 18, y - 4}}, entry.look);
     }
     svg->Text(x + 23, y, entry.name, "ink small");
-    x += 46 + 6.2 * static_cast<double>(entry.name.size());
+    x += EntryWidth(entry);
   }
 }
 

@@ -64,6 +64,7 @@ std::string DrawCharts(const std::vector<Chart>& charts, const std::string& titl
 struct LegendEntry {
   std::string name, look;
 };
+double LegendWidth(const std::vector<LegendEntry>& entries);
 void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
 
 }  // namespace pushid

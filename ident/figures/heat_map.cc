@@ -28,7 +28,10 @@ std::string DrawHeatMap(const HeatMap& map) {
   const bool few = map.columns.size() <= kFewColumns;
   const double wide = few ? 64 : 46;
   const double rows = static_cast<double>(map.rows.size());
-  SvgPicture svg(left + wide * columns + 12, kTop + kHigh * rows + 12, map.title);
+  // The last name is wider than its column.
+  const double after =
+      map.columns.empty() ? 12 : 12 + 3.2 * static_cast<double>(map.columns.back().size());
+  SvgPicture svg(left + wide * columns + after, kTop + kHigh * rows + 12, map.title);
   svg.Text(12, 18, map.title, "ink bold");
   for (size_t j = 0; j < map.columns.size(); ++j) {
     // Neighbouring names at two or three heights, so that they do not touch.
@@ -47,7 +50,7 @@ std::string DrawHeatMap(const HeatMap& map) {
                std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
                    ";fill-opacity:" + SvgNumber(0.85 * share),
                map.rows[i] + ", " + map.columns[j] + ": " + Rounded(value, 3));
-      svg.Text(x + 0.5 * wide, y + 15, Rounded(value, map.digits), "ink small middle");
+      svg.Text(x + 0.5 * wide, y + 15, SvgNumber(value), "ink small middle");
     }
   }
   return svg.ToInline();

@@ -27,7 +27,7 @@ constexpr char kStyle[] =
 
 using Points = std::vector<std::pair<double, double>>;
 
-constexpr double kTolerance = 0.25;  // pixels
+constexpr double kTolerance = 0.4;  // pixels
 
 // Douglas and Peucker: keeps the farthest point of a stretch while it is too far from the chord.
 void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* kept) {

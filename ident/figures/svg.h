@@ -45,7 +45,7 @@ class SvgPicture {
   void Lines(const std::vector<SvgLine>& lines, std::string_view look);
   void Circle(double x, double y, double radius, std::string_view look,
               std::string_view tooltip = "");
-  // Fewer than two points draw nothing; points within a quarter of a pixel of the line are left
+  // Fewer than two points draw nothing; points within 0.4 pixels of the line are left
   // out.
   void Polyline(const std::vector<std::pair<double, double>>& points, std::string_view look);
   // Classes middle and end set the anchor, small and bold the font. A number's hyphen becomes a

@@ -10,7 +10,7 @@ namespace pushid {
 namespace {
 
 constexpr double kTop = 78, kHeight = 66, kGap = 8, kWidth = 1000;
-constexpr double kLeft[] = {96, 566}, kPanelWidth = 410;
+constexpr double kLeft[] = {112, 574}, kPanelWidth = 406;
 constexpr int kRows[] = {0, 2};  // of the generalized force: along x, about y
 constexpr const char* kHeads[] = {"force along the push (N)", "torque about y (N m)"};
 
@@ -112,7 +112,7 @@ class ForcesPicture {
 
   void Ticks(int person, int column, const SvgScale& value) {
     std::vector<SvgLine> grid;
-    for (double tick : value.Ticks(4)) {
+    for (double tick : value.Ticks(3)) {
       const double y = value(tick);
       const SvgLine across = {kLeft[column], y, kLeft[column] + kPanelWidth, y};
       if (tick == 0.0) {

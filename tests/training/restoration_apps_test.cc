@@ -75,6 +75,8 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
                           "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
   ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
+  EXPECT_TRUE(Contains(simulate.err, "--more_settings=groups")) << "it saw people alone";
+  EXPECT_EQ(animate.err.find("--more_settings"), std::string::npos) << "one person is no group";
 }
 
 TEST_F(RestorationAppTest, RepeatsItselfAndGoesOnAfterAKill) {

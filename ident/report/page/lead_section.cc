@@ -46,12 +46,12 @@ std::string NotKnown(const FitResult& result) {
   std::string text;
   const auto add = [&](EstimateStatus status, const std::string& words) {
     const std::vector<const Estimate*> found = With(result, status);
-    if (!found.empty()) text += (text.empty() ? "" : "; ") + Names(found, false) + words;
+    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Names(found, false);
   };
-  add(EstimateStatus::kUnidentifiable, " cannot be told from these recordings at all");
-  add(EstimateStatus::kAtBound, " ended at a bound");
-  add(EstimateStatus::kPriorHeld, " rest more on what was put in than on the recordings");
-  add(EstimateStatus::kWeak, " have wide intervals");
+  add(EstimateStatus::kUnidentifiable, "not told by these recordings at all: ");
+  add(EstimateStatus::kAtBound, "ended at a bound: ");
+  add(EstimateStatus::kPriorHeld, "decided more by what was put in than by the recordings: ");
+  add(EstimateStatus::kWeak, "with wide intervals: ");
   const Uncertainty& u = result.uncertainty;
   if (u.clustered && u.num_clusters < kFewClusters) {
     text += (text.empty() ? "" : "; ") + std::string("with ") + std::to_string(u.num_clusters) +

@@ -143,17 +143,17 @@ inline constexpr char kPageScript[] = R"js(
     }
     return shapes;
   }
-  // An arrow of 1 m for 1000 N from the hip that is pushed, with its size.
+  // An arrow of 1 m for 1000 N that ends at the hip it pushes, with its size.
   function arrow(recording, hip, force) {
     const size = Math.hypot(force[0], force[1]);
     if (size < 1) return '';
-    const from = project(recording, hip);
-    const to = project(recording, [hip[0] + force[0] / 1000, hip[1] + force[1] / 1000, hip[2]]);
+    const from = project(recording, [hip[0] - force[0] / 1000, hip[1] - force[1] / 1000, hip[2]]);
+    const to = project(recording, hip);
     const long = Math.hypot(to[0] - from[0], to[1] - from[1]) || 1;
     const u = [(to[0] - from[0]) / long, (to[1] - from[1]) / long];
     const wing = side => [to[0] - 10 * u[0] - side * 6 * u[1], to[1] - 10 * u[1] + side * 6 * u[0]];
     return line(from, to, 'a') + line(to, wing(1), 'a') + line(to, wing(-1), 'a') +
-           words([to[0] + 8, to[1] - 8], Math.round(size) + ' N', 'ink bold');
+           words([from[0], from[1] - 10], Math.round(size) + ' N', 'ink bold middle');
   }
   // A group from above, its front to the right.
   function fromAbove(recording, k) {
