@@ -166,6 +166,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   animation.dt = recording.pendulum.scene.dt;
   AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
   AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);
+  AddPushes(recording.pendulum, &animation);
   if (physics) {
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, flags.frames);
     if (!predicted.ok()) return predicted.error();

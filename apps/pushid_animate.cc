@@ -3,8 +3,8 @@
 
 #include "apps/flags/animate_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/what_if_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
@@ -21,37 +21,44 @@ MaybeError Write(const std::string& file, const std::string& content) {
   return std::nullopt;
 }
 
+int LeftDomain(const RolloutStatus& status, const std::string& what) {
+  std::fprintf(stderr, "pushid-animate: %s%s of person %d leaves the model's domain at frame %d\n",
+               what.empty() ? "" : ("with " + what + " ").c_str(),
+               std::string(status.quantity).c_str(), status.person, status.frame);
+  return kFitFailed;
+}
+
 int Run() {
   const Result<AnimateFlags> read = AnimateFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const AnimateFlags& flags = read.value();
-  const Result<IdentifiedModel> model = LoadFlaggedModel();
-  if (!model.ok()) return Fail(model.error());
+  const Result<std::vector<WhatIf>> what_ifs = LoadWhatIfs();
+  if (!what_ifs.ok()) return Fail(what_ifs.error());
+  const IdentifiedModel& model = what_ifs.value().front().model;
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, RodMoves(model.value().options));
+      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<BodyRecording> recording =
-      MakeBodyRecording(recordings.value().front(), model.value().mapping);
+      MakeBodyRecording(recordings.value().front(), model.mapping);
   if (!recording.ok()) return Fail(recording.error());
 
   const PendulumRecording& pendulum = recording.value().pendulum;
-  const Prediction prediction = Predict(model.value(), pendulum);
-  if (!prediction.status.ok) {
-    std::fprintf(stderr, "pushid-animate: %s of person %d leaves the model's domain at frame %d\n",
-                 std::string(prediction.status.quantity).c_str(), prediction.status.person,
-                 prediction.status.frame);
-    return kFitFailed;
-  }
+  if (MaybeError error = WarnOfCrowd(flags.restoration, pendulum.num_people())) return Fail(*error);
   Animation animation;
   animation.title = pendulum.id + ", " + std::string(restoration.value()->kind());
   animation.dt = pendulum.scene.dt;
+  AddPushes(pendulum, &animation);
   if (flags.recorded) AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
-  AddPrediction(pendulum, prediction,
-                RestoreBodies(*restoration.value(), flags.restoration.postprocess,
-                              PredictedPeople(recording.value(), prediction)),
-                &animation);
+  for (const WhatIf& one : what_ifs.value()) {
+    const Prediction prediction = Predict(one.model, pendulum);
+    if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
+    AddPrediction(pendulum, prediction,
+                  RestoreBodies(*restoration.value(), flags.restoration.postprocess,
+                                PredictedPeople(recording.value(), prediction)),
+                  &animation, one.what);
+  }
   MaybeError error;
   if (!flags.out.empty()) error = Write(flags.out, AnimationHtml(animation));
   if (!error && !flags.strip_out.empty()) {
@@ -63,10 +70,12 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::JoinRepeated("set", pushid::kBetweenSets, argc, argv);
   return pushid::RunApp(argc, argv,
                         "pushid-animate shows recorded and predicted people, pendulums and net "
                         "forces.\n\n  pushid-animate --model=model.json --restoration=restoration "
                         "--recordings=M/manifest.json --id=NAME --out=motion.html "
-                        "--strip_out=poses.svg",
+                        "--strip_out=poses.svg\n\nSeveral what-ifs lie over the model as it was "
+                        "fitted: --set=mu=10 --set=mu=60",
                         Run);
 }

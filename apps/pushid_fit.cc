@@ -7,6 +7,7 @@
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
+#include "apps/support/grouped_warnings.h"
 #include "apps/support/model_file.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
@@ -70,7 +71,7 @@ int Run() {
   }
   std::vector<std::string> unit_warnings;
   const MaybeError unprepared = PrepareFit(pendulums, &options.value(), &unit_warnings);
-  for (const std::string& warning : unit_warnings) Warn(warning);
+  WarnGrouped(unit_warnings);
   if (unprepared) return Fail(*unprepared);
 
   ProgressLine line;

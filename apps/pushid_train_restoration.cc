@@ -1,4 +1,5 @@
 // apps: pushid-train-restoration: networks that turn pendulums into bodies.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -12,6 +13,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/training/curve_json.h"
 #include "ident/training/curve_svg.h"
 #include "ident/training/restoration_training_run.h"
@@ -38,6 +40,7 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
 }
 
 nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
+                                  const std::vector<BodyRecording>& more,
                                   const TrainedRestoration& trained) {
   nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   json["recordings"] = nlohmann::ordered_json::array();
@@ -45,6 +48,13 @@ nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
     json["recordings"].push_back(
         {{"id", recording.pendulum.id}, {"content_hash", recording.pendulum.content_hash}});
   }
+  int most = 0;
+  for (const auto* seen : {&recordings, &more}) {
+    for (const BodyRecording& recording : *seen) {
+      most = std::max(most, recording.pendulum.num_people());
+    }
+  }
+  json[kMostPeopleKey] = most;
   json["curve"] = CurveJson(trained.curve);
   return json;
 }
@@ -69,7 +79,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   line.Finish();
   if (!trained.ok()) return Fail(trained.error());
   RestorationFile& file = trained.value().file;
-  file.training = Provenance(recordings, trained.value());
+  file.training = Provenance(recordings, options.more, trained.value());
   const std::string title = std::string(Name(options.training.kind)) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
@@ -130,7 +140,7 @@ int main(int argc, char** argv) {
                         "pushid-train-restoration trains the networks that turn a pendulum's path "
                         "into the motion of a body.\nStarted again with the same --out, it goes on "
                         "where it was broken off.\n\n  pushid-train-restoration "
-                        "--recordings=M/manifest.json --setting=single --model=model.json "
-                        "--out=restoration",
+                        "--recordings=M/manifest.json --setting=single --more_settings=groups "
+                        "--model=model.json --out=restoration",
                         Run);
 }

@@ -23,7 +23,7 @@ if [ ! -f build/quickstart/CMakeCache.txt ] && command -v ninja >/dev/null; then
 cmake --preset quickstart "${generator[@]}" >/dev/null
 cmake --build --preset quickstart --parallel "$(nproc)" --target \
   pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict pushid-inspect pushid-manifest pushid-push \
-  pushid-crossvalidate
+  pushid-crossvalidate pushid-animate
 
 say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite
@@ -45,6 +45,14 @@ say "One of them as a trajectory"
 "$bin/pushid-predict" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --id=S01_00_weak --out="$out/trajectory.csv"
 
+say "The report as a page, and the same push as a moving figure"
+"$bin/pushid-report" --model="$out/model.json" --recordings="$out/recordings/manifest.json" \
+  --html_out="$out/report.html" 2>/dev/null
+"$bin/pushid-animate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
+  --id=S01_00_weak --out="$out/motion.html" --strip_out="$out/poses.svg" >/dev/null
+echo "  $PWD/$out/report.html"
+echo "  $PWD/$out/motion.html"
+
 say "Done. In $PWD/$out:"
 echo "  recordings/      BVH, push CSV and manifest.json: the format for your own recordings"
 echo "  held-out/        the recordings that were predicted"
@@ -52,5 +60,7 @@ echo "  model.json       the identified model"
 echo "  report.txt       the whole report: status, errors, what the data cannot tell apart"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
+echo "  report.html      the report with pictures; open it in a browser, it needs no network"
+echo "  motion.html      recorded and predicted person, moving; poses.svg shows them on paper"
 printf '\nYour own recordings (README.md, Your own recordings):\n'
 echo "  $PWD/$bin/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"

@@ -12,17 +12,19 @@
 #include "apps/simulate_formation_bodies.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_pictures.h"
 #include "ident/formations/formation_run.h"
+#include "ident/results/result_json.h"
 #include "models/self_network.h"
 
 namespace pushid {
 namespace {
 
 MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
-                        const std::string& title) {
+                        const std::vector<OnsetBand>& onsets, const std::string& title) {
   MaybeError error;
   if (!outputs.bvh_out.empty()) error = WriteFormationRecording(outputs.bvh_out, run);
   if (!error && !outputs.csv_out.empty()) {
@@ -30,10 +32,10 @@ MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run
   }
   if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
   if (!error && !outputs.svg_out.empty()) {
-    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title));
+    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title, onsets));
   }
   if (!error && !outputs.forces_svg_out.empty()) {
-    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title));
+    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title, outputs.force_scale));
   }
   return error;
 }
@@ -66,6 +68,13 @@ void PrintPeople(const FormationRun& run) {
     table.Add(row);
   }
   std::printf("%s%s", table.ToString().c_str(), OutcomeLegend().c_str());
+}
+
+// What the fit warned of holds for what is simulated with it.
+void PrintFitWarnings(const FittedModel& model) {
+  for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
+    std::printf("the fit warned: %s\n", warning.c_str());
+  }
 }
 
 // Why there is no one speed of the push; empty where there is.
@@ -177,14 +186,25 @@ int SimulateFormation() {
     Warn(warning);
   }
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
-  MaybeError error = WriteOutputs(outputs.value(), run, title);
+  const ModelFlags named = ModelFlagsFromCommandLine();
+  const Result<FittedModel> fitted = ReadFittedModel(named.file);
+  if (!fitted.ok()) return Fail(fitted.error());
+  // What a setting's own parameters leave open is no part of a model.
+  const bool banded = !outputs.value().svg_out.empty() && flags.value().as_setting.empty();
+  const std::vector<OnsetBand> onsets =
+      banded ? OnsetBands(fitted.value(), named.set, run) : std::vector<OnsetBand>();
+  MaybeError error = WriteOutputs(outputs.value(), run, onsets, title);
   if (!error && bodies.value()) {
     error = WriteFormationBodies(body_flags.value(), *bodies.value(), run, title);
+  }
+  if (!error && !bodies.value()) {
+    error = WriteFormationPendulums(body_flags.value(), run, title);
   }
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run);
   PrintWave(run);
+  PrintFitWarnings(fitted.value());
   return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
 }
 

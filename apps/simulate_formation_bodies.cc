@@ -48,6 +48,17 @@ Result<LoadedGenerator> LoadFormationGenerator(const FormationBodyFlags& flags, 
   return loaded;
 }
 
+MaybeError WritePages(const FormationBodyFlags& flags, const Animation& animation) {
+  MaybeError error;
+  if (!flags.html_out.empty()) {
+    error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));
+  }
+  if (!error && !flags.strip_out.empty()) {
+    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, kPosesOfStrip));
+  }
+  return error;
+}
+
 }  // namespace
 
 Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
@@ -63,12 +74,23 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
         LoadFlaggedRestoration(flags.restoration, rod_moves);
     if (!restoration.ok()) return restoration.error();
     plan.restoration = std::move(restoration.value());
+    if (MaybeError error = WarnOfCrowd(flags.restoration, scene->num_people())) return *error;
   }
   const Result<std::vector<Pose>> poses =
       FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);
   if (!poses.ok()) return poses.error();
   plan.first_poses = TakePoses(poses.value(), scene);
   return std::optional<FormationBodyPlan>(std::move(plan));
+}
+
+MaybeError WriteFormationPendulums(const FormationBodyFlags& flags, const FormationRun& run,
+                                   const std::string& title) {
+  Animation animation;
+  animation.title = title;
+  animation.dt = run.recording.scene.dt;
+  AddPrediction(run.recording, run.prediction, {}, &animation);
+  AddPushes(run.recording, &animation);
+  return WritePages(flags, animation);
 }
 
 MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const FormationBodyPlan& plan,
@@ -86,13 +108,8 @@ MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const Formation
   if (plan.generator) AddForecast(scene.subject_ids, scene.bodies, &animation);
   AddPrediction(run.recording, run.prediction,
                 plan.generator ? std::vector<BodyMotion>() : scene.bodies, &animation);
-  MaybeError error;
-  if (!flags.html_out.empty()) {
-    error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));
-  }
-  if (!error && !flags.strip_out.empty()) {
-    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, kPosesOfStrip));
-  }
+  AddPushes(run.recording, &animation);
+  MaybeError error = WritePages(flags, animation);
   if (!error && !flags.joints_out.empty()) error = WriteJointsCsv(flags.joints_out, scene);
   if (!error && !flags.bodies_out.empty()) {
     const auto files = WriteBodyBvh(flags.bodies_out, scene);

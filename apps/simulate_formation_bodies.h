@@ -22,6 +22,10 @@ struct FormationBodyPlan {
 Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
                                                     Scene* scene);
 
+// The pages that the flags name, without bodies.
+MaybeError WriteFormationPendulums(const FormationBodyFlags& flags, const FormationRun& run,
+                                   const std::string& title);
+
 // The files that the flags name.
 MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const FormationBodyPlan& plan,
                                 const FormationRun& run, const std::string& title);

@@ -17,6 +17,7 @@
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/manifest_keys.h"
 
 DEFINE_bool(quiet, false, "no progress on stderr");
 
@@ -41,19 +42,20 @@ bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
 }
 
 // gflags prints 0.2 as 0.20000000000000001.
-std::string DefaultText(const gflags::CommandLineFlagInfo& flag) {
+std::string WithoutDust(const gflags::CommandLineFlagInfo& flag, const std::string& text) {
   double value = 0.0;
-  if (flag.type != "double" || !ParseDouble(flag.default_value, &value)) return flag.default_value;
-  return DoubleText(value);
+  return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
 }
 
 void PrintHelp(const std::string& usage) {
   std::printf("%s\n\nflags:\n", usage.c_str());
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const std::string value = flag.default_value.empty() ? "" : "=" + DefaultText(flag);
+    const std::string value =
+        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
     std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
   }
   std::printf("  --flagfile=FILE\n      read flags from a file, one a line\n");
+  std::printf("  --help, -h\n      print this\n");
   std::printf("  --version\n      print the version\n");
 }
 
@@ -63,8 +65,32 @@ bool Asked(const char* flag) {
 }
 
 // gflags would name neither the program nor what to do.
-MaybeError CheckFlagNames(int argc, char** argv) {
+Error NoSuchFlag(const std::string& name) {
+  std::vector<std::string> known;
+  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) known.push_back(flag.name);
+  const std::string meant = MeantBy(name, known);
+  return Error{"there is no flag --" + name +
+               (meant.empty() ? "" : "; did you mean --" + meant + "?") + "; see " + ProgramName() +
+               " --help"};
+}
+
+// Sets the flag on the way, as gflags will again.
+MaybeError CheckValue(const gflags::CommandLineFlagInfo& flag, const std::string& value) {
+  if (flag.type == "string" ||
+      !gflags::SetCommandLineOption(flag.name.c_str(), value.c_str()).empty()) {
+    return std::nullopt;
+  }
+  return Error{"--" + flag.name + "=" + value + ": " + Quoted(value) + " is not " +
+               (flag.type == "double" ? "a number"
+                : flag.type == "bool" ? "true or false"
+                                      : "a whole number that fits")};
+}
+
+// Names and values, before gflags sees them. `-h` becomes --help.
+MaybeError CheckFlags(int argc, char** argv) {
+  static char help[] = "--help";
   for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "-h") == 0) argv[i] = help;
     const std::string word = argv[i];
     if (word == "--" || word.find("undefok") != std::string::npos) return std::nullopt;
     if (word.size() < 2 || word[0] != '-') continue;
@@ -74,14 +100,20 @@ MaybeError CheckFlagNames(int argc, char** argv) {
         word.substr(first, equals == std::string::npos ? equals : equals - first);
     gflags::CommandLineFlagInfo flag;
     if (gflags::GetCommandLineFlagInfo(name.c_str(), &flag)) {
-      // Its value may be the next word.
-      if (flag.type != "bool" && equals == std::string::npos) ++i;
+      MaybeError error;
+      if (equals != std::string::npos) {
+        error = CheckValue(flag, word.substr(equals + 1));
+      } else if (flag.type != "bool") {  // its value is the next word
+        if (++i == argc) return Error{"--" + name + " has no value: --" + name + "=..."};
+        error = CheckValue(flag, argv[i]);
+      }
+      if (error) return error;
       continue;
     }
     const bool negated = name.rfind("no", 0) == 0 &&
                          gflags::GetCommandLineFlagInfo(name.c_str() + 2, &flag) &&
                          flag.type == "bool";
-    if (!negated) return Error{"there is no flag --" + name + "; see " + ProgramName() + " --help"};
+    if (!negated) return NoSuchFlag(name);
   }
   return std::nullopt;
 }
@@ -104,7 +136,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   // back.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
-  if (MaybeError error = CheckFlagNames(argc, argv)) return Fail(*error);
+  if (MaybeError error = CheckFlags(argc, argv)) return Fail(*error);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   google::InitGoogleLogging(argv[0]);
   if (FLAGS_quiet) HideProgress();
@@ -165,7 +197,7 @@ bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag)
 std::map<std::string, std::string> EffectiveFlags() {
   std::map<std::string, std::string> flags;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    if (IsPartOfResult(flag)) flags[flag.name] = flag.current_value;
+    if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
   }
   return flags;
 }

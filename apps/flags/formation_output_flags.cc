@@ -17,6 +17,8 @@ DEFINE_string(bvh_out, "",
 DEFINE_string(svg_out, "",
               "formation: picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
+DEFINE_bool(forces_own_scale, false,
+            "formation: with --forces_svg_out, every panel on a scale of its own");
 
 DEFINE_string(generator, "",
               "formation: whole bodies by diffusion instead of --restoration: the folder that "
@@ -25,8 +27,8 @@ DEFINE_string(poses_from, "",
               "formation with bodies: manifest.json of recordings whose first poses (with "
               "skeleton and lean, in their order) the people take (default: the synthetic "
               "skeleton, upright)");
-DEFINE_string(html_out, "", "formation with bodies: page of the moving bodies (HTML)");
-DEFINE_string(strip_out, "", "formation with bodies: strip of poses (SVG)");
+DEFINE_string(html_out, "", "formation: page of the moving people (HTML)");
+DEFINE_string(strip_out, "", "formation: strip of poses (SVG)");
 DEFINE_string(joints_out, "", "formation with bodies: joint positions (CSV)");
 DEFINE_string(bodies_out, "",
               "formation with bodies: the bodies (BVH; one file a person, named after this one)");
@@ -34,8 +36,7 @@ DEFINE_string(bodies_out, "",
 namespace pushid {
 namespace {
 
-const std::vector<const char*> kOfBodies = {"poses_from", "html_out", "strip_out", "joints_out",
-                                            "bodies_out"};
+const std::vector<const char*> kOfBodies = {"poses_from", "joints_out", "bodies_out"};
 
 const char* FirstGiven(const std::vector<const char*>& flags) {
   for (const char* flag : flags) {
@@ -73,8 +74,9 @@ MaybeError CheckPicture(const std::string& flag, const std::string& file, int pe
 }  // namespace
 
 const char* GivenFormationOutput() {
-  std::vector<const char*> flags = {"csv_out",        "forces_out",  "bvh_out",  "svg_out",
-                                    "forces_svg_out", "restoration", "generator"};
+  std::vector<const char*> flags = {"csv_out",          "forces_out",  "bvh_out",   "svg_out",
+                                    "forces_svg_out",   "restoration", "generator", "html_out",
+                                    "forces_own_scale", "strip_out"};
   for (const std::vector<const char*>& more : {DiffusionFlagNames(), kOfBodies}) {
     flags.insert(flags.end(), more.begin(), more.end());
   }
@@ -91,8 +93,13 @@ Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
   if (!FLAGS_bvh_out.empty()) {
     if (MaybeError error = CheckOutputFolder("bvh_out", FLAGS_bvh_out)) return *error;
   }
-  return FormationOutputs{FLAGS_csv_out, FLAGS_forces_out, FLAGS_bvh_out, FLAGS_svg_out,
-                          FLAGS_forces_svg_out};
+  if (FLAGS_forces_own_scale && FLAGS_forces_svg_out.empty()) {
+    return Error{"--forces_own_scale needs --forces_svg_out"};
+  }
+  return FormationOutputs{
+      FLAGS_csv_out,        FLAGS_forces_out,
+      FLAGS_bvh_out,        FLAGS_svg_out,
+      FLAGS_forces_svg_out, FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared};
 }
 
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/flags/restoration_flags.h"
+#include "ident/formations/formation_pictures.h"
 #include "models/generators/diffusion_generator.h"
 
 namespace pushid {
@@ -15,17 +16,18 @@ struct FormationOutputs {
   std::string bvh_out;         // folder: pendulums as BVH, manifest, pushes
   std::string svg_out;         // picture of the wave
   std::string forces_svg_out;  // picture of the net forces
+  ForceScale force_scale = ForceScale::kShared;
 };
 // Errors: outputs that cannot be written, or too many people for a picture.
 Result<FormationOutputs> FormationOutputsFromCommandLine(int people);
 
 struct FormationBodyFlags {
-  // Where bodies come from; without either there are none, and the rest is empty.
+  // Where bodies come from; without either there are none, and pages show pendulums.
   RestorationFlags restoration;
   std::string generator;                // folder of pushid-train-generator
   DiffusionGeneratorOptions diffusion;  // how it is sampled
   std::string poses_from;  // manifest of the first poses; empty: the synthetic skeleton
-  std::string html_out;    // page of the moving bodies
+  std::string html_out;    // page of the moving people, with bodies or without
   std::string strip_out;   // strip of poses (SVG)
   std::string joints_out;  // joint positions (CSV)
   std::string bodies_out;  // BVH, one file a person

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
+#include "apps/support/grouped_warnings.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/manifest/merged_manifest.h"
 
@@ -78,7 +79,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   std::vector<std::string> found;
   Result<std::vector<Recording>> recordings =
       LoadRecordings(FLAGS_recordings, options.value(), &found);
-  for (const std::string& warning : found) Warn(warning);
+  WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) return recordings;
   // Pushes may be written again where they were read; a motion cannot be had back.

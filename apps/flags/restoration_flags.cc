@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/postprocess_flags.h"
+#include "apps/support/app_support.h"
 #include "ident/bodies/restoration_files.h"
 
 DEFINE_string(restoration, "",
@@ -33,6 +34,18 @@ Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFla
                                                             bool rod_moves) {
   if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
   return LoadRestoration(flags.name);
+}
+
+MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
+  if (people < 2) return std::nullopt;
+  const Result<bool> alone = LearnedAlone(flags.name);
+  if (!alone.ok()) return alone.error();
+  if (alone.value()) {
+    Warn(flags.name +
+         " learned from people who were pushed alone; in a group its bodies stay on tiptoe where "
+         "others push them on: train one with --more_settings=groups");
+  }
+  return std::nullopt;
 }
 
 Error NeedsRestoration(const std::string& flag) {

@@ -27,6 +27,9 @@ MaybeError CheckRod(const std::string& flag, bool rod_moves);
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
                                                             bool rod_moves);
 
+// Warns where a restoration that never saw a group is to make one.
+MaybeError WarnOfCrowd(const RestorationFlags& flags, int people);
+
 // "--joints_out needs bodies: name the folder ...".
 Error NeedsRestoration(const std::string& flag);
 

@@ -44,12 +44,17 @@ std::string Plain(std::string key) {
 
 std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return "";
+  std::string nearest;
+  std::size_t least = 3;
   for (const std::string& one : known) {
     // Short words are near to too much.
     const std::size_t most = one.size() < 5 ? 0 : 2;
-    if (Distance(Plain(word), one) <= most) return one;
+    const std::size_t distance = Distance(Plain(word), one);
+    if (distance > most || distance >= least) continue;
+    nearest = one;
+    least = distance;
   }
-  return "";
+  return nearest;
 }
 
 const std::vector<std::string>& ManifestKeys() {

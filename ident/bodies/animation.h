@@ -17,20 +17,35 @@ struct AnimatedPerson {
   std::vector<Vector3<double>> cart;  // empty: none
   std::vector<Vector3<double>> tip;
   std::vector<Vector4<double>> force;  // net, generalized: N and N m; empty: none
+  std::string what;                    // of a what-if: "mu=10"; empty: the model as it was fitted
+};
+
+// A push as it is drawn: whom it meets, and its force (x, y: N) from a frame on.
+struct AnimatedPush {
+  std::string person;
+  int start = 0;
+  std::vector<Vector4<double>> force;
 };
 
 struct Animation {
   std::string title;
   double dt = 1.0 / 60.0;  // s
   std::vector<AnimatedPerson> people;
+  std::vector<AnimatedPush> pushes;
 
   int num_frames() const;
 };
 
+// The what-ifs in the order of their first person; the model as it was fitted is "".
+std::vector<std::string> WhatsOf(const Animation& animation);
+inline constexpr char kAsFitted[] = "as fitted";  // how a reader sees ""
+
 // The pendulums and forces of all people of a prediction, with bodies where given (one per person,
-// or none).
+// or none). what: names a what-if.
 void AddPrediction(const PendulumRecording& recording, const Prediction& prediction,
-                   const std::vector<BodyMotion>& bodies, Animation* animation);
+                   const std::vector<BodyMotion>& bodies, Animation* animation,
+                   const std::string& what = "");
+void AddPushes(const PendulumRecording& recording, Animation* animation);
 // Bodies alone: recorded, or forecast without a pendulum.
 void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
@@ -38,11 +53,18 @@ void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMo
                  Animation* animation);
 
 // One self-contained page: no network, no library. Play, time slider, orbit by mouse or touch,
-// zoom by wheel, and what is shown by check boxes.
+// zoom by wheel, and what is shown by check boxes. The ground has marks in metres from where the
+// pushed person starts; a group is seen from above as well.
 std::string AnimationHtml(const Animation& animation);
 
-// `poses` moments from first to last frame, seen from the side (x to the right, z up), recorded
-// bodies grey behind predicted ones in colour.
+// Colours that the colour-blind tell apart, on light and on dark paper: of people, or of what-ifs
+// where there are some. A push is orange, so none of them is.
+inline constexpr const char* kAnimationColours[] = {"#2a78c8", "#009e73", "#cc79a7",
+                                                    "#a08000", "#56b4e9", "#7a5fd0"};
+inline constexpr char kAnimatedPushColour[] = "#d55e00";
+
+// `poses` moments from first to last frame, between which people move equally far, seen from the
+// side (x to the right, z up), recorded bodies grey behind predicted ones in colour.
 std::string PoseStripSvg(const Animation& animation, int poses);
 
 }  // namespace pushid

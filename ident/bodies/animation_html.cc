@@ -1,28 +1,31 @@
 // ident: the page that shows an animation. Positions are whole millimetres, forces whole newtons.
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "ident/bodies/animation.h"
 #include "ident/figures/moving_page.h"
+#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {
 
-constexpr char kChoices[] =
-    R"html(<label><input type="checkbox" id="recorded" checked> recorded (grey)</label>
-<label><input type="checkbox" id="predicted" checked> predicted (colour)</label>
-<label><input type="checkbox" id="pendulums" checked> pendulums</label>
-<label><input type="checkbox" id="forces" checked> net forces (1 m = 1000 N)</label>)html";
-
 constexpr char kScript[] =
     R"html(const parents=[-1,0,1,2,3,4,3,6,7,8,3,10,11,12,0,14,15,16,0,18,19,20];
-const colours=['#2a78c8','#d1691f','#2f9e57','#9b59b6','#c0392b','#16a085','#b8860b','#6c5ce7'];
-let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500;
+let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],span=[1,1];
+const names=[...new Set(data.people.map(p=>p.name))],pushed=new Set(data.pushes.map(p=>p.person));
+const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
+const frameOf=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
+const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
 (function extent(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
  for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
   for(let k=0;k<2;k++){lo[k]=Math.min(lo[k],f[i+k]);hi[k]=Math.max(hi[k],f[i+k]);}}
- if(lo[0]<hi[0]||lo[0]===hi[0]){centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1300,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);}})();
+ if(lo[0]>hi[0])return;
+ centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1300,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);
+ span=[hi[0]-lo[0]+300,hi[1]-lo[1]+300];const first=data.people.find(p=>pushed.has(p.name))||data.people[0];origin=hip(first,0);})();
 function project(x,y,z){x-=centre[0];y-=centre[1];z-=centre[2];
  const c=Math.cos(turn),s=Math.sin(turn),a=c*x-s*y,b=s*x+c*y,e=Math.cos(tilt),g=Math.sin(tilt);
  const depth=e*b-g*z+4*size,k=zoom*4*size/Math.max(depth,size*0.2)*Math.min(view.width,view.height*1.6)/(2.3*size);
@@ -30,22 +33,87 @@ function project(x,y,z){x-=centre[0];y-=centre[1];z-=centre[2];
 function line(a,b,colour,width,dash){const p=project(...a),q=project(...b);pen.strokeStyle=colour;
  pen.lineWidth=Math.max(1,width*(p[2]+q[2])/2);pen.setLineDash(dash||[]);pen.beginPath();pen.moveTo(p[0],p[1]);pen.lineTo(q[0],q[1]);pen.stroke();}
 function dot(a,r,colour){const p=project(...a);pen.fillStyle=colour;pen.beginPath();pen.arc(p[0],p[1],Math.max(2,r*p[2]),0,7);pen.fill();}
-const at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
-function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1,cx=Math.round(centre[0]/step)*step,cy=Math.round(centre[1]/step)*step;
- for(let i=-n;i<=n;i++){line([cx+i*step,cy-n*step,0],[cx+i*step,cy+n*step,0],grid,0.5);line([cx-n*step,cy+i*step,0],[cx+n*step,cy+i*step,0],grid,0.5);}}
+function words(text,x,y,colour,bold){pen.font=(bold?'600 ':'')+13*(devicePixelRatio||1)+'px system-ui,sans-serif';
+ pen.textAlign='center';pen.fillStyle=colour;pen.fillText(text,x,y);}
+// Lines every half metre from where the pushed person starts; whole metres have their number.
+function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1;
+ const cx=origin[0]+Math.round((centre[0]-origin[0])/step)*step,cy=origin[1]+Math.round((centre[1]-origin[1])/step)*step;
+ for(let i=-n;i<=n;i++){line([cx+i*step,cy-n*step,0],[cx+i*step,cy+n*step,0],grid,0.5);line([cx-n*step,cy+i*step,0],[cx+n*step,cy+i*step,0],grid,0.5);}
+ const d=devicePixelRatio||1,front=Math.min(origin[1],centre[1]-span[1]/2)-100;
+ for(let i=-n;i<=n;i++){const m=Math.round((cx-origin[0])/step)+i;if(m%2)continue;
+  const p=project(origin[0]+m*step,front,0);words(String(m/2).replace('-','\u2212')+' m',p[0],p[1]+14*d,style('--ink'));}}
 function body(f,colour){for(let j=1;j<22;j++)line(at(f,parents[j]),at(f,j),colour,28);dot(at(f,5),95,colour);}
+// Ends where it meets the hip.
+function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=style('--push'),d=devicePixelRatio||1;
+ const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
+ for(const s of [1,-1])line(hip,[hip[0]-110*u[0]-s*60*u[1],hip[1]-110*u[1]+s*60*u[0],hip[2]],c,30);
+ const p=project(...tail);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
+function ring(p,r,colour){pen.strokeStyle=colour;pen.setLineDash([]);pen.lineWidth=2.5*(devicePixelRatio||1);pen.beginPath();pen.arc(p[0],p[1],r,0,7);pen.stroke();}
+function colourOf(p){return p.recorded?style('--recorded'):data.colours[(data.whats.length>1?p.what:names.indexOf(p.name))%data.colours.length];}
+const shown=p=>p.recorded?on('recorded'):on('predicted')&&on('what'+p.what);
+// Groups from above, the first metre to the right.
+function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio||1,w=Math.min(230*d,view.width*0.4),h=130*d,x0=view.width-w-8*d,y0=8*d;
+ pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
+ const k=Math.min((w-20*d)/span[0],(h-34*d)/span[1]),place=q=>[x0+w/2+k*(q[0]-centre[0]),y0+h/2+8*d-k*(q[1]-centre[1])];
+ words('from above',x0+42*d,y0+16*d,style('--ink'));
+ for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,frameOf(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
+  if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
- let number=0;
- for(const p of data.people){const f=Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
-  const colour=p.recorded?style('--recorded'):colours[number++%colours.length];
-  if(p.recorded?!$('recorded').checked:!$('predicted').checked)continue;
+ const hips=new Map();
+ for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
+  if(!shown(p))continue;
+  hips.set(p.name,hip(p,f));
   if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p.body[f],colour);pen.globalAlpha=1;}
-  if(p.tip.length&&$('pendulums').checked){line(p.cart[f],p.tip[f],'#d1495b',12,[8,6]);dot(p.cart[f],35,'#d1495b');dot(p.tip[f],45,'#d1495b');}
-  if(p.force.length&&$('forces').checked){const t=p.tip[f],F=p.force[f];if(Math.hypot(F[0],F[1])>=5){
+  const rod=data.whats.length>1?colour:'#d1495b';
+  if(p.tip.length&&on('pendulums')){line(p.cart[f],p.tip[f],rod,12,[8,6]);dot(p.cart[f],35,rod);dot(p.tip[f],45,rod);}
+  if(p.force.length&&on('forces')){const t=p.tip[f],F=p.force[f];if(Math.hypot(F[0],F[1])>=5){
    const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
+ for(const [name,h] of hips){const p=project(...h);
+  if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
+  if(on('names')){const top=project(h[0],h[1],h[2]+900);words(name,top[0],Math.max(16*d,top[1]-(6+15*(names.indexOf(name)%3))*d),style('--ink'));}}
+ for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
+ inset();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
 )html";
+
+std::string Box(const std::string& id, const std::string& text, const std::string& colour = "") {
+  const std::string chip =
+      colour.empty() ? "" : "<span class=\"chip\" style=\"background:" + colour + "\"></span>";
+  return "<label><input type=\"checkbox\" id=\"" + id + "\" checked>" + chip + " " +
+         EscapeXml(text) + "</label>\n";
+}
+
+// Of what there is to see, and no more.
+std::string Choices(const Animation& animation, const std::vector<std::string>& whats) {
+  const auto any = [&animation](auto has) {
+    return std::any_of(animation.people.begin(), animation.people.end(), has);
+  };
+  std::set<std::string> names;
+  for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  std::string html;
+  if (any([](const AnimatedPerson& p) { return p.recorded; })) {
+    html += Box("recorded", "recorded", "var(--recorded)");
+    if (whats.size() == 1) html += Box("predicted", "predicted (in colour)");
+  }
+  for (size_t k = 0; whats.size() > 1 && k < whats.size(); ++k) {
+    html += Box("what" + std::to_string(k), whats[k].empty() ? kAsFitted : whats[k],
+                kAnimationColours[k % std::size(kAnimationColours)]);
+  }
+  if (any([](const AnimatedPerson& p) { return !p.tip.empty(); })) {
+    html += Box("pendulums", "pendulums");
+  }
+  if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
+    html += Box("forces", "net forces (1 m = 1000 N)", "#e0a100");
+  }
+  html += Box("names", "names");
+  if (names.size() > 1) html += Box("above", "from above");
+  if (!animation.pushes.empty()) {
+    html += std::string("<span><span class=\"chip\" style=\"background:") + kAnimatedPushColour +
+            "\"></span> pushed, and the push</span>\n";
+  }
+  return html;
+}
 
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
 
@@ -57,7 +125,7 @@ nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
   return json;
 }
 
-nlohmann::json PersonJson(const AnimatedPerson& person) {
+nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::string>& whats) {
   nlohmann::json body = nlohmann::json::array(), force = nlohmann::json::array();
   for (const Pose& pose : person.body) {
     nlohmann::json numbers = nlohmann::json::array();
@@ -67,6 +135,7 @@ nlohmann::json PersonJson(const AnimatedPerson& person) {
   for (const auto& f : person.force) force.push_back({Whole(f[0]), Whole(f[1])});
   return {{"name", person.name},
           {"recorded", person.recorded},
+          {"what", std::find(whats.begin(), whats.end(), person.what) - whats.begin()},
           {"body", std::move(body)},
           {"cart", Millimetres(person.cart)},
           {"tip", Millimetres(person.tip)},
@@ -76,14 +145,24 @@ nlohmann::json PersonJson(const AnimatedPerson& person) {
 }  // namespace
 
 std::string AnimationHtml(const Animation& animation) {
-  nlohmann::json data = {{"title", animation.title},
-                         {"dt", animation.dt},
-                         {"frames", animation.num_frames()},
-                         {"people", nlohmann::json::array()}};
-  for (const AnimatedPerson& person : animation.people)
-    data["people"].push_back(PersonJson(person));
-  return ToHtml({"People in motion", "--grid:#ddd;--recorded:#8a8a8a",
-                 "--grid:#3a3f46;--recorded:#a0a0a0", kChoices, std::move(data), kScript});
+  const std::vector<std::string> whats = WhatsOf(animation);
+  nlohmann::json data = {{"title", animation.title},         {"dt", animation.dt},
+                         {"frames", animation.num_frames()}, {"whats", whats},
+                         {"colours", kAnimationColours},     {"people", nlohmann::json::array()},
+                         {"pushes", nlohmann::json::array()}};
+  for (const AnimatedPerson& person : animation.people) {
+    data["people"].push_back(PersonJson(person, whats));
+  }
+  for (const AnimatedPush& push : animation.pushes) {
+    nlohmann::json force = nlohmann::json::array();
+    for (const auto& f : push.force) force.push_back({Whole(f[0]), Whole(f[1])});
+    data["pushes"].push_back(
+        {{"person", push.person}, {"start", push.start}, {"force", std::move(force)}});
+  }
+  const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
+  return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
+                 push + "--grid:#3a3f46;--recorded:#a0a0a0", Choices(animation, whats),
+                 std::move(data), kScript});
 }
 
 }  // namespace pushid

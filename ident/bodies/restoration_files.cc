@@ -84,6 +84,13 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
                path};
 }
 
+Result<bool> LearnedAlone(const std::string& folder) {
+  if (folder == Name(RestorationKind::kRigid)) return false;
+  const Result<RestorationFile> file = ReadRestorationFile(folder);
+  if (!file.ok()) return file.error();
+  return file.value().training.value(kMostPeopleKey, 0) == 1;
+}
+
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder) {
   if (folder == Name(RestorationKind::kRigid)) {
     return std::unique_ptr<Restoration>(new RigidRestoration());

@@ -18,6 +18,9 @@ inline constexpr int kRestorationFormat = 1;
 // In RestorationFile::settings of kCvae: a name of CvaeCoordinates.
 inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 
+// In RestorationFile::training: the most people of one recording that it learned from.
+inline constexpr char kMostPeopleKey[] = "most_people";
+
 struct RestorationFile {
   RestorationKind kind = RestorationKind::kWindow;
   nlohmann::ordered_json settings = nlohmann::ordered_json::object();  // of the kind
@@ -35,6 +38,10 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder);
 // tensors by name.
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder);
+
+// Whether it learned from people alone; such bodies stay on tiptoe when others push them on. false
+// where the file does not say.
+Result<bool> LearnedAlone(const std::string& folder);
 
 // Both. "rigid" needs no folder: the name is enough.
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder);

@@ -9,7 +9,8 @@ namespace pushid {
 namespace {
 
 constexpr double kAbove = 22, kBelow = 36, kBefore = 52, kAfter = 12;
-constexpr double kLane = 9;  // height
+constexpr int kYTicks = 3;    // about
+constexpr double kLane = 12;  // height, as that of its name
 
 struct Range {
   double from = INFINITY, to = -INFINITY;
@@ -37,6 +38,11 @@ Range RangeOf(const Chart& chart, double std::pair<double, double>::*axis) {
     range.Add(band.upper, axis);
   }
   return range;
+}
+
+// Of its line, its name and the room after it.
+double EntryWidth(const LegendEntry& entry) {
+  return 46 + 6.2 * static_cast<double>(entry.name.size());
 }
 
 class Panel {
@@ -109,37 +115,38 @@ class Panel {
     for (const ChartLane& lane : chart_.lanes) {
       svg_.Line(left_, y + kLane - 3, right_, y + kLane - 3, "grid");
       for (const auto& [from, to] : lane.bars) {
-        svg_.Rect({x_(from), y, x_(to) - x_(from), kLane - 3}, lane.look, lane.name);
+        svg_.Rect({x_(from), y + 2, x_(to) - x_(from), kLane - 5}, lane.look, lane.name);
       }
-      svg_.Text(left_ - 5, y + kLane - 2.5, lane.name, "faint small end");
+      svg_.Text(left_ - 5, y + kLane - 1.5, lane.name, "faint small end");
       y += kLane;
     }
   }
 
   void Axes() {
-    svg_.Line(left_, floor_, right_, floor_, "axis");
+    std::vector<SvgLine> axis = {{left_, floor_, right_, floor_}}, grid;
     for (double tick : x_.Ticks(5)) {
-      svg_.Line(x_(tick), floor_, x_(tick), floor_ + 4, "axis");
-      svg_.Text(x_(tick), floor_ + 15, TickText(tick), "ink small middle");
+      axis.push_back({x_(tick), floor_, x_(tick), floor_ + 4});
+      if (!chart_.bare_x) svg_.Text(x_(tick), floor_ + 15, TickText(tick), "ink small middle");
     }
-    svg_.Text(0.5 * (left_ + right_), floor_ + 29, chart_.x_label, "faint small middle");
-    if (!chart_.y_categories.empty()) {
-      for (size_t i = 0; i < chart_.y_categories.size(); ++i) {
-        const double y = y_(static_cast<double>(i));
-        svg_.Line(left_, y, right_, y, "grid");
-        svg_.Text(left_ - 6, y + 4, chart_.y_categories[i], "ink small end");
-      }
-      return;
+    svg_.Lines(axis, "axis");
+    if (!chart_.bare_x) {
+      svg_.Text(0.5 * (left_ + right_), floor_ + 29, chart_.x_label, "faint small middle");
     }
-    for (double tick : y_.Ticks(4)) {
+    for (size_t i = 0; i < chart_.y_categories.size(); ++i) {
+      const double y = y_(static_cast<double>(i));
+      grid.push_back({left_, y, right_, y});
+      svg_.Text(left_ - 6, y + 4, chart_.y_categories[i], "ink small end");
+    }
+    for (double tick : chart_.y_categories.empty() ? y_.Ticks(kYTicks) : std::vector<double>()) {
       if (chart_.logarithmic && tick != std::floor(tick)) continue;
-      svg_.Line(left_, y_(tick), right_, y_(tick), "grid");
+      grid.push_back({left_, y_(tick), right_, y_(tick)});
+      // The names of lanes stand below.
+      if (!chart_.lanes.empty() && y_(tick) > bottom_ - 6) continue;
       const std::string text = chart_.logarithmic ? "1e" + SvgNumber(tick) : TickText(tick);
       svg_.Text(left_ - 5, y_(tick) + 3.5, text, "faint small end");
     }
-    if (!chart_.y_label.empty()) {
-      svg_.Text(right_, top_ - 8, chart_.y_label, "faint small end");
-    }
+    svg_.Lines(grid, "grid");
+    svg_.Text(right_, top_ - 8, chart_.y_label, "faint small end");
   }
 
   // "0.002", "1e-05": enough digits for round numbers.
@@ -172,16 +179,23 @@ std::string DrawCharts(const std::vector<Chart>& charts, const std::string& titl
   return svg.ToInline();
 }
 
+double LegendWidth(const std::vector<LegendEntry>& entries) {
+  double width = 0.0;
+  for (const LegendEntry& entry : entries) width += EntryWidth(entry);
+  return width;
+}
+
 void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg) {
   for (const LegendEntry& entry : entries) {
-    const bool filled = entry.look.find("stroke:none") != std::string::npos;
+    const bool filled = entry.look.find("stroke:none") != std::string::npos ||
+                        entry.look.rfind("band", 0) == 0 || entry.look == kLiftedLook;
     if (filled) {
       svg->Rect({x, y - 9, 18, 10}, entry.look);
     } else {
       svg->Polyline({{x, y - 4}, {x + 18, y - 4}}, entry.look);
     }
     svg->Text(x + 23, y, entry.name, "ink small");
-    x += 46 + 5.6 * static_cast<double>(entry.name.size());
+    x += EntryWidth(entry);
   }
 }
 

@@ -12,11 +12,13 @@ namespace pushid {
 
 using ChartPoints = std::vector<std::pair<double, double>>;
 
-// Told apart on light and on dark paper, by the colour-blind and in grey.
+// Told apart on light and on dark paper, by the colour-blind and in grey. Those of many panels are
+// classes of SvgStyle.
 inline constexpr char kMeasuredLook[] = "ink";
-inline constexpr char kPredictedLook[] = "fill:none;stroke-width:1.8;stroke:#3b82f6";
-inline constexpr char kWideBandLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.16";
-inline constexpr char kNarrowBandLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.26";
+inline constexpr char kPredictedLook[] = "predicted";
+inline constexpr char kWideBandLook[] = "band wide";
+inline constexpr char kNarrowBandLook[] = "band narrow";
+inline constexpr char kLiftedLook[] = "lifted";  // a foot off the ground
 inline constexpr char kLimitLook[] = "fill:none;stroke-dasharray:5 4;stroke:#d55e00";
 inline constexpr char kMarkLook[] = "fill:none;stroke-width:1.2;stroke:#d55e00";
 
@@ -48,6 +50,7 @@ struct Chart {
   std::optional<double> y_from, y_to;     // instead of the data's own range
   bool logarithmic = false;               // powers of ten upwards; y given as log10
   std::vector<std::string> y_categories;  // names at y = 0, 1, ... instead of numbers
+  bool bare_x = false;                    // the panel below has the same x axis, with its numbers
 };
 
 // Axes and labels lie within the box.
@@ -61,6 +64,7 @@ std::string DrawCharts(const std::vector<Chart>& charts, const std::string& titl
 struct LegendEntry {
   std::string name, look;
 };
+double LegendWidth(const std::vector<LegendEntry>& entries);
 void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
 
 }  // namespace pushid

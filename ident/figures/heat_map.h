@@ -11,7 +11,6 @@ struct HeatMap {
   std::vector<std::string> rows, columns;
   std::vector<std::vector<double>> values;  // [row][column]; 0 is paper
   double full = 1.0;                        // the value of the strongest colour
-  int digits = 2;                           // written into each cell
 };
 
 // Blue below zero, orange above.

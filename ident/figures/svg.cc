@@ -5,25 +5,29 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 namespace pushid {
 namespace {
 
 // Viewers that do not know prefers-color-scheme show the light picture.
 constexpr char kStyle[] =
-    "text{font:12px system-ui,sans-serif}.small{font-size:10px}.bold{font-weight:600}"
+    "text{font:12px system-ui,sans-serif}.small{font-size:11px}.bold{font-weight:600}"
     ".middle{text-anchor:middle}.end{text-anchor:end}"
     ".paper{fill:#fff}.ink,.axis{fill:#222}.faint{fill:#666}"
-    "line,polyline{fill:none}polyline{stroke-linejoin:round}"
-    "line.axis,polyline.ink{stroke:#222}line.grid{stroke:#ddd}polyline.ink{fill:none}"
-    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}polyline.net{stroke-width:3}"
+    "line,path{fill:none;stroke-linejoin:round}"
+    "line.axis,path.axis,path.ink{stroke:#222;fill:none}line.grid,path.grid{stroke:#ddd}"
+    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}path.net{stroke-width:3}"
+    ".predicted{stroke-width:1.8;stroke:#3b82f6}"
+    ".band{stroke:none;fill:#3b82f6}path.band{fill:#3b82f6}.wide{fill-opacity:.16}"
+    ".narrow{fill-opacity:.26}.lifted{fill:#8a8f98}"
     "@media(prefers-color-scheme:dark){.paper{fill:#15181c}.ink,.axis{fill:#e8e8e8}"
-    ".faint{fill:#a0a0a0}line.axis,polyline.ink{stroke:#e8e8e8}line.grid{stroke:#3a3f46}"
-    "polyline.ink{fill:none}.ring{stroke:#e8e8e8}}";
+    ".faint{fill:#a0a0a0}line.axis,path.axis,path.ink{stroke:#e8e8e8;fill:none}"
+    "line.grid,path.grid{stroke:#3a3f46}.ring{stroke:#e8e8e8}}";
 
 using Points = std::vector<std::pair<double, double>>;
 
-constexpr double kTolerance = 0.1;  // pixels
+constexpr double kTolerance = 0.4;  // pixels
 
 // Douglas and Peucker: keeps the farthest point of a stretch while it is too far from the chord.
 void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* kept) {
@@ -44,6 +48,63 @@ void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* ke
   (*kept)[at] = true;
   Thin(points, first, at, kept);
   Thin(points, at, last, kept);
+}
+
+// Coordinates are most of a page: tenths of a pixel, and from one point to the next.
+class PathData {
+ public:
+  void MoveTo(double x, double y) {
+    text_ += 'M';
+    relative_ = false;
+    x_ = y_ = 0;
+    Step(x, y);
+  }
+  void LineTo(double x, double y) {
+    if (!relative_) text_ += 'l';
+    const bool first = !relative_;
+    relative_ = true;
+    Step(x, y, first);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  void Step(double x, double y, bool first = true) {
+    const long to_x = std::lround(10.0 * x), to_y = std::lround(10.0 * y);
+    Append(to_x - x_, first);
+    Append(to_y - y_, false);
+    x_ = to_x;
+    y_ = to_y;
+  }
+  // A minus parts numbers as well as a space does.
+  void Append(long tenths, bool first) {
+    if (tenths < 0) {
+      text_ += '-';
+    } else if (!first) {
+      text_ += ' ';
+    }
+    const long size = std::labs(tenths);
+    if (size >= 10 || size == 0) text_ += std::to_string(size / 10);
+    if (size % 10 != 0) (text_ += '.') += static_cast<char>('0' + size % 10);
+  }
+
+  std::string text_;
+  bool relative_ = false;
+  long x_ = 0, y_ = 0;
+};
+
+// "-0.5" with U+2212: a hyphen before a digit, and at the start of a word.
+std::string WithMinusSigns(std::string_view text) {
+  std::string with;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool starts = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(' || text[i - 1] == '[';
+    const bool number = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    if (text[i] == '-' && starts && number) {
+      with += "\u2212";
+    } else {
+      with += text[i];
+    }
+  }
+  return with;
 }
 
 }  // namespace
@@ -137,28 +198,45 @@ void SvgPicture::Circle(double x, double y, double radius, std::string_view look
   body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></circle>\n";
 }
 
+void SvgPicture::Path(std::string_view data, std::string_view look) {
+  Open("path");
+  Look(look);
+  body_ += " d=\"";
+  body_ += data;
+  body_ += "\"/>\n";
+}
+
+void SvgPicture::Lines(const std::vector<SvgLine>& lines, std::string_view look) {
+  if (lines.empty()) return;
+  PathData data;
+  for (const SvgLine& line : lines) {
+    data.MoveTo(line.x1, line.y1);
+    data.LineTo(line.x2, line.y2);
+  }
+  Path(data.text(), look);
+}
+
 void SvgPicture::Polyline(const std::vector<std::pair<double, double>>& points,
                           std::string_view look) {
   if (points.size() < 2) return;
-  Open("polyline");
-  Look(look);
-  body_ += " points=\"";
   std::vector<bool> kept(points.size(), false);
   kept.front() = kept.back() = true;
   Thin(points, 0, points.size() - 1, &kept);
-  for (size_t i = 0; i < points.size(); ++i) {
-    if (kept[i]) body_ += SvgNumber(points[i].first) + ',' + SvgNumber(points[i].second) + ' ';
+  PathData data;
+  data.MoveTo(points.front().first, points.front().second);
+  for (size_t i = 1; i < points.size(); ++i) {
+    if (kept[i]) data.LineTo(points[i].first, points[i].second);
   }
-  body_.back() = '"';
-  body_ += "/>\n";
+  Path(data.text(), look);
 }
 
 void SvgPicture::Text(double x, double y, std::string_view text, std::string_view look) {
+  if (text.empty()) return;
   Open("text");
   Number("x", x);
   Number("y", y);
   Look(look);
-  body_ += '>' + EscapeXml(text) + "</text>\n";
+  body_ += '>' + WithMinusSigns(EscapeXml(text)) + "</text>\n";
 }
 
 std::string SvgPicture::ToString() const {

@@ -29,6 +29,10 @@ struct SvgBox {
   double x, y, width, height;
 };
 
+struct SvgLine {
+  double x1, y1, x2, y2;
+};
+
 class SvgPicture {
  public:
   // title: what a screen reader says and a browser's tab shows.
@@ -37,11 +41,15 @@ class SvgPicture {
   // `look`: a CSS declaration ("fill:#fff;opacity:0.5") where it has a colon, else class names.
   void Rect(const SvgBox& box, std::string_view look, std::string_view tooltip = "");
   void Line(double x1, double y1, double x2, double y2, std::string_view look);
+  // Many of one look as one element: a page of panels is mostly grid.
+  void Lines(const std::vector<SvgLine>& lines, std::string_view look);
   void Circle(double x, double y, double radius, std::string_view look,
               std::string_view tooltip = "");
-  // Fewer than two points draw nothing; points within a tenth of a pixel of the line are left out.
+  // Fewer than two points draw nothing; points within 0.4 pixels of the line are left
+  // out.
   void Polyline(const std::vector<std::pair<double, double>>& points, std::string_view look);
-  // Classes middle and end set the anchor, small and bold the font.
+  // Classes middle and end set the anchor, small and bold the font. A number's hyphen becomes a
+  // minus sign; an empty text draws nothing.
   void Text(double x, double y, std::string_view text, std::string_view look = "ink");
 
   std::string ToString() const;
@@ -53,6 +61,7 @@ class SvgPicture {
   void Open(std::string_view element);
   void Number(std::string_view name, double value);
   void Look(std::string_view look);
+  void Path(std::string_view data, std::string_view look);
 
   double width_, height_;
   std::string body_;

@@ -10,10 +10,9 @@ namespace pushid {
 namespace {
 
 constexpr double kTop = 78, kHeight = 66, kGap = 8, kWidth = 1000;
-constexpr double kLeft[] = {96, 566}, kPanelWidth = 410;
+constexpr double kLeft[] = {112, 574}, kPanelWidth = 406;
 constexpr int kRows[] = {0, 2};  // of the generalized force: along x, about y
-constexpr const char* kHeads[] = {"force along the push (N)",
-                                  "torque about y (N m); every panel has its own scale"};
+constexpr const char* kHeads[] = {"force along the push (N)", "torque about y (N m)"};
 
 using Points = std::vector<std::pair<double, double>>;
 
@@ -45,8 +44,9 @@ constexpr double kLabelRoom = 6.0;       // pixels from a panel's edge to a tick
 
 class ForcesPicture {
  public:
-  ForcesPicture(const FormationRun& run, const std::string& title)
+  ForcesPicture(const FormationRun& run, const std::string& title, ForceScale scale)
       : run_(run),
+        scale_(scale),
         parts_(ActingParts(run)),
         svg_(kWidth, kTop + (kHeight + kGap) * run.num_people() + 40, title) {
     svg_.Text(kLeft[0], 22, title, "ink bold");
@@ -66,6 +66,17 @@ class ForcesPicture {
   double Top(int person) const { return kTop + (kHeight + kGap) * person; }
   SvgScale Time(int column) const {
     return {0.0, run_.Seconds(run_.num_frames() - 1), kLeft[column], kLeft[column] + kPanelWidth};
+  }
+
+  // That of all panels of a column, or of one.
+  std::pair<double, double> ScaleOf(int person, int column) const {
+    if (scale_ == ForceScale::kOwn) return Range(person, column);
+    std::pair<double, double> range = Range(0, column);
+    for (int n = 1; n < run_.num_people(); ++n) {
+      const auto [lowest, highest] = Range(n, column);
+      range = {std::min(range.first, lowest), std::max(range.second, highest)};
+    }
+    return range;
   }
 
   // Lowest and highest of what a panel shows.
@@ -93,29 +104,38 @@ class ForcesPicture {
     };
     entry("net (the sum)", kNetLook);
     for (ForcePart part : parts_) entry(NameOf(part), PartLook(part));
-    for (int column : {0, 1}) svg_.Text(kLeft[column], kTop - 12, kHeads[column], "ink");
+    for (int column : {0, 1}) {
+      const std::string own = scale_ == ForceScale::kOwn ? "; every panel has its own scale" : "";
+      svg_.Text(kLeft[column], kTop - 12, kHeads[column] + own, "ink");
+    }
   }
 
   void Ticks(int person, int column, const SvgScale& value) {
-    for (double tick : value.Ticks(4)) {
+    std::vector<SvgLine> grid;
+    for (double tick : value.Ticks(3)) {
       const double y = value(tick);
-      svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, tick == 0.0 ? "axis" : "grid");
+      const SvgLine across = {kLeft[column], y, kLeft[column] + kPanelWidth, y};
+      if (tick == 0.0) {
+        svg_.Lines({across}, "axis");
+      } else {
+        grid.push_back(across);
+      }
       // Near the edge a label would run into the next panel's.
       if (y < Top(person) + kLabelRoom || y > Top(person) + kHeight - kLabelRoom) continue;
       svg_.Text(kLeft[column] - 5, y + 3.5, SvgNumber(tick), "faint small end");
     }
+    svg_.Lines(grid, "grid");
   }
 
   void Panel(int person, int column) {
-    const auto [lowest, highest] = Range(person, column);
-    if (highest - lowest < kNothing) {
+    const auto [least, most] = Range(person, column);
+    if (most - least < kNothing) {
       const double y = Top(person) + 0.5 * kHeight;
       svg_.Line(kLeft[column], y, kLeft[column] + kPanelWidth, y, "axis");
       svg_.Text(kLeft[column] + 4, y - 5, "nothing", "faint small");
       return;
     }
-    // Each panel its own, with a fifth of air: what the tenth person feels is a fraction of the
-    // push.
+    const auto [lowest, highest] = ScaleOf(person, column);  // with a fifth of air
     const double air = 0.1 * std::max(kSmallestRange, highest - lowest);
     const SvgScale value(lowest - air, highest + air, Top(person) + kHeight, Top(person));
     Ticks(person, column, value);
@@ -149,18 +169,19 @@ class ForcesPicture {
   }
 
   const FormationRun& run_;
+  const ForceScale scale_;
   const std::vector<ForcePart> parts_;
   SvgPicture svg_;
 };
 
 }  // namespace
 
-SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title) {
-  return ForcesPicture(run, title).Draw();
+SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title, ForceScale scale) {
+  return ForcesPicture(run, title, scale).Draw();
 }
 
-std::string ForcesSvg(const FormationRun& run, const std::string& title) {
-  return ForcesPictureOf(run, title).ToString();
+std::string ForcesSvg(const FormationRun& run, const std::string& title, ForceScale scale) {
+  return ForcesPictureOf(run, title, scale).ToString();
 }
 
 }  // namespace pushid

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
 #include "ident/formations/formation_pictures.h"
 
@@ -10,20 +11,26 @@ namespace pushid {
 namespace {
 
 constexpr double kLeft = 112, kTop = 40, kMapWidth = 610, kWidth = 960, kSide = 770;
-constexpr int kColours = 48;  // levels of speed that are told apart, either way
+constexpr double kFastWalk = 2.5;  // m/s; faster than that somebody falls, and colours saturate
+constexpr int kColours = 48;       // levels of speed that are told apart, either way
 constexpr char kPushFrame[] = "fill:none;stroke:#ff5a36;stroke-width:2";
+constexpr char kBandBorder[] = "stroke:#000;stroke-width:4";
+constexpr char kBandLine[] = "stroke:#fff;stroke-width:2";
 constexpr char kOnsetDot[] = "fill:#fff;stroke:#000;stroke-width:1";
 
 class WavePicture {
  public:
-  WavePicture(const FormationRun& run, const std::string& title)
+  WavePicture(const FormationRun& run, const std::string& title,
+              const std::vector<OnsetBand>& onsets)
       : run_(run),
+        onsets_(onsets),
         row_(std::clamp(380.0 / run.num_people(), 3.0, 30.0)),
         bottom_(kTop + row_ * run.num_people()),
         time_(0.0, run.Seconds(run.num_frames()), kLeft, kLeft + kMapWidth),
         svg_(kWidth, std::max(bottom_ + 62.0, 400.0), title) {
     for (const PersonSummary& person : run.summaries)
       fastest_ = std::max(fastest_, person.peak_speed);
+    full_ = std::min(fastest_, kFastWalk);
     svg_.Text(kLeft, 22, title, "ink bold");
   }
 
@@ -40,7 +47,9 @@ class WavePicture {
  private:
   double RowTop(int person) const { return kTop + row_ * person; }
   // The colour goes with the root of the speed: a wave that fades stays visible.
-  double Fraction(double speed) const { return fastest_ > 0.0 ? std::sqrt(speed / fastest_) : 0.0; }
+  double Fraction(double speed) const {
+    return full_ > 0.0 ? std::sqrt(std::min(1.0, speed / full_)) : 0.0;
+  }
   // Negative for a person who goes back more than aside.
   int Level(int person, int frame) const {
     const int level =
@@ -90,9 +99,20 @@ class WavePicture {
     for (int n = 0; n < run_.num_people(); ++n) {
       const int onset = run_.summaries[n].onset_frame;
       if (onset < 0) continue;
+      Band(n);
       svg_.Circle(time_(run_.Seconds(onset)), RowTop(n) + 0.5 * row_, std::min(4.0, 0.4 * row_),
                   kOnsetDot);
     }
+  }
+
+  // Under the dot: a light bar with dark ends, seen on every colour.
+  void Band(int person) {
+    if (onsets_.empty() || onsets_[person].moved == 0.0) return;
+    const double y = RowTop(person) + 0.5 * row_, half = std::min(4.0, 0.3 * row_);
+    const double from = time_(onsets_[person].from), to = time_(onsets_[person].to);
+    svg_.Line(from, y, to, y, kBandBorder);
+    svg_.Line(from, y, to, y, kBandLine);
+    for (const double x : {from, to}) svg_.Line(x, y - half, x, y + half, kBandBorder);
   }
 
   void TimeAxis() {
@@ -107,7 +127,12 @@ class WavePicture {
     svg_.Rect({kLeft, y - 9, 16, 10}, kPushFrame);
     svg_.Text(kLeft + 22, y, "push", "faint small");
     svg_.Circle(kLeft + 68, y - 4, 4, kOnsetDot);
-    svg_.Text(kLeft + 78, y, "onset: the hip has moved 2 cm", "faint small");
+    const std::string onset = "onset: the hip has moved 2 cm";
+    svg_.Text(kLeft + 78, y,
+              onset + (onsets_.empty() ? ""
+                                       : "; bar: 90 % of what the parameters "
+                                         "leave open"),
+              "faint small");
   }
 
   void ColourBar() {
@@ -118,7 +143,7 @@ class WavePicture {
       svg_.Rect({middle + kStep * k, kTop + 10, kStep, 12},
                 "fill:" + SignedColourOf((k + 0.5) / kColours));
     }
-    for (double v : SvgScale(0.0, fastest_, 0.0, 1.0).Ticks(2)) {
+    for (double v : SvgScale(0.0, full_, 0.0, 1.0).Ticks(2)) {
       for (double side : {-1.0, 1.0}) {
         const double x = middle + side * kHalf * Fraction(v);
         svg_.Line(x, kTop + 22, x, kTop + 26, "axis");
@@ -127,6 +152,11 @@ class WavePicture {
     }
     svg_.Text(kSide, kTop + 51, "back", "ink small");
     svg_.Text(middle + kHalf, kTop + 51, "forward or aside", "ink small end");
+    svg_.Text(kSide, kTop + 66,
+              full_ < fastest_
+                  ? "saturated from " + Rounded(full_, 3) + " on; fastest " + Rounded(fastest_, 3)
+                  : "full colour: " + Rounded(full_, 3) + ", the fastest",
+              "faint small");
   }
 
   // Seen from above, x to the right as the push goes, y (left) up.
@@ -140,7 +170,7 @@ class WavePicture {
     }
     const double pixels =
         std::min(140.0 / std::max(x_max, 0.1), 110.0 / std::max(2.0 * y_max, 0.1));
-    const double left = kSide + 12, middle = kTop + 102 + pixels * y_max;
+    const double left = kSide + 12, middle = kTop + 114 + pixels * y_max;
     double radius = 11.0;
     for (size_t n = 1; n < people.size(); ++n) {
       const double gap = (people[n].start.q - people[n - 1].start.q).head<2>().norm();
@@ -148,7 +178,7 @@ class WavePicture {
     }
     std::set<int> pushed;
     for (const ScenePush& push : run_.recording.scene.pushes) pushed.insert(push.person);
-    svg_.Text(kSide, kTop + 78, "from above; pushes go right", "ink");
+    svg_.Text(kSide, kTop + 90, "from above; pushes go right", "ink");
     for (size_t n = 0; n < people.size(); ++n) {
       const double x = left + pixels * people[n].start.q[0];
       const double y = middle - pixels * people[n].start.q[1];
@@ -158,16 +188,18 @@ class WavePicture {
   }
 
   const FormationRun& run_;
+  const std::vector<OnsetBand>& onsets_;  // empty: none are drawn
   const double row_, bottom_;
   const SvgScale time_;
-  double fastest_ = 0.0;  // m/s
+  double fastest_ = 0.0, full_ = 0.0;  // m/s; the speed of full colour
   SvgPicture svg_;
 };
 
 }  // namespace
 
-std::string WaveSvg(const FormationRun& run, const std::string& title) {
-  return WavePicture(run, title).Draw();
+std::string WaveSvg(const FormationRun& run, const std::string& title,
+                    const std::vector<OnsetBand>& onsets) {
+  return WavePicture(run, title, onsets).Draw();
 }
 
 }  // namespace pushid

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/interval_agreement.h"
@@ -37,7 +38,8 @@ std::string Disagreements(const std::vector<Agreement>& rows) {
 std::string StartText(const StartDiagnostics& start) {
   std::string text;
   for (const std::string& note : start.notes) text += "start: " + note + "\n";
-  for (const std::string& warning : start.unit_warnings) text += "units? " + warning + "\n";
+  for (const std::string& warning : GroupedWarnings(start.unit_warnings))
+    text += "units? " + warning + "\n";
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "datasets/files/number_text.h"
+#include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/self_network_io.h"
@@ -132,7 +133,8 @@ std::string ReportText(const FittedModel& model) {
   if (result.likelihood) text += LikelihoodText(result) + "\n";
   text += PreparationText(model.provenance.configuration);
   text += AcrossStartsText(result);
-  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
+  for (const std::string& warning : GroupedWarnings(result.warnings))
+    text += "warning: " + warning + "\n";
   const std::string diagnostics = DiagnosticsText(model);
   if (!diagnostics.empty()) text += "\n" + diagnostics;
   return text;

@@ -10,12 +10,12 @@
 #include "ident/results/weighted_solve.h"
 #include "ident/solver/large_network_stage.h"
 #include "ident/solver/likelihood_solve.h"
+#include "ident/uncertainty/few_clusters.h"
 #include "models/cart_damping.h"
 
 namespace pushid {
 namespace {
 
-constexpr int kFewClusters = 10;
 constexpr double kPullToTell = 0.5;  // standard errors
 
 std::string Describe(const RolloutStatus& status) {

@@ -36,12 +36,56 @@ inline std::string Probed(std::string page, const std::string& script) {
 </script></body>)js");
 }
 
+// Pushes what is wrong with the page's layout: wider than its window; labels of a picture that are
+// cut off by its frame, lie on each other or are small; headings that the bar of links hides when
+// one goes there.
+inline constexpr char kLayoutProbe[] = R"js(
+  const smallest = 9, touch = [1.5, 3.5];  // pixels; boxes of letters are higher than the letters
+  const name = element => `${(element.closest('section') || document.body).id} '${element.textContent.trim()}'`;
+  if (document.documentElement.scrollWidth > innerWidth) said.push('wider than the window');
+  let labels = 0;
+  for (const picture of document.querySelectorAll('svg')) {
+    const frame = picture.getBoundingClientRect();
+    if (!frame.width) continue;
+    const texts = [...picture.querySelectorAll('text')].map(t => [t, t.getBoundingClientRect()]);
+    labels += texts.length;
+    texts.forEach(([text, a], i) => {
+      const inside = a.left >= frame.left - 1 && a.right <= frame.right + 1 && a.top >= frame.top - 1 && a.bottom <= frame.bottom + 1;
+      if (!inside) said.push('cut off: ' + name(text));
+      if (a.height < smallest) said.push('small: ' + name(text));
+      for (const [other, b] of texts.slice(i + 1)) {
+        const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+        const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+        if (wide > touch[0] && high > touch[1]) said.push(`overlap: ${name(text)} and ${name(other)}`);
+      }
+    });
+  }
+  for (const link of document.querySelectorAll('nav a')) {
+    const section = document.querySelector(link.getAttribute('href'));
+    section.scrollIntoView();
+    const bar = document.querySelector('nav').getBoundingClientRect();
+    const heading = section.querySelector('h2').getBoundingClientRect();
+    if (heading.top < bar.bottom && heading.bottom > bar.top) said.push('hidden: ' + name(link));
+  }
+  said.push(`${labels} labels in ${innerWidth} pixels`);
+)js";
+
 // The page's elements after its scripts ran, on stdout; what the console said, on stderr. profile:
 // a folder for the browser's own files.
-inline AppRun Browse(const std::string& profile, const std::string& page) {
-  return RunProgram(Browser(), {"--headless", "--no-sandbox", "--disable-gpu",
-                                "--enable-logging=stderr", "--window-size=1000,800",
-                                "--user-data-dir=" + profile, "--dump-dom", "file://" + page});
+inline AppRun Browse(const std::string& profile, const std::string& page, int width = 1000) {
+  return RunProgram(
+      Browser(), {"--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
+                  "--window-size=" + std::to_string(width) + ",800", "--user-data-dir=" + profile,
+                  "--dump-dom", "file://" + page});
+}
+
+// What a probe said; a remark of its own where the page's script stopped early.
+inline std::string WhatItSaid(const AppRun& seen) {
+  const std::string opens = "<pre id=\"probe\">";
+  const size_t begin = seen.out.find(opens);
+  if (begin == std::string::npos) return "the probe did not finish: " + seen.err;
+  const size_t end = seen.out.find("</pre>", begin);
+  return seen.out.substr(begin + opens.size(), end - begin - opens.size());
 }
 
 }  // namespace pushid

@@ -30,6 +30,7 @@ TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
     EXPECT_TRUE(Contains(run.out, "--version"));
     EXPECT_EQ(run.out.find("minloglevel"), std::string::npos) << "flags of other libraries";
     EXPECT_EQ(run.err, "");
+    EXPECT_EQ(RunApp(app.name, {"-h"}).out, run.out);
   }
 }
 
@@ -76,6 +77,22 @@ TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
               "--compare", "two: --self_force=linear; three: --fix=mu"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* name : {"one", "two", "three"}) EXPECT_TRUE(Contains(run.out, name));
+}
+
+TEST_F(CommandLineTest, AMisspeltFlagIsGuessed) {
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recording=m.json"}), {"mean --recordings?"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--model-out=m.json"}), {"mean --model_out?"}));
+  const AppRun far = RunApp("pushid-fit", {"--no_such_flag=1"});
+  EXPECT_EQ(far.err.find("mean"), std::string::npos) << far.err;
+}
+
+TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap=abc"}),
+                      {"pushid-fit: error: --bootstrap=abc: 'abc' is not a whole number"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap", "1e3"}), {"'1e3'"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--quiet=maybe"}), {"'maybe' is not true or false"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--push_check_noise=x"}), {"'x' is not a number"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap"}), {"--bootstrap has no value"}));
 }
 
 TEST_F(CommandLineTest, WhatIsMissingIsNamed) {

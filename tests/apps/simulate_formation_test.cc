@@ -63,6 +63,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   for (int n = 1; n < 4; ++n) EXPECT_GT(std::stod(onsets[n]), std::stod(onsets[n - 1])) << run.out;
   EXPECT_TRUE(Contains(run.out, "4 of 4 people moved by 2 cm or more; from person 0 to 3"));
   EXPECT_TRUE(Contains(run.out, "outcome: judged 2 s after the last push, or after the onset"));
+  EXPECT_TRUE(Contains(ReadText(Path("wave.svg")), "parameters leave open"));
 
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
@@ -90,6 +91,18 @@ TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
   EXPECT_TRUE(Contains(run.out, "13 people in a diamond"));
   EXPECT_EQ(Onsets(run.out).size(), 13u);
   EXPECT_TRUE(Contains(run.out, "no speed: several people are pushed"));
+}
+
+TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
+  nlohmann::ordered_json json = Json(alone_);
+  json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",
+                      "recording 'b': b.bvh has gaps"};
+  const AppRun run = RunApp("pushid-simulate", {"--model=" + WriteText("warned.json", json.dump()),
+                                                "--formation=line", "--people=1"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out,
+                       "moved by 2 cm or more\nthe fit warned: ends behind the start\n"
+                       "the fit warned: in 2 recordings (a, b): the file has gaps\n"));
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
@@ -167,6 +180,7 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
       {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},
       {{"--formation=line", "--people=41", "--forces_svg_out=x"}, {"--forces_svg_out", "40"}},
+      {{"--formation=line", "--forces_own_scale"}, {"--forces_own_scale", "--forces_svg_out"}},
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
       {{"--out=" + Path("made"), "--spacing=1"}, {"--spacing needs --formation"}},
       {{"--out=" + Path("made"), "--svg_out=x"}, {"--svg_out needs --formation"}},

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Draws the picture of README.md, tests/studies/pictures/wave.svg, from synthetic recordings alone: people
-# are simulated and fitted, contact has its default parameters, and a push goes through a line of ten.
-# Two seconds. PUSHID_BIN is the folder of the programs (default build/release/bin).
+# Draws the pictures of README.md in tests/studies/pictures, from synthetic recordings alone: people are
+# simulated and fitted, contact has its default parameters, and a push goes through a line of ten; the
+# report and the moving figure are photographed in a browser (chromium; without it they stay as they are).
+# Ten seconds. PUSHID_BIN is the folder of the programs (default build/release/bin).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 bin=${PUSHID_BIN:-build/release/bin}
@@ -14,4 +15,13 @@ trap 'rm -rf "$work"' EXIT
   --fix=contact_stiffness,contact_damping,contact_distance,contact_kappa --model_out="$work/model.json" >/dev/null
 mkdir -p tests/studies/pictures
 "$bin/pushid-simulate" --model="$work/model.json" --formation=line --people=10 --spacing=0.45 --push=80 \
-  --svg_out=tests/studies/pictures/wave.svg
+  --svg_out=tests/studies/pictures/wave.svg --html_out="$work/motion.html"
+"$bin/pushid-report" --model="$work/model.json" --recordings="$work/recordings/manifest.json" \
+  --html_out="$work/report.html" 2>/dev/null
+command -v chromium >/dev/null || exit 0
+photograph() {  # name, height, page
+  chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --user-data-dir="$work/browser" \
+    --window-size="900,$2" --screenshot="tests/studies/pictures/$1.png" "file://$3" 2>/dev/null
+}
+photograph report 620 "$work/report.html"
+photograph motion 420 "$work/motion.html?frame=40"

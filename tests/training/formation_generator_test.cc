@@ -79,8 +79,8 @@ TEST_F(FormationGeneratorTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Simulate({"--postprocess=none"}), {"--postprocess goes with --restoration"}));
   EXPECT_TRUE(
       Refused(Simulate({"--generator=", "--blend=0.5"}), {"--blend goes with --generator"}));
-  EXPECT_TRUE(Refused(Simulate({"--generator=", "--html_out=" + Path("p.html")}),
-                      {"--html_out needs bodies", "--restoration", "--generator"}));
+  EXPECT_TRUE(Refused(Simulate({"--generator=", "--joints_out=" + Path("p.csv")}),
+                      {"--joints_out needs bodies", "--restoration", "--generator"}));
   EXPECT_TRUE(Refused(Simulate({"--blend=1.5"}), {"--blend is 1.5"}));
   EXPECT_TRUE(Refused(Simulate({"--fps=100"}), {"trained at 60", "has 100", "--fps=60"}));
   EXPECT_TRUE(Refused(Simulate({"--generator=" + Path("none")}),

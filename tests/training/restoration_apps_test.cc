@@ -75,6 +75,8 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
                           "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
   ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
+  EXPECT_TRUE(Contains(simulate.err, "--more_settings=groups")) << "it saw people alone";
+  EXPECT_EQ(animate.err.find("--more_settings"), std::string::npos) << "one person is no group";
 }
 
 TEST_F(RestorationAppTest, RepeatsItselfAndGoesOnAfterAKill) {
@@ -172,8 +174,8 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
           {"--id=" + id_, "--out=" + Path("m.bvh"), "--restoration=rigid", "--postprocess=magic"},
           {"--postprocess", "magic", "fade"});
   refused("pushid-animate", {"--id=" + id_}, {"--out"});
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--html_out=x.html"}),
-                      {"--html_out", "--restoration"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--joints_out=x.csv"}),
+                      {"--joints_out", "--restoration"}));
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
       model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);
-  report.sections = {SummarySection(model),
+  report.sections = {LeadSection(model),
+                     SummarySection(model),
                      ParameterSection(model),
                      UnitSection(model),
                      IdentifiabilitySection(model),

@@ -21,7 +21,7 @@ constexpr int kBars = 24;
 ReportFigure CorrelationFigure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   const size_t size = result.options.table.Free().size();  // without deviations and velocities
-  HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0, 2};
+  HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0};
   std::vector<std::string> header = {"parameter"};
   for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
   TextTable numbers(header, std::vector<bool>(header.size(), true));

@@ -150,7 +150,7 @@ ReportSection LeverageSection(const FittedModel& model) {
   const Leverage& l = result.diagnostics.leverage;
   if (l.recordings.empty()) return section;
   HeatMap map{
-      "change without the recording, in standard errors", {}, l.parameters, {}, kStrongMove, 2};
+      "change without the recording, in standard errors", {}, l.parameters, {}, kStrongMove};
   std::vector<size_t> order(l.recordings.size());
   std::iota(order.begin(), order.end(), 0);
   const auto largest = [&l](size_t g) {

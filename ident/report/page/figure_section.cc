@@ -12,7 +12,7 @@ namespace pushid {
 namespace {
 
 // Skeletons weigh: many of them are drawn more seldom.
-constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 1.0 / 15.0;
+constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 2.0 / 15.0;
 constexpr int kManySkeletons = 100;
 
 class Track {
@@ -34,6 +34,20 @@ class Track {
 
 Vector3<double> Cart(const PendulumState<double>& state, const Body& body) {
   return {state.q[0], state.q[1], body.cart_height};
+}
+
+// Ids come from files: nothing in them may end the script element or the string.
+std::string JsonText(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '<') {
+      quoted += "\\u003c";
+    } else {
+      quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return quoted + "\"";
 }
 
 std::string PersonJson(const RecordingView& view, int person, int every) {
@@ -59,22 +73,20 @@ std::string PersonJson(const RecordingView& view, int person, int every) {
     bones += (bones.empty() ? "[" : ",[") + std::to_string(recorded.joint_parents[j]) + "," +
              std::to_string(j) + "]";
   }
-  return "{\"m\":" + measured.Json() + ",\"p\":" + predicted.Json() + ",\"j\":" + joints.Json() +
-         ",\"bones\":[" + bones + "]}";
+  return "{\"name\":" + JsonText(recording.subject_ids[person]) + ",\"m\":" + measured.Json() +
+         ",\"p\":" + predicted.Json() + ",\"j\":" + joints.Json() + ",\"bones\":[" + bones + "]}";
 }
 
-// Ids come from files: nothing in them may end the script element or the string.
-std::string JsonText(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    if (c == '<') {
-      quoted += "\\u003c";
-    } else {
-      quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
+// [person, sample of its start, force along x and y at each sample (N)]; a push that is shorter
+// than a sample has one.
+std::string PushJson(const ScenePush& push, int every) {
+  std::string force;
+  for (size_t row = 0; row < push.force.size(); row += static_cast<size_t>(every)) {
+    force += (force.empty() ? "[" : ",[") + std::to_string(std::lround(push.force[row][0])) + "," +
+             std::to_string(std::lround(push.force[row][1])) + "]";
   }
-  return quoted + "\"";
+  return "[" + std::to_string(push.person) + "," + std::to_string(push.start_frame / every) + ",[" +
+         force + "]]";
 }
 
 std::string ViewJson(const RecordingView& view, double sample_seconds) {
@@ -85,9 +97,7 @@ std::string ViewJson(const RecordingView& view, double sample_seconds) {
     people += (n > 0 ? "," : "") + PersonJson(view, n, every);
   }
   for (const ScenePush& push : recording.scene.pushes) {
-    pushes += (pushes.empty() ? "[" : ",[") + std::to_string(push.person) + "," +
-              std::to_string(push.start_frame / every) + "," +
-              std::to_string(push.EndFrame() / every) + "]";
+    pushes += (pushes.empty() ? "" : ",") + PushJson(push, every);
   }
   char step[32];
   std::snprintf(step, sizeof step, "%.6g", every * recording.scene.dt);
@@ -96,6 +106,7 @@ std::string ViewJson(const RecordingView& view, double sample_seconds) {
 }
 
 constexpr char kControls[] = R"html(
+<div class="moving">
 <div class="controls">
 <label>recording <select id="fig-recording"></select></label>
 <button id="fig-play" type="button" aria-pressed="false">play</button>
@@ -103,12 +114,28 @@ constexpr char kControls[] = R"html(
 <output id="fig-clock">0.00 s</output>
 <label>turn <input id="fig-turn" type="range" min="-90" max="90" step="5" value="0"></label>
 </div>
-<svg id="fig-stage" viewBox="0 0 900 420" width="900" height="420" role="img"
+<svg id="fig-stage" viewBox="0 0 900 420" role="img"
  aria-label="pendulums and skeletons at the chosen time"></svg>
-<p class="key"><span class="measured">measured</span> <span class="predicted">predicted</span>
- <span class="body">recorded skeleton</span> <span class="pushed">being pushed</span></p>
-<noscript><p>The moving figure needs JavaScript; everything else on this page does not.</p></noscript>
 )html";
+
+// What is drawn, and no more.
+std::string KeyHtml(const std::vector<RecordingView>& views) {
+  bool predicted = false, bodies = false, pushed = false;
+  for (const RecordingView& view : views) {
+    predicted = predicted || view.run.prediction.status.ok;
+    pushed = pushed || !view.run.recording.scene.pushes.empty();
+    for (const RecordedPerson& person : view.recording->people) {
+      bodies = bodies || !person.joints.empty();
+    }
+  }
+  std::string key = "<p class=\"key\"><span class=\"measured\">measured</span>";
+  if (predicted) key += " <span class=\"predicted\">predicted</span>";
+  if (bodies) key += " <span class=\"body\">recorded skeleton</span>";
+  if (pushed) key += " <span class=\"pushed\">who is pushed, and the push</span>";
+  return key +
+         "</p>\n</div>\n<noscript><p>The moving figure needs JavaScript; everything else on this "
+         "page does not.</p></noscript>\n";
+}
 
 }  // namespace
 
@@ -125,8 +152,8 @@ ReportSection FigureSection(const std::vector<RecordingView>& views) {
   for (const RecordingView& view : views) {
     data += (data.empty() ? "" : ",\n") + ViewJson(view, seconds);
   }
-  section.widget = std::string(kControls) + "<script type=\"application/json\" id=\"fig-data\">[" +
-                   data + "]</script>\n";
+  section.widget = std::string(kControls) + KeyHtml(views) +
+                   "<script type=\"application/json\" id=\"fig-data\">[" + data + "]</script>\n";
   return section;
 }
 

@@ -16,13 +16,11 @@ constexpr double kPanelWidth = 250, kPanelHeight = 170;
 
 std::vector<bool> Words(size_t columns) { return std::vector<bool>(columns, true); }
 
-constexpr char kOffGroundLook[] = "stroke:none;fill:#8a8f98";
-
 // Bars where a foot is off the ground.
 std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
   std::vector<ChartLane> lanes;
   for (Foot foot : kFeet) {
-    ChartLane lane{Name(foot), {}, kOffGroundLook};
+    ChartLane lane{Name(foot), {}, kLiftedLook};
     for (const FootStep& step : run.recording.steps[person].steps) {
       const int end = std::min(step.landing, run.recording.num_frames() - 1);
       if (step.foot == foot) lane.bars.emplace_back(run.Seconds(step.lift_off), run.Seconds(end));
@@ -177,21 +175,34 @@ TextTable ForceNumbers(const FormationRun& run) {
   return table;
 }
 
+// What this picture draws, and no more.
+std::vector<LegendEntry> LegendOf(const RecordingView& view) {
+  std::vector<LegendEntry> legend = {{"measured", kMeasuredLook}};
+  if (!view.bands.people.empty()) {
+    legend.push_back({"predicted (median)", kPredictedLook});
+    legend.push_back({"50 %", kNarrowBandLook});
+    legend.push_back({"90 %", kWideBandLook});
+  } else if (view.run.prediction.status.ok) {
+    legend.push_back({"predicted", kPredictedLook});
+  }
+  const auto& steps = view.run.recording.steps;
+  if (std::any_of(steps.begin(), steps.end(), [](const auto& s) { return !s.steps.empty(); })) {
+    legend.push_back({"foot off the ground", kLiftedLook});
+  }
+  return legend;
+}
+
 std::string PathPicture(const RecordingView& view) {
   const int people = view.run.recording.num_people();
   SvgPicture svg(4 * kPanelWidth, 24 + kPanelHeight * people, view.run.recording.id);
-  DrawLegend({{"measured", kMeasuredLook},
-              {view.bands.people.empty() ? "predicted" : "predicted (median)", kPredictedLook},
-              {"50 %", kNarrowBandLook},
-              {"90 %", kWideBandLook},
-              {"foot off the ground", kOffGroundLook}},
-             52, 16, &svg);
+  DrawLegend(LegendOf(view), 52, 16, &svg);
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
-    const std::vector<Chart> charts = {
+    std::vector<Chart> charts = {
         HipChart(view, n, 0, who + "hip forward, m"), HipChart(view, n, 1, "hip to the left, m"),
         AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")};
     for (size_t i = 0; i < charts.size(); ++i) {
+      charts[i].bare_x = n + 1 < people;
       DrawChart(
           charts[i],
           {kPanelWidth * static_cast<double>(i), 24 + kPanelHeight * n, kPanelWidth, kPanelHeight},

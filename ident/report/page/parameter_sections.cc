@@ -32,7 +32,7 @@ class Forest {
   Forest(std::vector<ForestRow> rows, const std::string& title, bool common_scale)
       : rows_(std::move(rows)),
         common_(common_scale),
-        svg_(kForestWidth, 40 + kForestRow * static_cast<double>(rows_.size()), title) {}
+        svg_(kForestWidth, 50 + kForestRow * static_cast<double>(rows_.size()), title) {}
 
   std::string Draw(const std::vector<LegendEntry>& legend) {
     DrawLegend(legend, kForestLeft, 16, &svg_);
@@ -99,6 +99,7 @@ constexpr char kDataLook[] = "stroke:none;fill:#3b82f6";
 constexpr char kPriorLook[] = "stroke:none;fill:#d55e00";
 constexpr char kSettlingLook[] = "stroke:none;fill:#009e73";
 constexpr double kBarRow = 26, kBarHeight = 14;
+constexpr double kLeastDrawn = 0.001;  // a share that is narrower than a pixel
 
 // A bar a parameter, in three parts.
 ReportFigure SharesFigure(const FitResult& result) {
@@ -110,8 +111,14 @@ ReportFigure SharesFigure(const FitResult& result) {
   }
   SvgPicture svg(kForestWidth, 36 + kBarRow * static_cast<double>(shown.size()),
                  "shares of data, prior and settling");
-  DrawLegend({{"data", kDataLook}, {"prior", kPriorLook}, {"settling", kSettlingLook}}, kForestLeft,
-             16, &svg);
+  std::vector<LegendEntry> legend = {{"data", kDataLook}};
+  const auto drawn = [&shown](double Shares::*part) {
+    return std::any_of(shown.begin(), shown.end(),
+                       [part](const Estimate* e) { return e->shares.*part >= kLeastDrawn; });
+  };
+  if (drawn(&Shares::prior)) legend.push_back({"prior", kPriorLook});
+  if (drawn(&Shares::settling)) legend.push_back({"settling", kSettlingLook});
+  DrawLegend(legend, kForestLeft, 16, &svg);
   TextTable numbers(
       {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"},
       std::vector<bool>(8, true));

@@ -11,6 +11,7 @@
 
 namespace pushid {
 
+ReportSection LeadSection(const FittedModel& model);
 ReportSection SummarySection(const FittedModel& model);
 ReportSection ParameterSection(const FittedModel& model);
 ReportSection UnitSection(const FittedModel& model);  // subjects or settings that differ

@@ -1,5 +1,6 @@
 // ident: what was fitted and what came of it; and where it came from.
 #include "datasets/files/number_text.h"
+#include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/self_network_io.h"
@@ -55,10 +56,10 @@ ReportSection SummarySection(const FittedModel& model) {
   }
   const std::string prepared = PreparationText(model.provenance.configuration);
   if (!prepared.empty()) section.paragraphs.push_back(prepared);
-  for (const std::string& warning : result.warnings) {
+  for (const std::string& warning : GroupedWarnings(result.warnings)) {
     section.paragraphs.push_back("Warning: " + warning);
   }
-  for (const std::string& warning : result.diagnostics.start.unit_warnings) {
+  for (const std::string& warning : GroupedWarnings(result.diagnostics.start.unit_warnings)) {
     section.paragraphs.push_back("Units? " + warning);
   }
   for (const Advice& advice : model.advice) {

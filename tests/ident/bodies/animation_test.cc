@@ -43,6 +43,60 @@ TEST(AnimationTest, ThePageStandsAloneAndItsDataParse) {
   EXPECT_EQ(data["title"], "a </script> & \"b\"");
 }
 
+Animation Moving(const std::vector<double>& x) {
+  Animation animation;
+  animation.title = "t";
+  AnimatedPerson person;
+  person.name = "p";
+  for (const double at : x) {
+    person.cart.emplace_back(at, 0.0, 0.1);
+    person.tip.emplace_back(at, 0.0, 1.0);
+  }
+  animation.people.push_back(person);
+  return animation;
+}
+
+// Who stands for four frames and then goes 1 m in the last is seen going, not waiting.
+TEST(AnimationTest, PosesAreSpacedByMotion) {
+  const std::string svg = PoseStripSvg(Moving({0, 0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1.0}), 3);
+  for (const char* time : {">0 s<", ">0.117 s<", ">0.15 s<"}) EXPECT_TRUE(Contains(svg, time));
+  const std::string still = PoseStripSvg(Moving({0, 0, 0, 0, 0}), 3);
+  for (const char* time : {">0 s<", ">0.0333 s<", ">0.0667 s<"}) {
+    EXPECT_TRUE(Contains(still, time));
+  }
+}
+
+TEST(AnimationTest, NothingRecordedNothingCalledSo) {
+  const Animation animation = Moving({0, 1});
+  EXPECT_EQ(PoseStripSvg(animation, 2).find("recorded"), std::string::npos);
+  EXPECT_EQ(AnimationHtml(animation).find("> recorded<"), std::string::npos);
+  EXPECT_TRUE(Contains(AnimationHtml(TwoPeople()), "> recorded<"));
+}
+
+TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
+  Animation animation = Moving({0, 0.1, 0.2, 0.3});
+  animation.pushes.push_back({"p", 0, {{120.0, 0.0, 0.0, 0.0}}});
+  const std::string svg = PoseStripSvg(animation, 4);
+  size_t rings = 0;
+  for (size_t at = 0; (at = svg.find("r=\"7\"", at)) != std::string::npos; ++at) ++rings;
+  EXPECT_EQ(rings, 4u);
+  EXPECT_TRUE(Contains(svg, ">120 N<"));
+  EXPECT_EQ(svg.find(" N<"), svg.rfind(" N<")) << "while it acts, and no longer";
+  EXPECT_TRUE(Contains(AnimationHtml(animation), "\"force\":[[120,0]]"));
+}
+
+TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
+  Animation animation = Moving({0, 1});
+  animation.people.push_back(animation.people[0]);
+  animation.people[1].what = "mu=10";
+  EXPECT_EQ(WhatsOf(animation), std::vector<std::string>({"", "mu=10"}));
+  for (const std::string& file : {PoseStripSvg(animation, 2), AnimationHtml(animation)}) {
+    EXPECT_TRUE(Contains(file, kAsFitted));
+    EXPECT_TRUE(Contains(file, "mu=10"));
+    EXPECT_TRUE(Contains(file, kAnimationColours[1]));
+  }
+}
+
 TEST(AnimationTest, TheStripHasItsPosesAndTimes) {
   const std::string svg = PoseStripSvg(TwoPeople(), 3);
   EXPECT_TRUE(Contains(svg, "0.0667 s"));

@@ -20,6 +20,29 @@ TEST(Svg, TextIsEscaped) {
   EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
 }
 
+TEST(Svg, NegativeNumbersHaveAMinusSign) {
+  SvgPicture svg(100, 50, "");
+  svg.Text(1, 2, "-0.5 (-1, 2) [-3] X-07 1e-05 2020-01-02 a - b");
+  EXPECT_TRUE(
+      Contains(svg.ToString(), ">\u22120.5 (\u22121, 2) [\u22123] X-07 1e-05 2020-01-02 a - b<"));
+}
+
+TEST(Svg, AnEmptyTextIsNoElement) {
+  SvgPicture svg(100, 50, "");
+  svg.Text(1, 2, "");
+  EXPECT_EQ(svg.ToInline().find("<text"), std::string::npos);
+}
+
+// One element, from point to point in tenths of a pixel; a minus parts numbers by itself.
+TEST(Svg, LinesOfOneLookAreOnePath) {
+  SvgPicture svg(100, 50, "");
+  svg.Lines({{52, 10.04, 52, 14}, {0, 0, -0.5, 20.25}}, "axis");
+  svg.Lines({}, "grid");
+  const std::string text = svg.ToInline();
+  EXPECT_TRUE(Contains(text, "<path class=\"axis\" d=\"M52 10l0 4M0 0l-.5 20.3\"/>"));
+  EXPECT_EQ(text.find("grid"), std::string::npos);
+}
+
 TEST(Svg, NumbersAreShort) {
   EXPECT_EQ(SvgNumber(3.0), "3");
   EXPECT_EQ(SvgNumber(-0.001), "0");

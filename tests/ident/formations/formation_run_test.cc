@@ -123,6 +123,36 @@ TEST(FormationPictures, ShowEverybodyEveryPushAndEveryPart) {
   }
 }
 
+TEST(FormationPictures, ColoursSayWhenTheySaturate) {
+  FormationRun run = RunShape(FormationShape::kLine, 2, {0});
+  EXPECT_TRUE(Has(WaveSvg(run, "line"), ">full colour: "));
+  run.summaries[0].peak_speed = 6.0;  // falls
+  EXPECT_TRUE(Has(WaveSvg(run, "line"), ">saturated from 2.5 on; fastest 6<"));
+}
+
+TEST(FormationPictures, OnsetsHaveBandsWhereTheModelKnowsItsErrors) {
+  const FormationRun run = RunShape(FormationShape::kLine, 2, {0});
+  EXPECT_TRUE(OnsetBands(FittedModel(), "", run).empty()) << "no covariance, no bootstrap";
+  EXPECT_FALSE(Has(WaveSvg(run, "line"), "parameters leave open"));
+  const std::string banded = WaveSvg(run, "line", {{0.1, 0.2, 1.0}, {0.0, 0.0, 0.0}});
+  EXPECT_TRUE(Has(banded, "parameters leave open"));
+}
+
+TEST(FormationPictures, ForcesShareAScale) {
+  const FormationRun run = RunShape(FormationShape::kLine, 3, {0});
+  const auto count = [](const std::string& svg, const std::string& tick) {
+    int found = 0;
+    for (size_t at = 0; (at = svg.find(tick, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  // The push of person 0 reaches beyond 400 N; nobody else feels as much.
+  EXPECT_EQ(count(ForcesSvg(run, ""), ">500<") + count(ForcesSvg(run, ""), ">400<") > 2, true);
+  const std::string own = ForcesSvg(run, "", ForceScale::kOwn);
+  EXPECT_LT(count(own, ">500<") + count(own, ">400<"),
+            count(ForcesSvg(run, ""), ">500<") + count(ForcesSvg(run, ""), ">400<"));
+  EXPECT_TRUE(Has(own, "its own scale"));
+}
+
 TEST(FormationPictures, NobodyPushedNobodyMoves) {
   const FormationRun run =
       RunFormation(ContactModel(), SampleFormation(FormationShape::kLine, 1, {}), 10);

@@ -1,0 +1,89 @@
+// ident: a report in three sentences, for who reads nothing else, and what its names mean.
+#include <algorithm>
+
+#include "datasets/files/number_text.h"
+#include "ident/parameters/presets.h"
+#include "ident/problem/behaviour_text.h"
+#include "ident/report/page/sections.h"
+#include "ident/uncertainty/few_clusters.h"
+
+namespace pushid {
+namespace {
+
+constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
+
+std::string ValueText(const Estimate& e) {
+  return e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
+}
+
+std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
+  std::vector<const Estimate*> found;
+  for (const Estimate& e : result.estimates) {
+    if (e.status == status) found.push_back(&e);
+  }
+  return found;
+}
+
+std::string Names(const std::vector<const Estimate*>& estimates, bool values) {
+  std::string text;
+  for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
+    text += (i > 0 ? ", " : "") + (values ? ValueText(*estimates[i]) : estimates[i]->name);
+  }
+  const size_t more = estimates.size() - std::min(kNamed, estimates.size());
+  return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+std::string Known(const FitResult& result) {
+  const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  return "What is known: " +
+         (known.empty() ? "no parameter is decided by these recordings alone"
+                        : "these recordings decide " + Names(known, true)) +
+         "; " + VerdictSentence(verdict, result.behaviour) + ".";
+}
+
+std::string NotKnown(const FitResult& result) {
+  std::string text;
+  const auto add = [&](EstimateStatus status, const std::string& words) {
+    const std::vector<const Estimate*> found = With(result, status);
+    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Names(found, false);
+  };
+  add(EstimateStatus::kUnidentifiable, "not told by these recordings at all: ");
+  add(EstimateStatus::kAtBound, "ended at a bound: ");
+  add(EstimateStatus::kPriorHeld, "decided more by what was put in than by the recordings: ");
+  add(EstimateStatus::kWeak, "with wide intervals: ");
+  const Uncertainty& u = result.uncertainty;
+  if (u.clustered && u.num_clusters < kFewClusters) {
+    text += (text.empty() ? "" : "; ") + std::string("with ") + std::to_string(u.num_clusters) +
+            (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
+            " every interval is a rough guess";
+  }
+  return "What is not: " + (text.empty() ? "nothing of what was asked" : text) + ".";
+}
+
+std::string Next(const FittedModel& model) {
+  if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
+  return "What to do next: " + model.advice.front().sentence;
+}
+
+// Of the free parameters: what a reader of the pictures meets.
+TextTable Legend(const FitResult& result) {
+  TextTable table({"name", "unit", "what it is"}, {true, true, true});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    table.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
+  }
+  return table;
+}
+
+}  // namespace
+
+ReportSection LeadSection(const FittedModel& model) {
+  ReportSection section{"short", "In short", {}, {}, {}, {}, {}, ""};
+  section.paragraphs = {Known(model.fit), NotKnown(model.fit), Next(model)};
+  section.tables.push_back({"the parameters that were fitted", Legend(model.fit)});
+  return section;
+}
+
+}  // namespace pushid

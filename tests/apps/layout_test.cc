@@ -1,0 +1,122 @@
+// Pages and pictures in a real browser (Debian's chromium, headless), as wide as a desk's and as a
+// telephone's: nothing overlaps, nothing is cut off, nothing complains.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+#include "tests/apps/browser.h"
+
+namespace pushid {
+namespace {
+
+class LayoutTest : public AppTest {
+ protected:
+  void SetUp() override {
+    if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
+    AppTest::SetUp();
+  }
+
+  // The layout's faults at both widths; the last remark, how many labels were seen, is none.
+  void ExpectGoodLayout(const std::string& page, bool labels) {
+    const std::string file = WriteText("probed.html", Probed(page, kLayoutProbe));
+    for (const int width : {1200, 400}) {
+      SCOPED_TRACE(width);
+      const AppRun seen = Browse(Path("browser"), file, width);
+      EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+      const std::string said = WhatItSaid(seen);
+      EXPECT_EQ(said.find("; "), std::string::npos) << said;
+      EXPECT_TRUE(Contains(said, " labels in " + std::to_string(width) + " pixels"));
+      if (labels) EXPECT_NE(said.rfind("0 labels", 0), 0u) << said;
+    }
+  }
+
+  static std::string PageOf(const std::string& picture) {
+    return "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"></head><body>"
+           "<div style=\"overflow-x:auto\">" +
+           picture + "</div></body></html>";
+  }
+};
+
+// Folds are opened: what they hide is laid out as well.
+std::string Opened(std::string page) {
+  for (size_t at = 0; (at = page.find("<details>", at)) != std::string::npos; ++at) {
+    page.replace(at, 9, "<details open>");
+  }
+  return page;
+}
+
+TEST_F(LayoutTest, AReportOfAFewParameters) {
+  const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
+  const AppRun run = RunApp(
+      "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ExpectGoodLayout(Opened(ReadText(Path("report.html"))), true);
+}
+
+TEST_F(LayoutTest, AReportOfManyParameters) {
+  const std::string model = FitModel("model.json", {"--self_force=linear", "--free=Kd_theta"});
+  const AppRun run = RunApp(
+      "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ExpectGoodLayout(Opened(ReadText(Path("report.html"))), true);
+}
+
+TEST_F(LayoutTest, PicturesOfAFormation) {
+  const std::string model = FitModel();
+  const AppRun run = RunApp(
+      "pushid-simulate", {"--model=" + model, "--formation=line", "--people=5",
+                          "--svg_out=" + Path("wave.svg"), "--forces_svg_out=" + Path("forces.svg"),
+                          "--strip_out=" + Path("strip.svg"), "--html_out=" + Path("wave.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const char* svg : {"wave.svg", "forces.svg", "strip.svg"}) {
+    SCOPED_TRACE(svg);
+    ExpectGoodLayout(PageOf(ReadText(Path(svg))), true);
+  }
+  const std::string page = ReadText(Path("wave.html"));
+  ExpectGoodLayout(page, false);
+  EXPECT_EQ(page.find("id=\"recorded\""), std::string::npos) << "nothing was recorded";
+}
+
+TEST_F(LayoutTest, AnAnimationOfSeveralWhatIfs) {
+  const std::string model = FitModel();
+  const AppRun run =
+      RunApp("pushid-animate",
+             {"--model=" + model, Recordings(), "--id=" + id_, "--set=mu=10", "--set=mu=60,a_x=-8",
+              "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  for (const std::string& file : {ReadText(Path("a.html")), ReadText(Path("a.svg"))}) {
+    for (const char* entry : {"recorded", "as fitted", "mu=10", "mu=60,a_x=-8"}) {
+      EXPECT_TRUE(Contains(file, entry));
+    }
+  }
+  ExpectGoodLayout(ReadText(Path("a.html")), false);
+  ExpectGoodLayout(PageOf(ReadText(Path("a.svg"))), true);
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
+                                        "--set=mu=10", "--set=mew=1", "--out=" + Path("b.html")}),
+              {"--set", "'mew'"}));
+}
+
+// Draws a frame in which the push acts: the script of the page runs through.
+TEST_F(LayoutTest, TheMovingFigureMoves) {
+  const std::string model = FitModel();
+  const AppRun run = RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
+                                               "--out=" + Path("a.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun seen =
+      Browse(Path("browser"), WriteText("probed.html", Probed(ReadText(Path("a.html")), R"js(
+  const time = document.getElementById('time'), canvas = document.getElementById('view');
+  const before = canvas.toDataURL();
+  time.value = 3;
+  time.dispatchEvent(new Event('input'));
+  said.push(canvas.toDataURL() === before ? 'stands' : 'moves');
+  said.push(document.getElementById('clock').textContent);
+)js")));
+  EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+  EXPECT_EQ(WhatItSaid(seen), "moves; 0.05 s, frame 3");
+}
+
+}  // namespace
+}  // namespace pushid
