@@ -34,9 +34,11 @@ int Run() {
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.value().mapping);
-  if (!recording.ok()) return Fail(recording.error());
+  if (!recording.ok() && flags.bodies_asked) return Fail(recording.error());
+  if (!recording.ok()) Warn(recording.error().ToString() + "; pendulums alone are shown");
 
-  const PendulumRecording& pendulum = recording.value().pendulum;
+  const PendulumRecording pendulum =
+      MakePendulumRecording(recordings.value().front(), model.value().mapping);
   const Prediction prediction = Predict(model.value(), pendulum);
   if (!prediction.status.ok) {
     std::fprintf(stderr, "pushid-animate: %s of person %d leaves the model's domain at frame %d\n",
@@ -45,13 +47,16 @@ int Run() {
     return kFitFailed;
   }
   Animation animation;
-  animation.title = pendulum.id + ", " + std::string(restoration.value()->kind());
+  animation.title = pendulum.id;
   animation.dt = pendulum.scene.dt;
-  if (flags.recorded) AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
-  AddPrediction(pendulum, prediction,
-                RestoreBodies(*restoration.value(), flags.restoration.postprocess,
-                              PredictedPeople(recording.value(), prediction)),
-                &animation);
+  std::vector<BodyMotion> bodies;
+  if (recording.ok()) {
+    animation.title += ", " + std::string(restoration.value()->kind());
+    if (flags.recorded) AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
+    bodies = RestoreBodies(*restoration.value(), flags.restoration.postprocess,
+                           PredictedPeople(recording.value(), prediction));
+  }
+  AddPrediction(pendulum, prediction, bodies, &animation);
   MaybeError error;
   if (!flags.out.empty()) error = Write(flags.out, AnimationHtml(animation));
   if (!error && !flags.strip_out.empty()) {

@@ -28,8 +28,10 @@ DEFINE_string(poses_from, "",
 DEFINE_string(html_out, "", "formation with bodies: page of the moving bodies (HTML)");
 DEFINE_string(strip_out, "", "formation with bodies: strip of poses (SVG)");
 DEFINE_string(joints_out, "", "formation with bodies: joint positions (CSV)");
-DEFINE_string(bodies_out, "",
-              "formation with bodies: the bodies (BVH; one file a person, named after this one)");
+DEFINE_string(
+    bodies_out, "",
+    "formation with bodies: the bodies (.gltf or .glb: all in one animated file; otherwise "
+    "BVH, one file a person, named after this one)");
 
 namespace pushid {
 namespace {

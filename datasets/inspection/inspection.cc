@@ -15,6 +15,7 @@
 #include "datasets/formats/push_csv.h"
 #include "datasets/inspection/inspect_manifest.h"
 #include "datasets/inspection/inspect_motion.h"
+#include "datasets/manifest/role_choice.h"
 #include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_csv.h"
 
@@ -44,12 +45,25 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
   }
 }
 
+// What of a body the joints or points give.
+std::string BodyText(const Result<BodyRoles>& roles) {
+  if (!roles.ok()) return "none: " + roles.error().message;
+  const std::vector<int> unfilled = UnfilledRoles(roles.value());
+  const std::vector<int> filled = FilledRoles(roles.value());
+  if (!unfilled.empty()) return "none: not recognised: " + RoleList(unfilled);
+  return filled.empty() ? "all roles" : "all roles, filled from neighbours: " + RoleList(filled);
+}
+
 // A warning where hip and ankles cannot be found.
 void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
   found->Fact("points", ListOfNames(motion.names));
   const Result<PendulumJoints> joints =
       ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
   if (!joints.ok()) found->Warn(joints.error().message);
+  if (joints.ok()) {
+    found->Fact("body", BodyText(ChooseRoles(motion.path, motion.names, nullptr, joints.value(),
+                                             mapping.joints)));
+  }
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
 
@@ -57,6 +71,7 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
 // fit.
 MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
+  std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
   options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
@@ -68,6 +83,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
+    body = BodyText(ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints));
     std::vector<int> kept;
     places = joints.value();
     for (std::vector<int>* place :
@@ -90,6 +106,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   }
   motion.positions = std::move(bvh.value().positions);
   found->Fact("joints", ListOfNames(names));
+  if (!body.empty()) found->Fact("body", body);
   InspectMotion(motion, places, found);
   return std::nullopt;
 }
