@@ -45,15 +45,6 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
   }
 }
 
-// What of a body the joints or points give.
-std::string BodyText(const Result<BodyRoles>& roles) {
-  if (!roles.ok()) return "none: " + roles.error().message;
-  const std::vector<int> unfilled = UnfilledRoles(roles.value());
-  const std::vector<int> filled = FilledRoles(roles.value());
-  if (!unfilled.empty()) return "none: not recognised: " + RoleList(unfilled);
-  return filled.empty() ? "all roles" : "all roles, filled from neighbours: " + RoleList(filled);
-}
-
 // A warning where hip and ankles cannot be found.
 void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
   found->Fact("points", ListOfNames(motion.names));
@@ -61,8 +52,8 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
       ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
   if (!joints.ok()) found->Warn(joints.error().message);
   if (joints.ok()) {
-    found->Fact("body", BodyText(ChooseRoles(motion.path, motion.names, nullptr, joints.value(),
-                                             mapping.joints)));
+    found->Fact("body", RolesText(ChooseRoles(motion.path, motion.names, nullptr, joints.value(),
+                                              mapping.joints)));
   }
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
@@ -83,7 +74,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
-    body = BodyText(ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints));
+    body = RolesText(ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints));
     std::vector<int> kept;
     places = joints.value();
     for (std::vector<int>* place :

@@ -181,6 +181,9 @@ Result<Manifest> ReadManifest(const std::string& path) {
   }
   if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
   manifest.length_scale = ReadLengthScale(&top);
+  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+    top.Fail("length_scale", "is given beside units.bvh_length; give one of them");
+  }
   if (top.error()) return *top.error();
 
   const std::vector<int> lines = document.ElementLines("/recordings");

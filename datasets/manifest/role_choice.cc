@@ -232,4 +232,12 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   return best;
 }
 
+std::string RolesText(const Result<BodyRoles>& roles) {
+  if (!roles.ok()) return "none: " + roles.error().message;
+  const std::vector<int> unfilled = UnfilledRoles(roles.value());
+  if (!unfilled.empty()) return "none: not recognised: " + RoleList(unfilled);
+  const std::vector<int> filled = FilledRoles(roles.value());
+  return filled.empty() ? "all roles" : "all roles, filled from neighbours: " + RoleList(filled);
+}
+
 }  // namespace pushid

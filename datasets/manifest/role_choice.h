@@ -21,4 +21,7 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
                               const BvhSkeleton* skeleton, const PendulumJoints& pendulum,
                               const JointMapping& mapping);
 
+// "all roles", "all roles, filled from neighbours: ...", or "none: ..." and why, for people.
+std::string RolesText(const Result<BodyRoles>& roles);
+
 }  // namespace pushid

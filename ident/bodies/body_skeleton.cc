@@ -8,18 +8,6 @@
 namespace pushid {
 namespace {
 
-// Adds the joint's nearest descendants that a place is wanted of.
-void AddAims(const std::vector<std::vector<int>>& children, const std::vector<int>& wanted_roles,
-             int joint, std::vector<int>* aims) {
-  for (int child : children[joint]) {
-    if (wanted_roles[child] >= 0) {
-      aims->push_back(child);
-    } else {
-      AddAims(children, wanted_roles, child, aims);
-    }
-  }
-}
-
 // Toes and head that were filled, as further joints behind those that play the role before them.
 void AddFilledEnds(const BodyRoles& roles, const Pose& first, BodySkeleton* skeleton) {
   for (int role :
@@ -33,21 +21,21 @@ void AddFilledEnds(const BodyRoles& roles, const Pose& first, BodySkeleton* skel
   }
 }
 
-// names, parents, roles and rest are set.
+// Names, parents, roles and rest are set: every joint that a place is wanted of is an aim of the
+// next one towards the root that turns.
 void SetTree(BodySkeleton* skeleton) {
-  const int columns = static_cast<int>(skeleton->wanted_roles.size());
-  std::vector<std::vector<int>> children(columns);
-  for (int j = 0; j < columns; ++j) {
-    if (skeleton->tree.parents[j] >= 0) children[skeleton->tree.parents[j]].push_back(j);
-  }
-  skeleton->tree.aims.assign(columns, {});
+  const std::vector<int>& wanted = skeleton->wanted_roles;
+  const std::vector<int>& parents = skeleton->tree.parents;
+  const int columns = static_cast<int>(wanted.size());
   const bool hip_is_one = std::count(skeleton->roles.begin(), skeleton->roles.end(), kBodyHip) > 0;
+  std::vector<int> turning(columns, -1);  // the joint itself, or the next one above that turns
+  skeleton->tree.aims.assign(columns, {});
   for (int j = 0; j < columns; ++j) {
+    const int above = parents[j] < 0 ? -1 : turning[parents[j]];
     // Where the hip is a mean of several joints, the root turns for it.
-    const bool stands_in = !hip_is_one && skeleton->tree.parents[j] < 0;
-    if (skeleton->wanted_roles[j] >= 0 || stands_in) {
-      AddAims(children, skeleton->wanted_roles, j, &skeleton->tree.aims[j]);
-    }
+    const bool turns = wanted[j] >= 0 || (parents[j] < 0 && !hip_is_one);
+    turning[j] = turns ? j : above;
+    if (wanted[j] >= 0 && above >= 0) skeleton->tree.aims[above].push_back(j);
   }
 }
 

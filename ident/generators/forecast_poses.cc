@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/bodies/body_files.h"
 #include "ident/generators/forecast_scene.h"
 
@@ -166,7 +167,7 @@ Result<std::vector<std::string>> WritePoses(const std::string& path, const Forec
     if (MaybeError error = WriteCsv(path, scene)) return *error;
     return std::vector<std::string>{path};
   }
-  if (std::filesystem::path(path).extension() != ".bvh") {
+  if (!EqualsIgnoringCase(std::filesystem::path(path).extension().string(), ".bvh")) {
     if (MaybeError error = WriteGltf(path, ToGltf(scene))) return *error;
     return std::vector<std::string>{path};
   }

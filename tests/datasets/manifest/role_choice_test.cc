@@ -85,6 +85,8 @@ TEST(RoleChoiceTest, WhatASkeletonLacksIsSaid) {
   joints[11].name = "rig:left middle";
   joints[4].name = "rig:left upper";
   EXPECT_EQ(RoleList(UnfilledRoles(RolesOf(BvhOf(joints)))), "left_shoulder, left_knee");
+  EXPECT_EQ(RolesText(RolesOf(BvhOf(joints))), "none: not recognised: left_shoulder, left_knee");
+  EXPECT_EQ(RolesText(RolesOf(BvhOf(XsensSkeleton()))), "all roles");
 }
 
 TEST(RoleChoiceTest, WhatTheManifestNamesWins) {

@@ -145,6 +145,30 @@ TEST_F(BodySkeletonTest, ABentBodyComesBackFromItsFile) {
   EXPECT_GT((back[1][20] - back[0][20]).norm(), 0.1) << "the left knee moved";
 }
 
+// Bones are those of the frame that the recording starts with.
+TEST_F(BodySkeletonTest, TheRestIsTheFirstFrameThatIsUsed) {
+  entry().first_frame = 3;
+  const BodyRecording recording = Recorded(CmuSkeleton());
+  EXPECT_EQ(recording.num_frames(), 17);
+  const BodySkeleton& skeleton = recording.skeletons[0];
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    EXPECT_LT((skeleton.rest.col(j) - recorded_.joints[0][j]).norm(), 1e-12);
+  }
+  EXPECT_NEAR(skeleton.hip.x(), 0.03, 1e-12);
+}
+
+// A hip that is the mean of several joints: the root stands in for it.
+TEST_F(BodySkeletonTest, AHipBetweenTwoJoints) {
+  entry().joints.hip = JointReference{"", -1, {{"rig:thigh.L"}, {"rig:thigh.R"}}};
+  const BodyRecording recording = Recorded(PlainSkeleton());
+  const BodySkeleton& skeleton = recording.skeletons[0];
+  const Eigen::Vector3d move(0.3, -0.1, 0.02);
+  const PosedJoints moved = Retarget(skeleton, recording.bodies[0][0].colwise() + move);
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    EXPECT_LT((moved.positions.col(j) - recorded_.joints[0][j] - move).norm(), 1e-9);
+  }
+}
+
 TEST_F(BodySkeletonTest, TheFilledIsSaidAndTheUnknownIsAnError) {
   Recorded(PlainSkeleton());
   ASSERT_EQ(warnings_.size(), 1u);
