@@ -19,10 +19,6 @@
 namespace pushid {
 namespace {
 
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 // From the frames that the generator is shown too (one is the first, which everybody has), but from
 // frame 0 where physics go into the network, as in its training.
 Result<Prediction> PredictBeside(const LoadedGenerator& loaded, const IdentifiedModel& physics,
@@ -46,18 +42,8 @@ Result<GroupHips> HipsBeside(const LoadedGenerator& loaded,
   return PendulumHips(recording, predicted.value().path);
 }
 
-BodyScene SceneOf(const BodyRecording& recording, const std::vector<BodyMotion>& bodies) {
-  BodyScene scene;
-  scene.id = recording.pendulum.id;
-  scene.dt = recording.pendulum.scene.dt;
-  scene.subject_ids = recording.pendulum.subject_ids;
-  scene.joint_names = recording.joint_names;
-  scene.bodies = bodies;
-  return scene;
-}
-
 Result<std::vector<std::string>> WriteGroup(const std::string& path, const BodyScene& scene) {
-  if (EndsWith(path, ".bvh")) return WriteBodyBvh(path, scene);
+  if (IsBodyFile(path)) return WriteBodyFiles(path, scene);
   if (MaybeError error = WriteJointsCsv(path, scene)) return *error;
   return std::vector<std::string>{path};
 }

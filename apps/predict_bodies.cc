@@ -12,22 +12,12 @@
 namespace pushid {
 namespace {
 
-BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies) {
-  BodyScene scene;
-  scene.id = recording.pendulum.id;
-  scene.dt = recording.pendulum.scene.dt;
-  scene.subject_ids = recording.pendulum.subject_ids;
-  scene.joint_names = recording.joint_names;
-  scene.bodies = std::move(bodies);
-  return scene;
-}
-
 Result<std::vector<std::string>> WriteScene(const PredictFlags& flags, const BodyScene& scene,
                                             const BodyRecording& recording,
                                             const Prediction& prediction) {
   std::vector<std::string> files = {flags.out};
-  if (flags.out_is_bvh()) {
-    const Result<std::vector<std::string>> written = WriteBodyBvh(flags.out, scene);
+  if (flags.out_is_bodies()) {
+    const Result<std::vector<std::string>> written = WriteBodyFiles(flags.out, scene);
     if (!written.ok()) return written;
     files = written.value();
   } else if (MaybeError error = WriteTrajectoryCsv(flags.out, recording.pendulum, prediction)) {

@@ -42,22 +42,29 @@ int Run() {
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.mapping);
-  if (!recording.ok()) return Fail(recording.error());
+  if (!recording.ok() && flags.bodies_asked) return Fail(recording.error());
+  if (!recording.ok()) Warn(recording.error().ToString() + "; pendulums alone are shown");
 
-  const PendulumRecording& pendulum = recording.value().pendulum;
+  const PendulumRecording pendulum =
+      MakePendulumRecording(recordings.value().front(), model.mapping);
   if (MaybeError error = WarnOfCrowd(flags.restoration, pendulum.num_people())) return Fail(*error);
   Animation animation;
-  animation.title = pendulum.id + ", " + std::string(restoration.value()->kind());
+  animation.title = pendulum.id;
   animation.dt = pendulum.scene.dt;
   AddPushes(pendulum, &animation);
-  if (flags.recorded) AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
+  if (recording.ok()) animation.title += ", " + std::string(restoration.value()->kind());
+  if (recording.ok() && flags.recorded) {
+    AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
+  }
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);
     if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
-    AddPrediction(pendulum, prediction,
-                  RestoreBodies(*restoration.value(), flags.restoration.postprocess,
-                                PredictedPeople(recording.value(), prediction)),
-                  &animation, one.what);
+    std::vector<BodyMotion> bodies;
+    if (recording.ok()) {
+      bodies = RestoreBodies(*restoration.value(), flags.restoration.postprocess,
+                             PredictedPeople(recording.value(), prediction));
+    }
+    AddPrediction(pendulum, prediction, bodies, &animation, one.what);
   }
   MaybeError error;
   if (!flags.out.empty()) error = Write(flags.out, AnimationHtml(animation));

@@ -30,7 +30,6 @@ BodyScene SceneOf(const FormationRun& run, std::vector<BodyMotion> bodies) {
   scene.id = run.recording.id;
   scene.dt = run.recording.scene.dt;
   scene.subject_ids = run.recording.subject_ids;
-  scene.joint_names = DefaultJointNames();
   scene.bodies = std::move(bodies);
   return scene;
 }
@@ -112,7 +111,7 @@ MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const Formation
   MaybeError error = WritePages(flags, animation);
   if (!error && !flags.joints_out.empty()) error = WriteJointsCsv(flags.joints_out, scene);
   if (!error && !flags.bodies_out.empty()) {
-    const auto files = WriteBodyBvh(flags.bodies_out, scene);
+    const auto files = WriteBodyFiles(flags.bodies_out, scene);
     if (!files.ok()) error = files.error();
   }
   return error;

@@ -142,7 +142,8 @@ std::string JoinIds(const std::vector<std::string>& ids) {
 std::vector<std::string> ReadingFlags(const std::vector<std::string>& flags) {
   std::vector<std::string> reading;
   for (const std::string& flag : flags) {
-    for (const char* name : {"length_unit", "max_gap_s", "lowpass_hz", "resample_fps"}) {
+    for (const char* name :
+         {"length_unit", "length_scale", "max_gap_s", "lowpass_hz", "resample_fps"}) {
       if (flag.rfind("--" + std::string(name) + "=", 0) == 0) reading.push_back(flag);
     }
   }

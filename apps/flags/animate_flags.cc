@@ -24,8 +24,8 @@ Result<AnimateFlags> AnimateFlagsFromCommandLine() {
   if (MaybeError error = CheckOutputFiles({FLAGS_out, FLAGS_strip_out})) return *error;
   const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine("rigid");
   if (!restoration.ok()) return restoration.error();
-  return AnimateFlags{FLAGS_id,        restoration.value(), FLAGS_out,
-                      FLAGS_strip_out, FLAGS_poses,         FLAGS_recorded};
+  return AnimateFlags{FLAGS_id,    restoration.value(), FLAGS_out,           FLAGS_strip_out,
+                      FLAGS_poses, FLAGS_recorded,      Given("restoration")};
 }
 
 }  // namespace pushid

@@ -14,6 +14,7 @@ struct AnimateFlags {
   std::string strip_out;         // strip of poses (SVG); empty: none
   int poses = 7;                 // of the strip
   bool recorded = true;          // beside the predicted bodies
+  bool bodies_asked = false;     // by --restoration; otherwise only where the skeleton has them
 };
 Result<AnimateFlags> AnimateFlagsFromCommandLine();
 

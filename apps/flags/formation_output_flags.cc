@@ -30,8 +30,10 @@ DEFINE_string(poses_from, "",
 DEFINE_string(html_out, "", "formation: page of the moving people (HTML)");
 DEFINE_string(strip_out, "", "formation: strip of poses (SVG)");
 DEFINE_string(joints_out, "", "formation with bodies: joint positions (CSV)");
-DEFINE_string(bodies_out, "",
-              "formation with bodies: the bodies (BVH; one file a person, named after this one)");
+DEFINE_string(
+    bodies_out, "",
+    "formation with bodies: the bodies (.gltf or .glb: all in one animated file; otherwise "
+    "BVH, one file a person, named after this one)");
 
 namespace pushid {
 namespace {

@@ -30,7 +30,7 @@ struct FormationBodyFlags {
   std::string html_out;    // page of the moving people, with bodies or without
   std::string strip_out;   // strip of poses (SVG)
   std::string joints_out;  // joint positions (CSV)
-  std::string bodies_out;  // BVH, one file a person
+  std::string bodies_out;  // BVH, one file a person, or glTF
 
   bool generates() const { return !generator.empty(); }
   bool given() const { return restoration.given() || generates(); }

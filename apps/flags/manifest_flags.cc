@@ -29,6 +29,7 @@ DEFINE_string(mapping, "", "mapping file for all recordings: joints, columns, un
 DEFINE_string(up, "", "the files' axis that points up (z unless given)");
 DEFINE_string(forward, "", "the files' axis that points in the push direction (x unless given)");
 DEFINE_string(length_unit, "", "the files' unit: mm, cm or m");
+DEFINE_double(length_scale, 0.0, "instead of a unit, the metres in one of the files' lengths");
 DEFINE_string(out, "", "write the manifest here (JSON)");
 DEFINE_bool(update, pushid::ManifestFlags{}.update,
             "add to the manifest that is there: its entries stay as they are, by id");
@@ -71,6 +72,14 @@ MaybeError ReadNamed(ManifestOptions* options) {
                  "'; it must be net, net_without_friction or external"};
   }
   options->push_kind = *kind;
+  if (FLAGS_length_scale != 0.0) {
+    const std::string problem = LengthScaleProblem(FLAGS_length_scale);
+    if (!problem.empty()) return Error{"--length_scale " + problem};
+    if (!FLAGS_length_unit.empty()) {
+      return Error{"--length_scale is given beside --length_unit; give one of them"};
+    }
+    options->length_scale = FLAGS_length_scale;
+  }
   if (FLAGS_length_unit.empty()) return std::nullopt;
   options->length_unit = LengthUnitFromName(FLAGS_length_unit);
   if (options->length_unit) return std::nullopt;

@@ -5,11 +5,14 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
+#include "ident/bodies/body_files.h"
 
 DEFINE_string(id, "", "the recording whose first frame and push are taken");
-DEFINE_string(out, "",
-              "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
-              "and a name that ends with .bvh, the bodies (BVH, one file a person)");
+DEFINE_string(
+    out, "",
+    "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
+    "the bodies instead, where the name ends with .bvh (one file a person), or with .gltf "
+    "or .glb (all in one animated glTF file)");
 DEFINE_int32(frames, pushid::PredictFlags{}.frames,
              "frames to predict; 0: as many as the recording has");
 DEFINE_string(joints_out, "",
@@ -25,19 +28,17 @@ constexpr int kMostFrames = 1000000;  // hours of motion
 std::string BodyOutput(const PredictFlags& flags) {
   if (!flags.joints_out.empty()) return "joints_out";
   if (!flags.json_out.empty()) return "json_out";
-  return flags.out_is_bvh() ? "out=... .bvh" : "";
+  return flags.out_is_bodies() ? "out=" + flags.out : "";
 }
 
 }  // namespace
 
-bool PredictFlags::out_is_bvh() const {
-  return out.size() > 4 && out.compare(out.size() - 4, 4, ".bvh") == 0;
-}
+bool PredictFlags::out_is_bodies() const { return IsBodyFile(out); }
 
 Result<PredictFlags> PredictFlagsFromCommandLine() {
   for (MaybeError missing :
        {RequireModel(), Require("id", FLAGS_id, "name a recording of the manifest"),
-        Require("out", FLAGS_out, "name the CSV or BVH file to write")}) {
+        Require("out", FLAGS_out, "name the CSV, BVH or glTF file to write")}) {
     if (missing) return *missing;
   }
   const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();

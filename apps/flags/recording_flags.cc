@@ -16,6 +16,9 @@ DEFINE_string(ids, "", "only these recordings, comma-separated ids");
 DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
 DEFINE_string(length_unit, "",
               "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
+DEFINE_double(
+    length_scale, 0.0,
+    "instead of --length_unit, the metres in one of the files' lengths: 0.0564; 0: a unit");
 DEFINE_double(max_gap_s, pushid::PreparationOptions{}.max_gap_s,
               "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
 DEFINE_double(lowpass_hz, pushid::PreparationOptions{}.lowpass_hz,
@@ -45,6 +48,14 @@ Result<LoadOptions> LoadOptionsOfFlags() {
     if (!options.length_unit) {
       return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
     }
+  }
+  if (FLAGS_length_scale != 0.0) {
+    const std::string problem = LengthScaleProblem(FLAGS_length_scale);
+    if (!problem.empty()) return Error{"--length_scale " + problem};
+    if (options.length_unit) {
+      return Error{"--length_scale is given beside --length_unit; give one of them"};
+    }
+    options.length_scale = FLAGS_length_scale;
   }
   if (MaybeError error = CheckPreparation(options.preparation)) return *error;
   return options;

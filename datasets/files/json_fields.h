@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -80,13 +79,12 @@ class JsonFields {
   }
 
   // Other keys than these are mistakes, which would be read over.
-  void Only(std::initializer_list<const char*> keys) {
+  void Only(const std::vector<std::string>& keys) {
     if (!object_.is_object()) return;
     std::string list;
-    for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+    for (const std::string& key : keys) list += (list.empty() ? "" : ", ") + key;
     for (const auto& [key, value] : object_.items()) {
-      const bool known = std::any_of(keys.begin(), keys.end(),
-                                     [&name = key](const char* one) { return name == one; });
+      const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
       if (!known) Fail(key, "is not known; there may be " + list);
     }
   }

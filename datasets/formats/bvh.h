@@ -83,6 +83,10 @@ struct BvhPositionOptions {
   // When set, decides instead of `joints`: called once with the skeleton, returns joint indices.
   // For a choice that depends on the skeleton, like a default mapping.
   std::function<Result<std::vector<int>>(const BvhSkeleton&)> choose_joints;
+  // Metres in one of the file's lengths, where that is no unit; 0: length_unit's.
+  double metres_per_unit = 0.0;
+  // The frame whose channel values are kept as they stand; -1: none.
+  int kept_frame = -1;
 };
 
 // World positions of chosen joints.
@@ -91,6 +95,7 @@ struct BvhPositions {
   double frame_time_s = 0.0;
   std::vector<int> joints;                              // joint index of each entry of `positions`
   std::vector<std::vector<Eigen::Vector3d>> positions;  // [chosen joint][frame], metres
+  std::vector<double> kept_values;                      // of the kept frame, in file order
   std::string content_hash;                             // XXH3-128 of the file, hex
 
   int num_frames() const { return positions.empty() ? 0 : static_cast<int>(positions[0].size()); }

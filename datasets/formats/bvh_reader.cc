@@ -153,10 +153,14 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPosition
   result.positions.resize(result.joints.size());
   for (auto& track : result.positions) track.reserve(FramesToReserve(reader, header.value()));
 
-  BvhKinematics kinematics(header.value().skeleton, options.length_unit, result.joints);
+  const double metres =
+      options.metres_per_unit > 0.0 ? options.metres_per_unit : MetresPer(options.length_unit);
+  BvhKinematics kinematics(header.value().skeleton, metres, result.joints);
+  int frame = 0;
   std::vector<Eigen::Vector3d> positions(result.joints.size());
   MaybeError failed = ReadRows(&reader, header.value(), [&](const std::vector<double>& values) {
     kinematics.Positions(values.data(), positions.data());
+    if (frame++ == options.kept_frame) result.kept_values = values;
     for (std::size_t i = 0; i < positions.size(); ++i) result.positions[i].push_back(positions[i]);
   });
   if (failed) return *std::move(failed);

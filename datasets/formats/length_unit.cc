@@ -51,6 +51,20 @@ std::optional<LengthUnit> LengthUnitFromName(std::string_view name) {
   return std::nullopt;
 }
 
+std::string LengthScaleProblem(double metres) {
+  constexpr double kSmallest = 1e-6, kLargest = 1e3;  // m; a micrometre, a kilometre
+  if (metres >= kSmallest && metres <= kLargest) return "";
+  return "is " + Rounded(metres) + "; it must be the metres of one file unit, from " +
+         Rounded(kSmallest) + " to " + Rounded(kLargest);
+}
+
+std::string LengthText(double metres_per_unit) {
+  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
+    if (metres_per_unit == MetresPer(unit)) return Name(unit);
+  }
+  return Rounded(metres_per_unit) + " m each";
+}
+
 double ConvertLength(double value, LengthUnit from, LengthUnit to) {
   if (from == to) return value;
   // The ratio is a power of ten: multiply or divide by whichever is a whole number.

@@ -177,7 +177,7 @@ class MotionInspector {
     found_.Fact("standing height", "hip " + Rounded(rod * metres_, 3) + " m above the ankles");
     if (!fits) {
       found_.Warn("no unit makes a standing person of it: hip " + Rounded(rod * metres_, 3) +
-                  " m above the ankles; check hip and ankles");
+                  " m above the ankles; check hip and ankles, or say the unit by length_scale");
     }
   }
 

@@ -15,6 +15,7 @@
 #include "datasets/formats/push_csv.h"
 #include "datasets/inspection/inspect_manifest.h"
 #include "datasets/inspection/inspect_motion.h"
+#include "datasets/manifest/role_choice.h"
 #include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_csv.h"
 
@@ -50,6 +51,10 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
   const Result<PendulumJoints> joints =
       ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
   if (!joints.ok()) found->Warn(joints.error().message);
+  if (joints.ok()) {
+    found->Fact("body", RolesText(ChooseRoles(motion.path, motion.names, nullptr, joints.value(),
+                                              mapping.joints)));
+  }
   InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
 }
 
@@ -57,6 +62,7 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
 // fit.
 MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
+  std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
   options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
@@ -68,6 +74,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
+    body = RolesText(ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints));
     std::vector<int> kept;
     places = joints.value();
     for (std::vector<int>* place :
@@ -90,6 +97,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   }
   motion.positions = std::move(bvh.value().positions);
   found->Fact("joints", ListOfNames(names));
+  if (!body.empty()) found->Fact("body", body);
   InspectMotion(motion, places, found);
   return std::nullopt;
 }

@@ -177,6 +177,7 @@ class Maker {
     recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
     SetAxes(&recording);
     recording.length_unit = options_.length_unit;
+    recording.length_scale = options_.length_scale;
     made_.manifest.recordings.push_back(recording);
     return std::nullopt;
   }

@@ -39,6 +39,7 @@ struct ManifestOptions {
   // Written into every recording; empty: left out.
   std::string mapping, up, forward;
   std::optional<LengthUnit> length_unit;
+  std::optional<double> length_scale;  // m, instead of a unit
 };
 
 struct MadeManifest {

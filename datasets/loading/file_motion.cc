@@ -7,6 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
+#include "datasets/manifest/role_choice.h"
 
 namespace pushid {
 namespace {
@@ -35,15 +36,30 @@ std::vector<int> Wanted(const FileMotionRequest& request, const PendulumJoints& 
   return read;
 }
 
+// Of the file's joints, which are all kept where there are roles.
+MaybeError SetRoles(const FileMotionRequest& request, const std::vector<std::string>& names,
+                    const BvhSkeleton* skeleton, const PendulumJoints& joints, FileMotion* motion) {
+  if (!request.keep_all_joints) return std::nullopt;
+  Result<BodyRoles> roles = ChooseRoles(request.path, names, skeleton, joints, request.joints);
+  if (!roles.ok()) return roles.error();
+  motion->roles = std::move(roles.value());
+  return std::nullopt;
+}
+
 Result<FileMotion> ReadSkeleton(const FileMotionRequest& request) {
   FileMotion motion;
-  motion.unit = request.unit.value_or(motion.unit);
+  motion.metres_per_unit = request.metres_per_unit.value_or(motion.metres_per_unit);
   BvhPositionOptions options;
-  options.length_unit = motion.unit;
+  options.metres_per_unit = motion.metres_per_unit;
+  if (request.keep_all_joints) options.kept_frame = request.first_frame;
   options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
     const Result<PendulumJoints> joints =
         ChoosePendulumJoints(request.path, skeleton, request.joints);
     if (!joints.ok()) return joints.error();
+    if (MaybeError failed =
+            SetRoles(request, NamesOf(skeleton), &skeleton, joints.value(), &motion)) {
+      return *std::move(failed);
+    }
     return Wanted(request, joints.value(), skeleton.joints.size(), &motion);
   };
   Result<BvhPositions> bvh = ReadBvhPositions(request.path, options);
@@ -55,21 +71,27 @@ Result<FileMotion> ReadSkeleton(const FileMotionRequest& request) {
     motion.names.push_back(bvh.value().skeleton.joints[joint].name);
     motion.parents.push_back(bvh.value().skeleton.joints[joint].parent);
   }
+  if (request.keep_all_joints) {
+    motion.skeleton = FileSkeleton{std::move(bvh.value().skeleton),
+                                   std::move(bvh.value().kept_values), motion.metres_per_unit};
+  }
   return motion;
 }
 
 // An Error where a file gives a unit that is not known and nothing else says one.
 MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
                    FileMotion* motion) {
-  motion->unit = request.unit.value_or(points.unit.value_or(motion->unit));
-  if (!points.unit && !Trimmed(points.unit_text).empty() && !request.unit) {
+  const double files = points.unit ? MetresPer(*points.unit) : motion->metres_per_unit;
+  motion->metres_per_unit = request.metres_per_unit.value_or(files);
+  if (!points.unit && !Trimmed(points.unit_text).empty() && !request.metres_per_unit) {
     return Error{"says its lengths are in " + Quoted(points.unit_text) +
-                     ", which is not known here; give length_unit (mm, cm or m) in the manifest",
+                     ", which is not known here; give length_unit (mm, cm or m) or length_scale "
+                     "(m) in the manifest",
                  request.path};
   }
-  if (points.unit && *points.unit != motion->unit) {
+  if (points.unit && files != motion->metres_per_unit) {
     request.warn("says its lengths are " + Name(*points.unit) + "; they are read as " +
-                 Name(motion->unit));
+                 LengthText(motion->metres_per_unit));
   }
   return std::nullopt;
 }
@@ -82,6 +104,9 @@ Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
     const Result<PendulumJoints> joints = ChoosePendulumPoints(request.path, names, request.joints);
     if (!joints.ok()) return joints.error();
+    if (MaybeError failed = SetRoles(request, names, nullptr, joints.value(), &motion)) {
+      return *std::move(failed);
+    }
     return Wanted(request, joints.value(), names.size(), &motion);
   };
   Result<PointMotion> read = ReadPointMotion(request.path, request.format, options);
@@ -90,7 +115,7 @@ Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   if (MaybeError failed = SetUnit(request, points, &motion)) return *std::move(failed);
   motion.tracks = std::move(points.positions);
   for (auto& track : motion.tracks) {
-    for (Eigen::Vector3d& position : track) position *= MetresPer(motion.unit);
+    for (Eigen::Vector3d& position : track) position *= motion.metres_per_unit;
   }
   const double rate =
       request.mapping.frame_rate > 0.0 ? request.mapping.frame_rate : points.rate_hz;

@@ -13,16 +13,19 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 
 struct FileMotionRequest {
   const std::string& path;
   MotionFormat format;
-  std::optional<LengthUnit> unit;  // whatever the file says; unset: the file's own, else mm
+  // Metres in one of the file's lengths, whatever it says; unset: the file's own unit, else mm.
+  std::optional<double> metres_per_unit;
   const JointMapping& joints;
   const ColumnMapping& mapping;
   bool keep_all_joints;  // otherwise hip and feet alone
+  int first_frame;       // of those that will be used
   std::function<void(const std::string& warning)> warn;
 };
 
@@ -33,7 +36,10 @@ struct FileMotion {
   std::vector<int> parents;   // of BVH joints; otherwise -1 each
   double frame_time_s = 0.0;  // 0: neither file nor mapping says it
   double first_time_s = 0.0;  // by the file's clock
-  LengthUnit unit = LengthUnit::kMillimetre;
+  double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
+  // With all joints: who plays which role, and a BVH's hierarchy at the first frame.
+  BodyRoles roles;
+  std::optional<FileSkeleton> skeleton;
   std::string content_hash;
 };
 

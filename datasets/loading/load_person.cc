@@ -43,8 +43,8 @@ class PersonLoader {
     const JointMapping joints =
         Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
     Result<FileMotion> read = ReadFileMotion(
-        {path_, entry_.motion_format, UnitGiven(), joints, mapping_, options_.keep_all_joints,
-         [this](const std::string& warning) { Warn(warning); }});
+        {path_, entry_.motion_format, MetresGiven(), joints, mapping_, options_.keep_all_joints,
+         entry_.first_frame, [this](const std::string& warning) { Warn(warning); }});
     if (!read.ok()) return read.error();
     FileMotion& motion = read.value();
     if (MaybeError failed = SetRate(motion.frame_time_s)) return *std::move(failed);
@@ -62,16 +62,21 @@ class PersonLoader {
     if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
     if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);
     Take(motion, &person);
-    if (MaybeError failed = CheckMotion(person, motion.unit)) return *std::move(failed);
+    if (MaybeError failed = CheckMotion(person, motion.metres_per_unit)) return *std::move(failed);
     return loaded;
   }
 
  private:
   // By a reader that does not have to believe the file; the first one counts.
-  std::optional<LengthUnit> UnitGiven() const {
-    for (const auto& unit :
-         {options_.length_unit, entry_.length_unit, manifest_.length_unit, mapping_.length_unit}) {
-      if (unit) return unit;
+  std::optional<double> MetresGiven() const {
+    const std::pair<std::optional<LengthUnit>, std::optional<double>> said[] = {
+        {options_.length_unit, options_.length_scale},
+        {entry_.length_unit, entry_.length_scale},
+        {manifest_.length_unit, manifest_.length_scale},
+        {mapping_.length_unit, mapping_.length_scale}};
+    for (const auto& [unit, scale] : said) {
+      if (scale) return scale;
+      if (unit) return MetresPer(*unit);
     }
     return std::nullopt;
   }
@@ -145,6 +150,9 @@ class PersonLoader {
       }
       if (counts) gaps += count.gaps;
       if (!counts && count.excluded_frames > 0) Forget(static_cast<int>(i), &motion->places);
+      if (!counts && count.excluded_frames == static_cast<int>(frames)) {
+        ForgetRoles(static_cast<int>(i), &motion->roles);
+      }
     }
     if (gaps == 0) return std::nullopt;
     if (weight[0] == 0.0) {
@@ -172,6 +180,16 @@ class PersonLoader {
     for (std::vector<int>* place :
          {&places->left_toe, &places->right_toe, &places->left_heel, &places->right_heel}) {
       if (std::find(place->begin(), place->end(), track) != place->end()) place->clear();
+    }
+  }
+
+  // A marker that is never seen plays no role.
+  static void ForgetRoles(int track, BodyRoles* roles) {
+    for (std::vector<int>& joints : roles->joints) {
+      if (std::find(joints.begin(), joints.end(), track) != joints.end()) joints.clear();
+    }
+    for (std::vector<int>* joints : {&roles->left_asis, &roles->right_asis, &roles->back}) {
+      if (std::find(joints->begin(), joints->end(), track) != joints->end()) joints->clear();
     }
   }
 
@@ -205,7 +223,7 @@ class PersonLoader {
     return mean;
   }
 
-  void Take(const FileMotion& motion, RecordedPerson* person) const {
+  void Take(FileMotion& motion, RecordedPerson* person) const {
     person->hip = Mean(motion.tracks, motion.places.hip);
     person->left_ankle = Mean(motion.tracks, motion.places.left_ankle);
     person->right_ankle = Mean(motion.tracks, motion.places.right_ankle);
@@ -216,6 +234,17 @@ class PersonLoader {
     if (!options_.keep_all_joints) return;
     person->joint_names = motion.names;
     person->joint_parents = motion.parents;
+    person->roles = motion.roles;
+    person->skeleton = std::move(motion.skeleton);
+    if (person->skeleton) {
+      person->skeleton->world_from_file =
+          AxesRotation(person->file_up, person->file_forward).value();
+    }
+    const std::vector<int> filled = FilledRoles(motion.roles);
+    if (!filled.empty() && UnfilledRoles(motion.roles).empty()) {
+      Warn("has no joints for " + RoleList(filled) +
+           ", which are filled from their neighbours; name them by \"joints\" where it has");
+    }
     person->joints.assign(person->hip.size(), Track(motion.tracks.size()));
     for (std::size_t joint = 0; joint < motion.tracks.size(); ++joint) {
       for (std::size_t frame = 0; frame < person->hip.size(); ++frame) {

@@ -24,6 +24,8 @@ struct LoadOptions {
   // The unit of the files' lengths, whatever they and the manifest say (--length_unit). Without it:
   // the recording's length_unit, else the manifest's, the mapping's, the file's own, else mm.
   std::optional<LengthUnit> length_unit;
+  // Instead of a unit, the metres in one of the files' lengths (--length_scale).
+  std::optional<double> length_scale;
   // Which recordings: see SelectRecordings. Only those are read.
   std::string setting = "all";
   // Only these ids; empty: all of the setting.

@@ -16,9 +16,9 @@ constexpr int kFewestFrames = 3;                          // an acceleration tak
 constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
 
 // The unit in which the rod would have an adult's length.
-std::optional<LengthUnit> LikelyUnit(double rod_m, LengthUnit read_as) {
+std::optional<LengthUnit> LikelyUnit(double rod_m, double metres_per_unit) {
   for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kCentimetre}) {
-    const double rod = rod_m / MetresPer(read_as) * MetresPer(unit);
+    const double rod = rod_m / metres_per_unit * MetresPer(unit);
     if (rod >= kShortestAdult && rod <= kLongestAdult) return unit;
   }
   return std::nullopt;
@@ -40,7 +40,7 @@ MaybeError CheckTrack(const RecordedPerson& person, const char* what,
 
 }  // namespace
 
-MaybeError CheckMotion(const RecordedPerson& person, LengthUnit unit) {
+MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   if (person.hip.size() < kFewestFrames) {
     return Error{"the motion has " + std::to_string(person.hip.size()) +
                      " frames; at least three are needed",
@@ -49,12 +49,13 @@ MaybeError CheckMotion(const RecordedPerson& person, LengthUnit unit) {
   const Eigen::Vector3d rod = person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
   const double length = rod.norm();
   if (!(length >= kShortestRod && length <= kLongestRod)) {
-    const std::optional<LengthUnit> likely = LikelyUnit(length, unit);
+    const std::optional<LengthUnit> likely = LikelyUnit(length, metres_per_unit);
     return Error{
         "the hip is " + Rounded(length, 3) + " m high above the ankles when lengths are read as " +
-            Name(unit) + ": " +
+            LengthText(metres_per_unit) + ": " +
             (likely ? "looks like " + Name(*likely) + ", pass --length_unit=" + Name(*likely)
-                    : "check the unit (--length_unit) and the joints chosen"),
+                    : "check the unit (--length_unit) and the joints chosen; give odd "
+                      "units in metres (--length_scale)"),
         person.file, 0};
   }
   const double lean = std::acos(std::fmin(1.0, std::fmax(-1.0, rod.z() / length)));

@@ -38,7 +38,8 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   JsonFields fields(document.value(), document.value().content, "", "mapping");
   ColumnMapping mapping;
   if (fields.error()) return *fields.error();
-  fields.Only({"columns", "joints", "time", "frame_rate", "length_unit", "up", "forward"});
+  fields.Only(
+      {"columns", "joints", "time", "frame_rate", "length_unit", "length_scale", "up", "forward"});
   ReadColumns(&fields, &mapping);
   mapping.joints = ReadJointMapping(document.value(), &fields);
   mapping.time_column = fields.OptionalText("time", "");
@@ -48,6 +49,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
     if (!problem.empty()) fields.Fail("frame_rate", problem);
   }
   mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
+  mapping.length_scale = ReadLengthScale(&fields);
   mapping.up = fields.OptionalText("up", "");
   mapping.forward = fields.OptionalText("forward", "");
   if (mapping.up.empty() != mapping.forward.empty()) {

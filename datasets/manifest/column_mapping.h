@@ -24,7 +24,8 @@ struct ColumnMapping {
   std::string time_column;
   double frame_rate = 0.0;  // frames per second; 0: not said
   std::optional<LengthUnit> length_unit;
-  std::string up, forward;  // empty: not said
+  std::optional<double> length_scale;  // m, instead of a unit
+  std::string up, forward;             // empty: not said
 };
 
 // Errors name line and key; keys that are not known are Errors too, since they would do nothing.

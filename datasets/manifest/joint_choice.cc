@@ -1,30 +1,23 @@
 // datasets: which joints or markers of a file the pendulum is read from.
 #include "datasets/manifest/joint_choice.h"
 
-#include <iterator>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/point_motion.h"
+#include "datasets/manifest/body_roles.h"
 
 namespace pushid {
-namespace {
-
-// The FZJ push skeleton: hip; spine to head; right arm, left arm; right leg 14-17, left leg 18-21.
-constexpr int kFzjParents[] = {-1, 0,  1,  2, 3,  4,  3,  6, 7,  8,  3,
-                               10, 11, 12, 0, 14, 15, 16, 0, 18, 19, 20};
-constexpr int kFzjRightAnkle = 16, kFzjLeftAnkle = 20;
 
 bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
-  if (skeleton.joints.size() != std::size(kFzjParents)) return false;
-  for (std::size_t i = 0; i < std::size(kFzjParents); ++i) {
-    if (skeleton.joints[i].parent != kFzjParents[i]) return false;
-  }
-  return true;
+  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
+                    skeleton.joints.end(),
+                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
 }
 
-// "mixamorig:Left_Foot" -> "leftfoot".
-std::string Simplified(const std::string& name) {
+std::string SimplifiedName(const std::string& name) {
   std::string simple;
   const std::size_t prefix = name.rfind(':');
   for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
@@ -34,11 +27,23 @@ std::string Simplified(const std::string& name) {
   return simple;
 }
 
-std::vector<std::string> JointNames(const BvhSkeleton& skeleton) {
+std::string PrefixOf(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string::npos ? "" : name.substr(0, colon);
+}
+
+std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
+  const std::string letter = side.substr(0, 1);
+  return {side + part, letter + part, part + side, part + letter};
+}
+
+std::vector<std::string> NamesOf(const BvhSkeleton& skeleton) {
   std::vector<std::string> names;
   for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
   return names;
 }
+
+namespace {
 
 // What differs between the joints of a skeleton and the points of other files.
 struct Source {
@@ -110,12 +115,6 @@ Result<std::vector<int>> DefaultHip(const Source& source) {
   return hip;
 }
 
-// "leftankle", "lankle", "ankleleft", "anklel".
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
-  const std::string letter = side.substr(0, 1);
-  return {side + part, letter + part, part + side, part + letter};
-}
-
 Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
                                       const std::string& side) {
   const std::string letter = side.substr(0, 1);
@@ -138,14 +137,9 @@ Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
   }
   Result<std::vector<int>> ankle = FindDefault(source, key, candidates);
   if (ankle.ok() && ankle.value().empty() && source.is_bvh() && IsFzjSkeleton(*source.skeleton)) {
-    return std::vector<int>{side == "left" ? kFzjLeftAnkle : kFzjRightAnkle};
+    return std::vector<int>{side == "left" ? kLeftAnkle : kRightAnkle};
   }
   return ankle;
-}
-
-std::string PrefixOf(const std::string& name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string::npos ? "" : name.substr(0, colon);
 }
 
 // Another point of the foot that `ankle` belongs to; empty where there is none that is clear.
@@ -167,7 +161,7 @@ std::vector<int> OfFoot(const Source& source, const std::string& side, const Pen
 std::vector<int> ToeOf(const Source& source, const std::string& side, const PendulumJoints& joints,
                        const std::vector<int>& ankle) {
   if (source.is_bvh() && IsFzjSkeleton(*source.skeleton) &&
-      (ankle[0] == kFzjLeftAnkle || ankle[0] == kFzjRightAnkle)) {
+      (ankle[0] == kLeftAnkle || ankle[0] == kRightAnkle)) {
     return {ankle[0] + 1};
   }
   return OfFoot(source, side, joints, ankle,
@@ -212,6 +206,18 @@ Result<int> Look(const Source& source, const char* key, const JointReference& re
   return InJoints(key, source.Unknown(reference.name));
 }
 
+Result<std::vector<int>> Meant(const Source& source, const char* key,
+                               const JointReference& reference) {
+  std::vector<int> chosen;
+  const std::vector<JointReference> single = {reference};
+  for (const JointReference& one : reference.mean_of.empty() ? single : reference.mean_of) {
+    const Result<int> index = Look(source, key, one);
+    if (!index.ok()) return index.error();
+    chosen.push_back(index.value());
+  }
+  return chosen;
+}
+
 // What `reference` means, or else `fallback`; an Error when there is neither.
 Result<std::vector<int>> Choose(const Source& source, const char* key,
                                 const std::optional<JointReference>& reference,
@@ -226,18 +232,11 @@ Result<std::vector<int>> Choose(const Source& source, const char* key,
                     error.message.substr(error.message.find("it has ") + 7);
     return error;
   }
-  std::vector<int> chosen;
-  const std::vector<JointReference> single = {*reference};
-  for (const JointReference& one : reference->mean_of.empty() ? single : reference->mean_of) {
-    const Result<int> index = Look(source, key, one);
-    if (!index.ok()) return index.error();
-    chosen.push_back(index.value());
-  }
-  return chosen;
+  return Meant(source, key, *reference);
 }
 
 Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
-  for (const std::string& name : source.names) source.simplified.push_back(Simplified(name));
+  for (const std::string& name : source.names) source.simplified.push_back(SimplifiedName(name));
   const std::vector<int> unneeded = {0};
   // A default is only looked for where it is wanted: it may be ambiguous.
   const Result<std::vector<int>> hip =
@@ -261,8 +260,17 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
                      "; name them by \"joints\" in the manifest",
                  source.path, 0};
   }
-  joints.left_toe = ToeOf(source, "left", joints, joints.left_ankle);
-  joints.right_toe = ToeOf(source, "right", joints, joints.right_ankle);
+  for (const bool is_left : {true, false}) {
+    const int role = is_left ? kLeftToe : kRightToe;
+    std::vector<int>& toe = is_left ? joints.left_toe : joints.right_toe;
+    toe = ToeOf(source, is_left ? "left" : "right", joints,
+                is_left ? joints.left_ankle : joints.right_ankle);
+    const std::optional<JointReference> named = mapping.Of(role);
+    if (!named) continue;
+    Result<std::vector<int>> meant = Meant(source, RoleName(role).c_str(), *named);
+    if (!meant.ok()) return meant.error();
+    toe = std::move(meant.value());
+  }
   joints.left_heel = HeelOf(source, "left", joints, joints.left_ankle);
   joints.right_heel = HeelOf(source, "right", joints, joints.right_ankle);
   return joints;
@@ -272,7 +280,7 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
 
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping) {
-  return ChooseFrom({path, JointNames(skeleton), &skeleton}, mapping);
+  return ChooseFrom({path, NamesOf(skeleton), &skeleton}, mapping);
 }
 
 Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
@@ -281,10 +289,18 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
   return ChooseFrom({path, names}, mapping);
 }
 
+Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
+                                     const BvhSkeleton* skeleton, const char* key,
+                                     const JointReference& reference) {
+  return Meant({path, names, skeleton}, key, reference);
+}
+
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
-  return {first.hip ? first.hip : second.hip,
-          first.left_ankle ? first.left_ankle : second.left_ankle,
-          first.right_ankle ? first.right_ankle : second.right_ankle};
+  JointMapping overlaid = second;
+  for (int role = 0; role < kBodyJoints; ++role) {
+    if (const auto joint = first.Of(role)) overlaid.Set(role, *joint);
+  }
+  return overlaid;
 }
 
 }  // namespace pushid

@@ -12,11 +12,12 @@
 // rate is read as the whole number that it most likely means (frame_rate.h). A given fps wins over
 // the file, with a warning where they differ by more than 0.1 %.
 // Optional: push_csv (none: no push known), push_kind (net, net_without_friction, external; default
-// external), joints {hip, left_ankle, right_ankle} by name or index, up and forward (axes of the
-// BVH such as "z", "+x", "-y"; default z and x), length_unit (mm, cm, m), pushes [{person, csv,
-// start_frame}] in addition to push_csv, initial_velocity (zero, estimated, free; default zero),
-// condition (label of the protocol; condition_code in older files), frames. At the top: length_unit
-// or units.bvh_length for all recordings.
+// external), joints {hip, left_ankle, right_ankle and other roles of body_roles.h} by name or
+// index, up and forward (axes of the BVH such as "z", "+x", "-y"; default z and x), length_unit
+// (mm, cm, m) or length_scale (m), pushes [{person, csv, start_frame}] in addition to push_csv,
+// initial_velocity (zero, estimated, free; default zero), condition (label of the protocol;
+// condition_code in older files), frames. At the top: length_unit, units.bvh_length or length_scale
+// for all recordings.
 //
 // Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
 // with one file per subject; the same file may be named for several. A joint may then be a list of
@@ -28,6 +29,7 @@
 // again.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -48,10 +50,15 @@ struct JointReference {
   std::vector<JointReference> mean_of{};  // not empty: their mean, and nothing else is used
 };
 
-// Which joints the pendulum is read from; whatever is absent is found by default
-// (load_recordings.h).
+// Which joints the pendulum is read from, and those that play the body's other roles; whatever is
+// absent is found by default (joint_choice.h, role_choice.h).
 struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
+  std::map<int, JointReference> others{};  // by role (body_roles.h)
+
+  // By role, whichever it is.
+  std::optional<JointReference> Of(int role) const;
+  void Set(int role, const JointReference& joint);
 };
 
 // What the published manifests call `condition`; read where that is not there, never written.
@@ -88,6 +95,7 @@ struct ManifestRecording {
   std::string up = "z";       // axis of the BVH that points up
   std::string forward = "x";  // axis of the BVH that points forward, in the push direction
   std::optional<LengthUnit> length_unit;
+  std::optional<double> length_scale;  // m in one of the file's lengths, instead of a unit
   std::vector<ManifestPush> pushes;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::optional<int> frames;     // checked against the file when given
@@ -102,8 +110,10 @@ struct ManifestRecording {
 };
 
 struct Manifest {
-  std::string path;                       // the file (or files) it was read from, for messages
-  std::optional<LengthUnit> length_unit;  // for recordings that do not give their own
+  std::string path;  // the file (or files) it was read from, for messages
+  // For recordings that do not give their own.
+  std::optional<LengthUnit> length_unit;
+  std::optional<double> length_scale;
   std::vector<ManifestRecording> recordings;
   nlohmann::ordered_json json =
       nlohmann::ordered_json::object();  // the top level, without `recordings`

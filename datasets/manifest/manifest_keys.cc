@@ -11,10 +11,11 @@ namespace {
 
 std::vector<std::string> KnownKeys() {
   std::vector<std::string> keys = {
-      "id",      "setting",     "fps",         "subjects",  "pushed_person",
-      "mapping", "push_csv",    "push_kind",   "magnitude", "joints",
-      "up",      "forward",     "length_unit", "pushes",    "initial_velocity",
-      "frames",  "first_frame", "end_frame",   "condition", kOldConditionKey};
+      "id",          "setting",     "fps",         "subjects",  "pushed_person",
+      "mapping",     "push_csv",    "push_kind",   "magnitude", "joints",
+      "up",          "forward",     "length_unit", "pushes",    "initial_velocity",
+      "frames",      "first_frame", "end_frame",   "condition", kOldConditionKey,
+      "length_scale"};
   for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
   return keys;
 }

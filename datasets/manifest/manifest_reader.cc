@@ -139,6 +139,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
     fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
                                  fields.label() + ": " + axes.error().message));
   recording.length_unit = ReadLengthUnit(&fields, "length_unit");
+  recording.length_scale = ReadLengthScale(&fields);
   ReadPushes(document, &fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", &InitialVelocityFromName,
                                              InitialVelocity::kZero, "zero, estimated or free");
@@ -179,6 +180,10 @@ Result<Manifest> ReadManifest(const std::string& path) {
     top.Fail(units.error());
   }
   if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
+  manifest.length_scale = ReadLengthScale(&top);
+  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+    top.Fail("length_scale", "is given beside units.bvh_length; give one of them");
+  }
   if (top.error()) return *top.error();
 
   const std::vector<int> lines = document.ElementLines("/recordings");

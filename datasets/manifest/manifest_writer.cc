@@ -1,8 +1,10 @@
 // datasets: the manifest written, with everything that was in it before.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "datasets/files/json_file.h"
+#include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording_names.h"
 
@@ -48,14 +50,22 @@ Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
   return usable ? list : Json(size, Json::object());
 }
 
+// The pendulum's first, as people write them.
+std::vector<int> WrittenRoles() {
+  std::vector<int> roles = {kBodyHip, kLeftAnkle, kRightAnkle};
+  for (int role = 0; role < kBodyJoints; ++role) {
+    if (std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
+  }
+  return roles;
+}
+
 Json JointsJson(const JointMapping& joints, const Json& object) {
   Json json = object.contains("joints") ? object.at("joints") : Json::object();
-  const auto set = [&json](const char* key, const std::optional<JointReference>& joint) {
-    SetUnless(!joint.has_value(), key, joint ? JointJson(*joint) : Json(), &json);
-  };
-  set("hip", joints.hip);
-  set("left_ankle", joints.left_ankle);
-  set("right_ankle", joints.right_ankle);
+  for (int role : WrittenRoles()) {
+    const std::optional<JointReference> joint = joints.Of(role);
+    SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
+              &json);
+  }
   return json;
 }
 
@@ -90,6 +100,7 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
   SetUnless(!recording.length_unit, "length_unit",
             recording.length_unit ? Name(*recording.length_unit) : "", &json);
+  SetUnless(!recording.length_scale, "length_scale", recording.length_scale.value_or(0.0), &json);
   Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
   for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
     pushes[i]["person"] = recording.pushes[i].person;
@@ -116,6 +127,7 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
     if (in_units) json["units"]["bvh_length"] = name;
     if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
   }
+  if (manifest.length_scale) json["length_scale"] = *manifest.length_scale;
   Json recordings = Json::array();
   for (const ManifestRecording& recording : manifest.recordings) {
     bool finite = std::isfinite(recording.fps);

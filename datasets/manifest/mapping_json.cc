@@ -1,6 +1,8 @@
 // datasets: joints and units in manifests and mapping files.
 #include "datasets/manifest/mapping_json.h"
 
+#include "datasets/manifest/body_roles.h"
+
 namespace pushid {
 namespace {
 
@@ -46,17 +48,51 @@ std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
 
 }  // namespace
 
+std::optional<JointReference> JointMapping::Of(int role) const {
+  if (role == kBodyHip) return hip;
+  if (role == kLeftAnkle) return left_ankle;
+  if (role == kRightAnkle) return right_ankle;
+  const auto found = others.find(role);
+  return found == others.end() ? std::nullopt : std::optional(found->second);
+}
+
+void JointMapping::Set(int role, const JointReference& joint) {
+  if (role == kBodyHip) {
+    hip = joint;
+  } else if (role == kLeftAnkle) {
+    left_ankle = joint;
+  } else if (role == kRightAnkle) {
+    right_ankle = joint;
+  } else {
+    others[role] = joint;
+  }
+}
+
 JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) {
   JointMapping mapping;
   if (!fields->Has("joints")) return mapping;
   JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
                     fields->label() + ", joints");
-  joints.Only({"hip", "left_ankle", "right_ankle"});
-  mapping.hip = ReadJoint(&joints, "hip");
-  mapping.left_ankle = ReadJoint(&joints, "left_ankle");
-  mapping.right_ankle = ReadJoint(&joints, "right_ankle");
+  joints.Only(RoleNames());
+  for (int role = 0; role < kBodyJoints; ++role) {
+    const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
+    if (joint) mapping.Set(role, *joint);
+  }
   fields->Add(joints);
   return mapping;
+}
+
+std::optional<double> ReadLengthScale(JsonFields* fields) {
+  constexpr const char* kKey = "length_scale";
+  if (!fields->Has(kKey)) return std::nullopt;
+  const double metres = fields->Number(kKey, "the metres in one of the file's lengths");
+  if (fields->failed()) return std::nullopt;
+  const std::string problem = LengthScaleProblem(metres);
+  if (!problem.empty()) fields->Fail(kKey, problem);
+  if (fields->Has("length_unit")) {
+    fields->Fail(kKey, "is given beside length_unit; give one of them");
+  }
+  return metres;
 }
 
 std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {

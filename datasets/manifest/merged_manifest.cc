@@ -28,7 +28,10 @@ class Merger {
     merged_.json["manifests"].push_back(std::move(manifest.json));
     for (ManifestRecording& entry : manifest.recordings) {
       if (MaybeError error = Check(manifest.path, entry)) return error;
-      if (!entry.length_unit) entry.length_unit = manifest.length_unit;
+      if (!entry.length_unit && !entry.length_scale) {
+        entry.length_unit = manifest.length_unit;
+        entry.length_scale = manifest.length_scale;
+      }
       merged_.recordings.push_back(std::move(entry));
     }
     return std::nullopt;

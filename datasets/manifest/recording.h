@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "datasets/formats/bvh.h"
+#include "datasets/manifest/body_roles.h"
 #include "models/push.h"  // PushKind
 
 namespace pushid {
@@ -28,6 +31,14 @@ struct Push {
   int EndFrame() const { return start_frame + static_cast<int>(force.size()); }
 };
 
+// The hierarchy of a BVH file as it stands at frame 0, so that a motion can be given back in it.
+struct FileSkeleton {
+  BvhSkeleton bvh;             // offsets in the file's lengths and axes
+  std::vector<double> values;  // of all channels at frame 0
+  double metres_per_unit = 1.0;
+  Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
+};
+
 struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
@@ -47,6 +58,9 @@ struct RecordedPerson {
   // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.
   std::vector<std::string> joint_names;
   std::vector<int> joint_parents;
+  // Which of them play the roles of a body; no role where the joints were not asked for.
+  BodyRoles roles;
+  std::optional<FileSkeleton> skeleton;  // of a BVH file, beside its joints
 };
 
 struct Recording {

@@ -1,29 +1,123 @@
 // ident: bodies written.
 #include "ident/bodies/body_files.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "datasets/files/atomic_file.h"
-#include "models/restoration/skeleton_fit.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/bvh_kinematics.h"
 
 namespace pushid {
 namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
-constexpr double kMillimetres = 1000.0;  // per m
 
-// Angles of R = Rz(a) Ry(b) Rx(c), degrees, in the order of the channels.
-Eigen::Vector3d EulerZyx(const Eigen::Matrix3d& r) {
-  const double b = std::asin(std::min(1.0, std::max(-1.0, -r(2, 0))));
-  Eigen::Vector3d angles(0.0, b, 0.0);
-  if (std::abs(r(2, 0)) < 1.0 - 1e-12) {
-    angles[0] = std::atan2(r(1, 0), r(0, 0));
-    angles[2] = std::atan2(r(2, 1), r(2, 2));
-  } else {  // straight up or down: only a - c (or a + c) matters
-    angles[0] = std::atan2(-r(0, 1), r(1, 1));
+// The skeleton's rest as a hierarchy of its own.
+FileSkeleton RestHierarchy(const BodySkeleton& skeleton) {
+  FileSkeleton file;
+  file.metres_per_unit = MetresPer(kUnit);
+  for (int j = 0; j < skeleton.num_joints(); ++j) {
+    BvhJoint joint;
+    joint.name = skeleton.names[j];
+    joint.parent = skeleton.parents[j];
+    if (joint.parent >= 0) {
+      joint.offset =
+          (skeleton.rest.col(j) - skeleton.rest.col(joint.parent)) / file.metres_per_unit;
+    }
+    joint.channels = DefaultBvhChannels(joint.parent < 0);
+    file.bvh.joints.push_back(std::move(joint));
   }
-  return angles * (180.0 / M_PI);
+  file.values.assign(file.bvh.num_channels(), 0.0);
+  return file;
+}
+
+// Gives a joint what it needs to turn (and a root to move) in all three axes; a new channel has the
+// value that changes nothing.
+void AddChannels(bool turns, BvhJoint* joint, std::vector<double>* values) {
+  for (const BvhChannel channel : DefaultBvhChannels(joint->parent < 0)) {
+    if (IsRotation(channel) && !turns) continue;
+    const auto begin = joint->channels.begin(), end = joint->channels.end();
+    if (std::find(begin, end, channel) != end) continue;
+    // Positions stand before rotations, and what a file has keeps its order.
+    const auto first_rotation = std::find_if(begin, end, IsRotation);
+    const auto place = (IsRotation(channel) ? end : first_rotation) - begin;
+    joint->channels.insert(begin + place, channel);
+    values->insert(values->begin() + place,
+                   IsRotation(channel) ? 0.0 : joint->offset[AxisOf(channel)]);
+  }
+}
+
+// Frames of one person in a hierarchy.
+class HierarchyMotion {
+ public:
+  explicit HierarchyMotion(const BodySkeleton& skeleton)
+      : skeleton_(skeleton), file_(skeleton.file ? *skeleton.file : RestHierarchy(skeleton)) {
+    const double* given = file_.values.data();
+    for (int j = 0; j < skeleton.num_joints(); ++j) {
+      BvhJoint& joint = file_.bvh.joints[j];
+      std::vector<double> values(given, given + joint.channels.size());
+      given += joint.channels.size();
+      turns_.push_back(!skeleton.tree.aims[j].empty());
+      AddChannels(turns_.back(), &joint, &values);
+      Eigen::Matrix3d rest = Eigen::Matrix3d::Identity();
+      if (joint.parent >= 0) rest = rest_[joint.parent];
+      RotateByChannels(joint, values.data(), &rest);
+      rest_.push_back(rest);
+      values_.push_back(std::move(values));
+    }
+  }
+
+  BvhMotion Write(const BodyMotion& motion, double dt) {
+    BvhMotion bvh;
+    bvh.length_unit = LengthUnit::kMetre;  // as they stand
+    bvh.frame_time_s = dt;
+    for (const Pose& pose : motion) {
+      const PosedJoints posed = Retarget(skeleton_, pose);
+      for (int j = 0; j < skeleton_.num_joints(); ++j) Append(posed, j, &bvh.values);
+    }
+    bvh.skeleton = std::move(file_.bvh);
+    return bvh;
+  }
+
+ private:
+  void Append(const PosedJoints& posed, int j, std::vector<double>* row) {
+    const BvhJoint& joint = file_.bvh.joints[j];
+    std::vector<double> values = values_[j];
+    if (joint.parent < 0) {
+      const Eigen::Vector3d place =
+          file_.world_from_file.transpose() * posed.positions.col(j) / file_.metres_per_unit;
+      for (size_t c = 0; c < joint.channels.size(); ++c) {
+        if (!IsRotation(joint.channels[c])) values[c] = place[AxisOf(joint.channels[c])];
+      }
+    }
+    if (turns_[j]) {
+      Eigen::Matrix3d local = InFile(posed.rotations[j]) * rest_[j];
+      if (joint.parent >= 0) {
+        local = ((InFile(posed.rotations[joint.parent]) * rest_[joint.parent]).transpose() * local)
+                    .eval();
+      }
+      SetRotationChannels(joint, local, values.data());
+    }
+    row->insert(row->end(), values.begin(), values.end());
+  }
+
+  // A rotation in the world, in the file's axes.
+  Eigen::Matrix3d InFile(const Eigen::Matrix3d& rotation) const {
+    return file_.world_from_file.transpose() * rotation * file_.world_from_file;
+  }
+
+  const BodySkeleton& skeleton_;
+  FileSkeleton file_;
+  std::vector<bool> turns_;
+  std::vector<Eigen::Matrix3d> rest_;        // of the joints at frame 0, file's axes
+  std::vector<std::vector<double>> values_;  // of each joint's channels at frame 0
+};
+
+bool HasEnding(const std::string& path, const std::string& ending) {
+  return path.size() > ending.size() &&
+         EqualsIgnoringCase(std::string_view(path).substr(path.size() - ending.size()), ending);
 }
 
 // "out/motion.bvh" and 2, "X-16": "out/motion_2_X-16.bvh".
@@ -38,48 +132,60 @@ std::string PersonsFile(const std::string& path, int person, const std::string& 
 
 }  // namespace
 
-std::vector<std::string> DefaultJointNames() {
-  return {"Hips",         "Spine",         "Spine1",        "Spine2",     "Neck",
-          "Head",         "RightClavicle", "RightShoulder", "RightElbow", "RightWrist",
-          "LeftClavicle", "LeftShoulder",  "LeftElbow",     "LeftWrist",  "RightHip",
-          "RightKnee",    "RightAnkle",    "RightToe",      "LeftHip",    "LeftKnee",
-          "LeftAnkle",    "LeftToe"};
+BodySkeleton BodyScene::skeleton(int person) const {
+  return skeletons.empty() ? RoleSkeleton(bodies[person].front(), DefaultJointNames())
+                           : skeletons[person];
 }
 
-BvhMotion ToBvh(const BodyMotion& motion, const std::vector<std::string>& joint_names, double dt) {
-  const Pose& rest = motion.front();
-  BvhMotion bvh;
-  bvh.length_unit = kUnit;
-  bvh.frame_time_s = dt;
-  for (int j = 0; j < kBodyJoints; ++j) {
-    BvhJoint joint;
-    joint.name = joint_names[j];
-    joint.parent = kBodyParents[j];
-    if (j > 0) joint.offset = kMillimetres * (rest.col(j) - rest.col(joint.parent));
-    joint.channels = DefaultBvhChannels(j == 0);
-    bvh.skeleton.joints.push_back(std::move(joint));
+BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies) {
+  BodyScene scene;
+  scene.id = recording.pendulum.id;
+  scene.dt = recording.pendulum.scene.dt;
+  scene.subject_ids = recording.pendulum.subject_ids;
+  scene.skeletons = recording.skeletons;
+  scene.bodies = std::move(bodies);
+  return scene;
+}
+
+BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double dt) {
+  return HierarchyMotion(skeleton).Write(motion, dt);
+}
+
+GltfScene ToGltf(const BodyScene& scene) {
+  GltfScene gltf;
+  gltf.name = scene.id;
+  gltf.dt = scene.dt;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    const BodySkeleton skeleton = scene.skeleton(n);
+    GltfPerson person;
+    person.name = scene.subject_ids[n];
+    person.joints = skeleton.names;
+    person.parents = skeleton.parents;
+    person.rest = skeleton.rest.leftCols(skeleton.num_joints());
+    const auto head = std::find(skeleton.roles.begin(), skeleton.roles.end(), kBodyHead);
+    if (head != skeleton.roles.end()) person.head = static_cast<int>(head - skeleton.roles.begin());
+    for (const Pose& pose : scene.bodies[n]) person.frames.push_back(Retarget(skeleton, pose));
+    gltf.people.push_back(std::move(person));
   }
-  for (const Pose& pose : motion) {
-    const PosedSkeleton posed = FitSkeleton(rest, pose);
-    for (int i = 0; i < 3; ++i) bvh.values.push_back(kMillimetres * pose(i, 0));
-    for (int j = 0; j < kBodyJoints; ++j) {
-      const Eigen::Matrix3d local =
-          j == 0
-              ? posed.rotations[0]
-              : Eigen::Matrix3d(posed.rotations[kBodyParents[j]].transpose() * posed.rotations[j]);
-      const Eigen::Vector3d angles = EulerZyx(local);
-      bvh.values.insert(bvh.values.end(), angles.data(), angles.data() + 3);
-    }
-  }
-  return bvh;
+  return gltf;
+}
+
+bool IsBodyFile(const std::string& path) {
+  return HasEnding(path, ".bvh") || HasEnding(path, ".gltf") || HasEnding(path, ".glb");
+}
+
+Result<std::vector<std::string>> WriteBodyFiles(const std::string& path, const BodyScene& scene) {
+  if (!HasEnding(path, ".gltf") && !HasEnding(path, ".glb")) return WriteBodyBvh(path, scene);
+  if (MaybeError error = WriteGltf(path, ToGltf(scene))) return *error;
+  return std::vector<std::string>{path};
 }
 
 Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const BodyScene& scene) {
   std::vector<std::string> files;
   for (int n = 0; n < scene.num_people(); ++n) {
     files.push_back(scene.num_people() == 1 ? path : PersonsFile(path, n, scene.subject_ids[n]));
-    const BvhMotion bvh = ToBvh(scene.bodies[n], scene.joint_names, scene.dt);
-    if (MaybeError error = WriteBvh(files.back(), bvh, kUnit)) return *error;
+    const BvhMotion bvh = ToBvh(scene.skeleton(n), scene.bodies[n], scene.dt);
+    if (MaybeError error = WriteBvh(files.back(), bvh, bvh.length_unit)) return *error;
   }
   return files;
 }
@@ -88,15 +194,18 @@ MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene) {
   AtomicFile file;
   if (MaybeError failed = file.Open(path)) return failed;
   file.Append("frame,time_s,person,subject,joint,x_m,y_m,z_m\n");
-  char row[256];
+  std::vector<BodySkeleton> skeletons;
+  for (int n = 0; n < scene.num_people(); ++n) skeletons.push_back(scene.skeleton(n));
+  char numbers[128];
   for (int t = 0; t < scene.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n) {
-      for (int j = 0; j < kBodyJoints; ++j) {
-        const Eigen::Vector3d p = scene.bodies[n][t].col(j);
-        std::snprintf(row, sizeof row, "%d,%.9g,%d,%s,%s,%.6f,%.6f,%.6f\n", t, t * scene.dt, n,
-                      scene.subject_ids[n].c_str(), scene.joint_names[j].c_str(), p.x(), p.y(),
-                      p.z());
-        file.Append(row);
+      const PosedJoints posed = Retarget(skeletons[n], scene.bodies[n][t]);
+      for (int j = 0; j < skeletons[n].num_joints(); ++j) {
+        const auto p = posed.positions.col(j);
+        std::snprintf(numbers, sizeof numbers, "%d,%.9g,%d,", t, t * scene.dt, n);
+        file.Append(numbers + scene.subject_ids[n] + "," + skeletons[n].names[j]);
+        std::snprintf(numbers, sizeof numbers, ",%.6f,%.6f,%.6f\n", p.x(), p.y(), p.z());
+        file.Append(numbers);
       }
     }
   }
@@ -104,23 +213,32 @@ MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene) {
 }
 
 nlohmann::ordered_json ToJson(const BodyScene& scene) {
+  const BodySkeleton first = scene.skeleton(0);
   nlohmann::ordered_json json = {{"id", scene.id},
                                  {"dt_s", scene.dt},
-                                 {"joint_names", scene.joint_names},
-                                 {"joint_parents", kBodyParents}};
+                                 {"joint_names", first.names},
+                                 {"joint_parents", first.parents}};
   json["people"] = nlohmann::ordered_json::array();
   for (int n = 0; n < scene.num_people(); ++n) {
+    const BodySkeleton skeleton = scene.skeleton(n);
+    nlohmann::ordered_json person = {{"subject", scene.subject_ids[n]}};
+    if (skeleton.names != first.names || skeleton.parents != first.parents) {
+      person["joint_names"] = skeleton.names;
+      person["joint_parents"] = skeleton.parents;
+    }
     nlohmann::ordered_json frames = nlohmann::ordered_json::array();
     for (const Pose& pose : scene.bodies[n]) {
+      const PosedJoints posed = Retarget(skeleton, pose);
       nlohmann::ordered_json joints = nlohmann::ordered_json::array();
-      for (int j = 0; j < kBodyJoints; ++j) {
+      for (int j = 0; j < skeleton.num_joints(); ++j) {
         nlohmann::ordered_json place = nlohmann::ordered_json::array();
-        for (int i = 0; i < 3; ++i) place.push_back(std::round(pose(i, j) * 1e5) / 1e5);
+        for (int i = 0; i < 3; ++i) place.push_back(std::round(posed.positions(i, j) * 1e5) / 1e5);
         joints.push_back(place);
       }
       frames.push_back(joints);
     }
-    json["people"].push_back({{"subject", scene.subject_ids[n]}, {"joints_m", frames}});
+    person["joints_m"] = frames;
+    json["people"].push_back(person);
   }
   return json;
 }

@@ -1,4 +1,6 @@
-// ident: moving bodies as files: BVH for animation programs, CSV and JSON of the joints.
+// ident: moving bodies as files: BVH and glTF for animation programs, CSV and JSON of the joints.
+//
+// Every person moves in the skeleton that they came with (body_skeleton.h), joint by joint.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,6 +9,8 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/bodies/gltf_file.h"
 #include "models/restoration/body.h"
 
 namespace pushid {
@@ -16,30 +20,44 @@ struct BodyScene {
   std::string id;
   double dt = 1.0 / 60.0;                // s
   std::vector<std::string> subject_ids;  // one per person
-  std::vector<std::string> joint_names;  // 22
-  std::vector<BodyMotion> bodies;        // [person][frame]
+  std::vector<BodySkeleton> skeletons;   // one per person; empty: the 22 roles
+  std::vector<BodyMotion> bodies;        // [person][frame], by role
 
+  BodySkeleton skeleton(int person) const;
   int num_people() const { return static_cast<int>(bodies.size()); }
   int num_frames() const { return bodies.empty() ? 0 : static_cast<int>(bodies[0].size()); }
 };
 
-// "Hips", "Spine", ...: where a recording gives no names.
-std::vector<std::string> DefaultJointNames();
+// Of the recording's people, with other motions of theirs.
+BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies);
 
-// A hierarchy whose rest pose is the motion's first: offsets are differences of joints there, all
-// rotations zero. World axes (z up, x forward), millimetres. Positions that no rotation of these
-// bones can reach are approached as skeleton_fit.h does.
-BvhMotion ToBvh(const BodyMotion& motion, const std::vector<std::string>& joint_names, double dt);
+// The hierarchy of the BVH file that the person came from: its joints in their order, offsets,
+// channels, axes and lengths; a joint whose angles change gets the rotation channels that it lacks,
+// and joints without a role keep their angles of frame 0. Without such a file the 22 roles, world
+// axes (z up, x forward), millimetres: offsets are differences of joints in the rest, where all
+// rotations are zero. Positions that no rotation of these bones can reach are approached as
+// skeleton_fit.h does.
+BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double dt);
+
+// Everybody in one scene, under the joints' names.
+GltfScene ToGltf(const BodyScene& scene);
 
 // One file per person: `path` itself for one person, "motion_0_ID.bvh", ... beside it for more.
 // Returns the files' names.
 Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const BodyScene& scene);
 
+// Whether a file's name ends as those that hold bodies: .bvh, .gltf or .glb.
+bool IsBodyFile(const std::string& path);
+
+// By the ending: .gltf and .glb hold everybody in one file (gltf_file.h), all others are BVH.
+Result<std::vector<std::string>> WriteBodyFiles(const std::string& path, const BodyScene& scene);
+
 // frame,time_s,person,subject,joint,x_m,y_m,z_m
 MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene);
 
 // {"id", "dt_s", "joint_names", "joint_parents", "people": [{"subject", "joints_m": [frame][joint]
-// [x, y, z]}]}; numbers to a hundredth of a millimetre.
+// [x, y, z]}]}; numbers to a hundredth of a millimetre. A person whose joints are not those of the
+// first has joint_names and joint_parents too.
 nlohmann::ordered_json ToJson(const BodyScene& scene);
 
 }  // namespace pushid

@@ -3,21 +3,30 @@
 
 #include <algorithm>
 
+#include "datasets/files/list_of_names.h"
 #include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
 namespace {
 
 MaybeError CheckSkeleton(const Recording& recording, const RecordedPerson& person) {
-  const bool same =
-      person.joint_parents.size() == kBodyParents.size() &&
-      std::equal(kBodyParents.begin(), kBodyParents.end(), person.joint_parents.begin());
-  if (same) return std::nullopt;
-  return Error{"recording " + recording.id + ": the skeleton has " +
-                   std::to_string(person.joint_parents.size()) +
-                   " joints; restoring bodies needs the 22 joints of the published recordings in "
-                   "their order (hip, spine, right arm, left arm, right leg, left leg)",
+  const std::vector<int> unfilled = UnfilledRoles(person.roles);
+  if (unfilled.empty()) return std::nullopt;
+  return Error{"recording " + recording.id +
+                   ": a body needs joints that were not recognised: " + RoleList(unfilled) +
+                   "; name them in the manifest: \"joints\": {\"" + RoleName(unfilled.front()) +
+                   "\": ...}; the file has " + ListOfNames(person.joint_names),
                person.file};
+}
+
+// The file's own names, where a role is one of its joints.
+std::vector<std::string> RoleJointNames(const RecordedPerson& person) {
+  std::vector<std::string> names = DefaultJointNames();
+  for (int role = 0; role < kBodyJoints; ++role) {
+    const int joint = person.roles.Single(role);
+    if (joint >= 0 && person.skeleton) names[role] = person.joint_names[joint];
+  }
+  return names;
 }
 
 std::vector<RestorationInput> People(const BodyRecording& recording) {
@@ -55,11 +64,12 @@ Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapp
     if (MaybeError error = CheckSkeleton(recording, person)) return *error;
     BodyMotion motion(person.joints.size());
     for (size_t t = 0; t < motion.size(); ++t) {
-      for (int j = 0; j < kBodyJoints; ++j) motion[t].col(j) = person.joints[t][j];
+      motion[t] = PoseOf(person.roles, person.joints[t]);
     }
     result.bodies.push_back(std::move(motion));
+    result.skeletons.push_back(SkeletonOf(person));
   }
-  result.joint_names = recording.people.front().joint_names;
+  result.joint_names = RoleJointNames(recording.people.front());
   return result;
 }
 

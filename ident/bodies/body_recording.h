@@ -6,6 +6,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/bodies/body_skeleton.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/hip_group_metrics.h"
 #include "models/restoration/restoration.h"
@@ -15,15 +16,16 @@ namespace pushid {
 
 struct BodyRecording {
   PendulumRecording pendulum;
-  std::vector<BodyMotion> bodies;        // one per person
-  std::vector<std::string> joint_names;  // of the first person
+  std::vector<BodyMotion> bodies;        // one per person, by role
+  std::vector<std::string> joint_names;  // of the 22 roles, as the first person's file has them
+  std::vector<BodySkeleton> skeletons;   // one per person, of the file
 
   int num_frames() const { return pendulum.num_frames(); }
   int num_people() const { return pendulum.num_people(); }
 };
 
-// The recording must have been read with all joints. Errors: a skeleton that is not the 22 joints
-// of body.h.
+// The recording must have been read with all joints. Errors: roles that no joint of a skeleton
+// plays and that its neighbours do not fill (datasets/manifest/body_roles.h).
 Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping);
 Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
                                                       SkeletonMapping mapping);

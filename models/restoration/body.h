@@ -18,10 +18,16 @@ inline constexpr std::array<int, kBodyJoints> kBodyParents = {
 
 enum BodyJoint {
   kBodyHip = 0,
+  kLowerSpine = 1,
+  kMiddleSpine = 2,
   kUpperSpine = 3,
+  kNeck = 4,
   kBodyHead = 5,
+  kRightClavicle = 6,
   kRightShoulder = 7,
+  kRightElbow = 8,
   kRightWrist = 9,
+  kLeftClavicle = 10,
   kLeftShoulder = 11,
   kLeftWrist = 13,
   kRightHip = 14,

@@ -10,15 +10,16 @@
 namespace pushid {
 namespace {
 
-using Children = std::array<std::vector<int>, kBodyJoints>;
-
-const Children& BodyChildren() {
-  static const Children children = [] {
-    Children lists;
-    for (int j = 1; j < kBodyJoints; ++j) lists[kBodyParents[j]].push_back(j);
-    return lists;
+// Every joint of the body turns towards its children.
+const JointAims& BodyTree() {
+  static const JointAims body = [] {
+    JointAims tree;
+    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
+    tree.aims.resize(kBodyJoints);
+    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
+    return tree;
   }();
-  return children;
+  return body;
 }
 
 // A stretched knee has no direction to bend in, hence never quite stretched.
@@ -27,33 +28,44 @@ constexpr double kStraight = 1e-4;  // m
 
 }  // namespace
 
-PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted) {
-  PosedSkeleton posed;
-  posed.positions.col(0) = wanted.col(0);
+FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
+                   const Eigen::Matrix3Xd& wanted) {
+  const int joints = static_cast<int>(tree.parents.size());
+  FittedTree posed{Eigen::Matrix3Xd(3, joints), std::vector<Eigen::Matrix3d>(joints)};
   std::vector<Eigen::Vector3d> from, to;
-  for (int j = 0; j < kBodyJoints; ++j) {
-    const std::vector<int>& children = BodyChildren()[j];
-    const Eigen::Matrix3d parent =
-        j == 0 ? Eigen::Matrix3d::Identity() : posed.rotations[kBodyParents[j]];
+  for (int j = 0; j < joints; ++j) {
+    const int above = tree.parents[j];
+    const Eigen::Matrix3d parent = above < 0 ? Eigen::Matrix3d::Identity() : posed.rotations[above];
+    if (above < 0) {
+      posed.positions.col(j) = wanted.col(j);
+    } else {
+      posed.positions.col(j) =
+          posed.positions.col(above) + parent * (rest.col(j) - rest.col(above));
+    }
+    const std::vector<int>& aims = tree.aims[j];
     Eigen::Matrix3d& rotation = posed.rotations[j];
     rotation = parent;
-    if (children.size() == 1) {
-      const Eigen::Vector3d offset = rest.col(children[0]) - rest.col(j);
-      const Eigen::Vector3d aim = wanted.col(children[0]) - posed.positions.col(j);
+    if (aims.size() == 1) {
+      const Eigen::Vector3d offset = rest.col(aims[0]) - rest.col(j);
+      const Eigen::Vector3d aim = wanted.col(aims[0]) - posed.positions.col(j);
       rotation = SwingBetween(parent * offset, aim) * parent;
-    } else if (children.size() > 1) {
+    } else if (aims.size() > 1) {
       from.clear(), to.clear();
-      for (int child : children) {
-        from.push_back(rest.col(child) - rest.col(j));
-        to.push_back(wanted.col(child) - posed.positions.col(j));
+      for (int aim : aims) {
+        from.push_back(rest.col(aim) - rest.col(j));
+        to.push_back(wanted.col(aim) - posed.positions.col(j));
       }
       rotation = FitRotation(from, to);
     }
-    for (int child : children) {
-      posed.positions.col(child) =
-          posed.positions.col(j) + rotation * (rest.col(child) - rest.col(j));
-    }
   }
+  return posed;
+}
+
+PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted) {
+  const FittedTree fitted = FitTree(BodyTree(), rest, wanted);
+  PosedSkeleton posed;
+  posed.positions = fitted.positions;
+  std::copy(fitted.rotations.begin(), fitted.rotations.end(), posed.rotations.begin());
   return posed;
 }
 

@@ -11,10 +11,25 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "models/restoration/body.h"
 
 namespace pushid {
+
+// The same for any tree of joints, a column each. Every parent precedes its children, -1 is a root,
+// which goes where it is wanted; a joint turns towards its `aims`, joints further out, and without
+// any it goes with its parent.
+struct JointAims {
+  std::vector<int> parents;
+  std::vector<std::vector<int>> aims;
+};
+struct FittedTree {
+  Eigen::Matrix3Xd positions;
+  std::vector<Eigen::Matrix3d> rotations;  // world, against the rest
+};
+FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
+                   const Eigen::Matrix3Xd& wanted);
 
 struct PosedSkeleton {
   Pose positions;

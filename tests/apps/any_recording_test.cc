@@ -108,6 +108,29 @@ TEST_F(AnyRecordingTest, TheFitIsThatOfTheBvhFiles) {
   }
 }
 
+// Four markers are a pendulum and no body: it is shown alone, and bodies that are asked for are
+// refused by the names of what they lack.
+TEST_F(AnyRecordingTest, PendulumsAloneAreShown) {
+  const std::string model = "--model=" + FitModel();
+  const std::vector<std::string> arguments = {model, As(MotionFormat::kTrc, ".trc"), "--id=" + id_};
+  const auto with = [&arguments](std::vector<std::string> more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return more;
+  };
+  const AppRun shown = RunApp("pushid-animate", with({"--out=" + Path("m.html")}));
+  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  EXPECT_TRUE(Contains(shown.err, "right_knee")) << shown.err;
+  EXPECT_TRUE(Contains(shown.err, "pendulums alone are shown"));
+  EXPECT_TRUE(Contains(ReadText(Path("m.html")), "<html"));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-animate", with({"--restoration=rigid", "--out=" + Path("n.html")})),
+              {"right_knee", "\"joints\""}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-predict", with({"--restoration=rigid", "--out=" + Path("m.glb")})),
+              {"right_knee", "WL, WR, AL, AR"}));
+  EXPECT_EQ(RunApp("pushid-predict", with({"--out=" + Path("m.csv")})).exit_code, 0);
+}
+
 TEST_F(AnyRecordingTest, FilterAndRateAreSaid) {
   const AppRun run = RunApp("pushid-fit", {Recordings(), "--lowpass_hz=10", "--resample_fps=30",
                                            "--model_out=" + Path("m.json")});

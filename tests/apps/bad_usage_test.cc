@@ -47,6 +47,8 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--setting=groups"}, {"--setting=groups", "more than one person"}},
       {{"--ids=nobody"}, {"'nobody'", "manifest.json"}},
       {{"--length_unit=inch"}, {"--length_unit", "'inch'", "mm, cm or m"}},
+      {{"--length_scale=-1"}, {"--length_scale is -1", "metres of one file unit"}},
+      {{"--length_scale=0.01", "--length_unit=cm"}, {"--length_scale", "beside --length_unit"}},
       {{"--horizons=8,x"}, {"--horizons", "'x'"}},
       {{"--horizons=99999999999999"}, {"--horizons", "'99999999999999'"}},
       {{"--sigma_hip=0"}, {"--sigma_hip", "positive"}},

@@ -141,6 +141,33 @@ TEST_F(LoadRecordingsTest, AxesAreTurned) {
             1e-12);
 }
 
+// Metres in one of the file's lengths, where that is no unit; the nearest that is said wins, be it
+// a unit or a scale.
+TEST_F(LoadRecordingsTest, AScaleInsteadOfAUnit) {
+  BvhMotion odd = Walker(20);
+  for (std::size_t i = 0; i < odd.values.size(); ++i) {
+    if (i % 6 < 3) odd.values[i] /= 0.0564;
+  }
+  WriteBvhFile("a.bvh", odd, LengthUnit::kMetre);
+  EXPECT_TRUE(Contains(Message(), "--length_scale"));
+  entry().length_scale = 0.0564;
+  auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_NEAR(loaded.value()[0].people[0].hip[0].z(), 0.95, 1e-12);
+  entry().length_scale.reset();
+  manifest_.length_scale = 0.0564;
+  EXPECT_TRUE(Load().ok());
+  entry().length_unit = LengthUnit::kMillimetre;
+  EXPECT_TRUE(Contains(Message(), "read as mm"));
+  LoadOptions options;
+  options.length_scale = 0.0564;
+  loaded = Load(options);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_NEAR(loaded.value()[0].people[0].left_ankle[0].z(), 0.08, 1e-12);
+  options.length_scale = 0.5;
+  EXPECT_TRUE(Contains(Message(options), "read as 0.5 m each"));
+}
+
 TEST_F(LoadRecordingsTest, JointsByNameAndIndex) {
   BvhMotion motion = Walker(20);
   motion.skeleton.joints[1].name = "A";

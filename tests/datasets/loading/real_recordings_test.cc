@@ -46,6 +46,28 @@ TEST(RealRecordings, SettingSingle) {
   EXPECT_EQ(loaded.value()[0].pushes[0].force[1][0], 13.962787);
 }
 
+// A body is those joints themselves, to the last bit, and nothing of it is filled.
+TEST(RealRecordings, TheirJointsAreTheBodys) {
+  if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
+  LoadOptions options;
+  options.keep_all_joints = true;
+  options.setting = "single,row_1";
+  std::vector<std::string> warnings;
+  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", options, &warnings);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_TRUE(warnings.empty()) << warnings[0];
+  for (const Recording& recording : loaded.value()) {
+    for (const RecordedPerson& person : recording.people) {
+      EXPECT_TRUE(UnfilledRoles(person.roles).empty() && FilledRoles(person.roles).empty());
+      for (const std::vector<Eigen::Vector3d>& joints : person.joints) {
+        ASSERT_EQ(joints.size(), 22u);
+        const Pose pose = PoseOf(person.roles, joints);
+        for (int j = 0; j < kBodyJoints; ++j) ASSERT_EQ(pose.col(j), joints[j]);
+      }
+    }
+  }
+}
+
 // Reading and writing a real file changes no value, and writing twice changes no byte.
 class RealRoundTrip : public TempDirTest {};
 

@@ -112,6 +112,8 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   manifest.recordings[0].push_csv = "";
   manifest.recordings[0].initial_velocity = InitialVelocity::kEstimated;
   manifest.recordings[0].joints.hip = JointReference{"Root", -1};
+  manifest.recordings[0].joints.Set(kLeftKnee, JointReference{"LKneeJC", -1});
+  manifest.recordings[0].length_scale = 0.0564;
   manifest.recordings[1].joints = {};
   manifest.recordings[1].up = "z";
   manifest.recordings[1].forward = "x";
@@ -130,6 +132,10 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   ASSERT_TRUE(again.ok()) << again.error().ToString();
   EXPECT_EQ(again.value().recordings[0].initial_velocity, InitialVelocity::kEstimated);
   EXPECT_EQ(again.value().recordings[0].joints.hip->name, "Root");
+  EXPECT_EQ(json["recordings"][0]["joints"]["left_knee"], "LKneeJC");
+  EXPECT_EQ(again.value().recordings[0].joints.Of(kLeftKnee)->name, "LKneeJC");
+  EXPECT_FALSE(again.value().recordings[0].joints.Of(kRightKnee));
+  EXPECT_EQ(again.value().recordings[0].length_scale, 0.0564);
   EXPECT_FALSE(again.value().recordings[1].joints.hip);
   EXPECT_EQ(again.value().recordings[1].up, "z");
   EXPECT_EQ(again.value().recordings[1].pushes[0].start_frame, 13);
@@ -213,6 +219,12 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
       {"\"up\": \"+y\"", "\"up\": \"up\"", ":30:10: ", "recording 'b': up is 'up', not an axis"},
       {"\"up\": \"+y\"", "\"up\": \"z\"", ":30:10: ", "same axis"},
       {"\"length_unit\": \"m\"", "\"length_unit\": \"km\"", ":32:19: ", "length_unit is 'km'"},
+      {"\"length_unit\": \"m\"", "\"length_scale\": -1",
+       ":32:20: ", "length_scale is -1; it must be the metres of one file unit"},
+      {"\"length_unit\": \"m\"", "\"length_unit\": \"m\", \"length_scale\": 0.0564",
+       ":32:40: ", "length_scale is given beside length_unit"},
+      {"\"left_ankle\": 3", "\"left_anckle\": 3",
+       ":29:", "left_anckle is not known; there may be hip, lower_spine,"},
       {"{\"person\": 0", "{\"person\": 2", ":33:26: ", "push 0: person is '2'"},
       {"\"csv\": \"push/b.csv\", ", "", ":33:15: ", "push 0: csv is missing"},
       {"\"start_frame\": 12", "\"start_frame\": -1", ":33:", "start_frame is '-1'"},
@@ -246,6 +258,9 @@ TEST_F(ManifestTest, NothingInIt) {
   EXPECT_TRUE(Contains(message("[]"), "must be an object"));
   EXPECT_TRUE(Contains(message("{\"recordings\": {}}"), "recordings must be a list"));
   EXPECT_TRUE(Contains(message("{\"recordings\": [5]}"), "recording 0: must be an object"));
+  EXPECT_TRUE(Contains(message("{\"units\": {\"bvh_length\": \"mm\"}, \"length_scale\": 0.05, "
+                               "\"recordings\": [{}]}"),
+                       "length_scale is given beside units.bvh_length"));
   EXPECT_TRUE(Contains(ReadManifest(Path("none.json")).error().ToString(), "no such file"));
 }
 

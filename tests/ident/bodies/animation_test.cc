@@ -130,7 +130,6 @@ TEST_F(AssimpTest, AnIndependentReaderTakesTheBvh) {
   BodyScene scene;
   scene.id = "x";
   scene.subject_ids = {"s"};
-  scene.joint_names = DefaultJointNames();
   scene.bodies = {RigidRestoration().Restore({MovingPerson(StandingPose(), 80, 20)})[0]};
   ASSERT_TRUE(WriteBodyBvh(Path("m.bvh"), scene).ok());
   const std::string command =

@@ -142,7 +142,6 @@ TEST_F(BodyFilesTest, BvhHoldsTheMotion) {
   BodyScene scene;
   scene.id = "x";
   scene.subject_ids = {"s"};
-  scene.joint_names = DefaultJointNames();
   scene.bodies = {motion};
   const auto files = WriteBodyBvh(Path("m.bvh"), scene);
   ASSERT_TRUE(files.ok()) << files.error().ToString();
@@ -162,7 +161,6 @@ TEST_F(BodyFilesTest, AFilePerPersonAndRowsAndJson) {
   BodyScene scene;
   scene.id = "x";
   scene.subject_ids = {"s", "t/u"};
-  scene.joint_names = DefaultJointNames();
   scene.bodies = {BodyMotion(3, StandingPose()),
                   BodyMotion(3, Placed(StandingPose(), 1.0, {1, 0, 0}))};
   const auto files = WriteBodyBvh(Path("m.bvh"), scene);

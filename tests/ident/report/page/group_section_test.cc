@@ -22,6 +22,7 @@ Recording Walkers(int people) {
     person.mass_kg = 80.0;
     person.joint_names = DefaultJointNames();
     person.joint_parents.assign(kBodyParents.begin(), kBodyParents.end());
+    for (int role = 0; role < kBodyJoints; ++role) person.roles.joints[role] = {role};
     for (int t = 0; t < kFrames; ++t) {
       const double way = 0.015 * std::max(0, t - 4 - 8 * n);
       const Pose pose = Placed(StandingPose(), 0.0, {0.6 * n + way, 0.0, 0.0});
@@ -65,7 +66,7 @@ TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
 
 TEST(GroupSectionTest, WithoutBodiesOnsetsAreLeft) {
   Recording group = Walkers(2);
-  for (RecordedPerson& person : group.people) person.joint_parents.clear();
+  for (RecordedPerson& person : group.people) person.roles = {};
   const ReportSection section = GroupSection({Seen(group)});
   ASSERT_EQ(section.tables.size(), 1u);
   EXPECT_EQ(section.tables[0].table.rows()[1][1], "none");
