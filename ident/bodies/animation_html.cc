@@ -24,7 +24,7 @@ const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
  for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
   for(let k=0;k<2;k++){lo[k]=Math.min(lo[k],f[i+k]);hi[k]=Math.max(hi[k],f[i+k]);}}
  if(lo[0]>hi[0])return;
- centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1300,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);
+ centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1600,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);
  span=[hi[0]-lo[0]+300,hi[1]-lo[1]+300];const first=data.people.find(p=>pushed.has(p.name))||data.people[0];origin=hip(first,0);})();
 function project(x,y,z){x-=centre[0];y-=centre[1];z-=centre[2];
  const c=Math.cos(turn),s=Math.sin(turn),a=c*x-s*y,b=s*x+c*y,e=Math.cos(tilt),g=Math.sin(tilt);

@@ -180,7 +180,7 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
   SvgPicture svg(width, kStripHeight, animation.title);
   svg.Text(kSide, 18, animation.title, "ink bold");
   DrawLegend(legend, kSide, 38, &svg);
-  svg.Line(0, floor, width, floor, "axis");
+  svg.Line(0, floor, panel * poses + kSide, floor, "axis");
   const std::vector<std::string> whats = WhatsOf(animation);
   const std::vector<int> frames = FramesByMotion(animation, poses);
   for (int i = 0; i < poses; ++i) {

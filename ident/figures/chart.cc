@@ -115,7 +115,7 @@ class Panel {
     for (const ChartLane& lane : chart_.lanes) {
       svg_.Line(left_, y + kLane - 3, right_, y + kLane - 3, "grid");
       for (const auto& [from, to] : lane.bars) {
-        svg_.Rect({x_(from), y + 2, x_(to) - x_(from), kLane - 5}, lane.look, lane.name);
+        svg_.Rect({x_(from), y + 2, x_(to) - x_(from), kLane - 5}, lane.look);
       }
       svg_.Text(left_ - 5, y + kLane - 1.5, lane.name, "faint small end");
       y += kLane;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kHigh = 22, kTop = 84;
 constexpr size_t kFewColumns = 12;
+constexpr double kLeastShare = 0.01;  // of the strongest colour, that is drawn
 
 // The name turned upwards would need another anchor; long names are cut instead.
 std::string Short(const std::string& name, size_t most) {
@@ -46,10 +47,12 @@ std::string DrawHeatMap(const HeatMap& map) {
       const double value = map.values[i][j];
       const double x = left + wide * static_cast<double>(j);
       const double share = std::clamp(std::abs(value) / map.full, 0.0, 1.0);
-      svg.Rect({x + 1, y + 1, wide - 2, kHigh - 2},
-               std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
-                   ";fill-opacity:" + SvgNumber(0.85 * share),
-               map.rows[i] + ", " + map.columns[j] + ": " + Rounded(value, 3));
+      const bool seen = share >= kLeastShare;  // most cells of a large map are paper
+      if (seen)
+        svg.Rect({x + 1, y + 1, wide - 2, kHigh - 2},
+                 std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
+                     ";fill-opacity:" + SvgNumber(0.85 * share),
+                 map.rows[i] + ", " + map.columns[j] + ": " + Rounded(value, 3));
       svg.Text(x + 0.5 * wide, y + 15, SvgNumber(value), "ink small middle");
     }
   }

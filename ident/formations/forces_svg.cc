@@ -32,9 +32,7 @@ std::string PartColour(ForcePart part) {
   return found == colours.end() ? "#999999;stroke-dasharray:2 2" : found->second;
 }
 
-std::string PartLook(ForcePart part) {
-  return "fill:none;stroke-width:1.5;stroke:" + PartColour(part);
-}
+std::string PartLook(ForcePart part) { return "stroke-width:1.5;stroke:" + PartColour(part); }
 
 constexpr char kNetLook[] = "ink net";
 constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up

@@ -12,7 +12,7 @@ namespace pushid {
 namespace {
 
 // Skeletons weigh: many of them are drawn more seldom.
-constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 2.0 / 15.0;
+constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 1.0 / 6.0;
 constexpr int kManySkeletons = 100;
 
 class Track {

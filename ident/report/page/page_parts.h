@@ -116,6 +116,12 @@ inline constexpr char kPageScript[] = R"js(
     return [width / 2 + recording.scale * across,
             height - 40 - recording.scale * (point[2] + tilt * depth)];
   }
+  // Between samples, where they lie far apart.
+  function at(samples, k) {
+    const here = samples[Math.floor(k)], next = samples[Math.floor(k) + 1], share = k % 1;
+    if (!here || !next || !share) return here;
+    return here.map((p, n) => p.map((v, axis) => v + share * (next[n][axis] - v)));
+  }
   function line(a, b, look) {
     return `<line class="${look}" x1="${a[0].toFixed(1)}" y1="${a[1].toFixed(1)}" ` +
            `x2="${b[0].toFixed(1)}" y2="${b[1].toFixed(1)}"/>`;
@@ -139,7 +145,7 @@ inline constexpr char kPageScript[] = R"js(
       const x = recording.origin[0] + m, y = recording.origin[1];
       const near = project(recording, [x, y - 0.5, 0]), far = project(recording, [x, y + 0.5, 0]);
       if (Math.min(near[0], far[0]) < 20 || Math.max(near[0], far[0]) > width - 20) continue;
-      shapes += line(near, far, 'g') + words([near[0], near[1] + 14], m + ' m', 'faint small middle');
+      shapes += line(near, far, 'g') + words([near[0], near[1] + 14], String(m).replace('-', '\u2212') + ' m', 'faint small middle');
     }
     return shapes;
   }
@@ -166,8 +172,9 @@ inline constexpr char kPageScript[] = R"js(
                  words([box.x + 8, box.y + 15], 'from above', 'faint small');
     recording.people.forEach((person, n) => {
       for (const [samples, look] of [[person.measured, 'm'], [person.predicted, 'p']]) {
-        if (!samples[k]) continue;
-        const cart = place(samples[k][0]), hip = place(samples[k][1]);
+        const sample = at(samples, k);
+        if (!sample) continue;
+        const cart = place(sample[0]), hip = place(sample[1]);
         shapes += line(cart, hip, look) + disc(cart, 4, look);
         if (recording.pushed.has(n) && look === 'm') shapes += disc(cart, 7, 'ring-push');
       }
@@ -178,19 +185,19 @@ inline constexpr char kPageScript[] = R"js(
     const recording = open(data[list.value]), k = Number(time.value);
     let shapes = ground(recording);
     recording.people.forEach((person, n) => {
-      if (person.skeleton[k]) {
-        for (const [a, b] of person.bones) {
-          shapes += line(project(recording, person.skeleton[k][a]),
-                         project(recording, person.skeleton[k][b]), 'b');
-        }
+      const skeleton = at(person.skeleton, k), measured = at(person.measured, k);
+      const predicted = at(person.predicted, k), sample = Math.floor(k);
+      for (const [a, b] of skeleton ? person.bones : []) {
+        shapes += line(project(recording, skeleton[a]), project(recording, skeleton[b]), 'b');
       }
-      if (person.measured[k]) shapes += pendulum(recording, person.measured[k], 'm');
-      if (person.predicted[k]) shapes += pendulum(recording, person.predicted[k], 'p');
-      const hip = person.measured[k] && person.measured[k][1];
-      if (!hip) return;
+      if (measured) shapes += pendulum(recording, measured, 'm');
+      if (predicted) shapes += pendulum(recording, predicted, 'p');
+      if (!measured) return;
+      const hip = measured[1];
       if (recording.pushed.has(n)) shapes += disc(project(recording, hip), 13, 'ring-push');
       for (const [who, start, force] of recording.pushes) {
-        if (who === n && force[k - start]) shapes += arrow(recording, hip, force[k - start]);
+        if (who !== n || !force[sample - start]) continue;
+        shapes += arrow(recording, hip, force[sample - start]);
       }
       const head = project(recording, [hip[0], hip[1], recording.top]);
       if (recording.people.length > 1) shapes += words([head[0], head[1] - 6 - 12 * (n % 2)], person.name, 'ink small middle');
@@ -201,6 +208,7 @@ inline constexpr char kPageScript[] = R"js(
     time.setAttribute('aria-valuetext', clock.textContent);
   }
   function choose() {
+    time.step = data[list.value].step > 0.1 ? 0.25 : 1;
     time.max = open(data[list.value]).people[0].measured.length - 1;
     time.value = 0;
     draw();
@@ -209,7 +217,7 @@ inline constexpr char kPageScript[] = R"js(
   function tick(now) {
     if (started === null) return;
     const recording = data[list.value];
-    const k = started.sample + Math.floor((now - started.now) / 1000 / recording.step);
+    const k = started.sample + (now - started.now) / 1000 / recording.step;
     time.value = Math.min(k, time.max);
     draw();
     if (k >= time.max) stop(); else requestAnimationFrame(tick);
