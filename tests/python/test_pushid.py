@@ -207,7 +207,7 @@ def test_profile_bootstrap_crossvalidation(made, result):
     assert "mu" in result.profile("mu")
     assert result.bootstrap(9)["replicas"] == 9
     scores = pushid.crossvalidate(made[0], {"pd": {"preset": "ldp"}}, folds=2)
-    assert [s["predictor"] for s in scores] == ["model", "pd", "static", "constant velocity"]
+    assert [s["name"] for s in scores] == ["model", "pd", "static", "constant velocity"]
 
 
 def test_report_is_a_page(result, tmp_path):
