@@ -1,0 +1,68 @@
+// apps: what the parts of the Python module share.
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/fit.h"
+
+namespace pushid {
+
+namespace py = pybind11;
+
+// What went wrong, by whose fault: the data's, the caller's, the fit's. Python sees DataError,
+// UsageError and FitError with message, file and line.
+enum class Fault { kData, kUsage, kFit };
+[[noreturn]] void Raise(Fault fault, const Error& error);
+
+template <typename T>
+T Unwrapped(Result<T> result, Fault fault) {
+  if (!result.ok()) Raise(fault, result.error());
+  return std::move(result).value();
+}
+inline void Check(const MaybeError& error, Fault fault) {
+  if (error) Raise(fault, *error);
+}
+
+// A fit's progress: looks for signals, so that Ctrl-C ends it, and tells `callable` (phase,
+// iteration, cost). Called without the GIL.
+SolveProgress ProgressOf(const py::object& callable);
+
+// Recordings are shared, so that results and arrays outlive the list they came from.
+using SharedRecording = std::shared_ptr<const Recording>;
+std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings);
+std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings,
+                                         SkeletonMapping mapping);
+
+using Array = py::array_t<double>;
+// paths[person][frame] as (frames, people, 3), read-only.
+Array PathsArray(const std::vector<std::vector<Vector3<double>>>& paths);
+// value(frame, person) of so many numbers, as (frames, people, size), read-only.
+template <typename Value>
+Array TableArray(int frames, int people, int size, Value value) {
+  Array array({frames, people, size});
+  auto cells = array.mutable_unchecked<3>();
+  for (int t = 0; t < frames; ++t) {
+    for (int n = 0; n < people; ++n) {
+      const auto row = value(t, n);
+      for (int i = 0; i < size; ++i) cells(t, n, i) = row[i];
+    }
+  }
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+// A document as Python has it.
+py::object FromJson(const nlohmann::ordered_json& json);
+
+void BindRecordings(py::module_* module);
+void BindFits(py::module_* module);
+void BindPredictions(py::module_* module);
+
+}  // namespace pushid

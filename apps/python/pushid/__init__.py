@@ -1,0 +1,18 @@
+"""pushid: friction, balance gains and the way of a push, identified from recordings of pushed people.
+
+    import pushid
+    recordings = pushid.read("manifest.json", setting="single")
+    result = pushid.fit(recordings)
+    print(result["mu"].value, result["mu"].interval)
+    result.report("report.html")
+
+World: z up, x forward (the push's direction), y left; m, s, N, rad. Arrays that come out are read-only.
+"""
+from ._pushid import DataError, FitError, UsageError
+from ._pushid import version as __version__
+from ._recordings import Recording, Recordings, estimate_push, read, simulate
+from ._results import OnlinePredictor, Restoration, Result, crossvalidate, fit, load, options, simulate_formation
+
+__all__ = ["DataError", "FitError", "UsageError", "Recording", "Recordings", "Result", "OnlinePredictor",
+           "Restoration", "crossvalidate", "estimate_push", "fit", "load", "options", "read", "simulate",
+           "simulate_formation"]

@@ -1,0 +1,69 @@
+"""Pictures by matplotlib, of the numbers that results hold."""
+import html
+
+
+def _axes(axes):
+    if axes is not None:
+        return axes
+    import matplotlib.pyplot
+    return matplotlib.pyplot.subplots()[1]
+
+
+def _free(result):
+    return [result[name] for name in result.names if not result[name].fixed]
+
+
+def intervals(result, axes=None):
+    """Each free parameter with its 95 % interval, over its value."""
+    axes = _axes(axes)
+    shown = [p for p in _free(result) if p.interval and p.value != 0]
+    for row, p in enumerate(shown):
+        low, high = sorted(end / p.value for end in p.interval)
+        axes.plot([low, high], [row, row], "-", color="C0" if p.status == "identified" else "C1")
+        axes.plot([1], [row], "o", color="C0" if p.status == "identified" else "C1")
+    axes.set_yticks(range(len(shown)), [f"{p.name} {p.value:.4g} {p.unit}" for p in shown])
+    axes.invert_yaxis()
+    axes.set_xlabel("95 % interval over the value (orange: not identified by the data)")
+    return axes
+
+
+def motion(result, recording, axes=None, **how):
+    """x of everybody's hip over time: measured, predicted, and the band."""
+    axes = _axes(axes)
+    predicted = result.predict(recording, **how)
+    seconds = [t / recording.fps for t in range(recording.num_frames)]
+    for n, subject in enumerate(recording.subjects):
+        line, = axes.plot(seconds, recording.hip[:, n, 0], label=f"{subject}, measured")
+        path = predicted["hip"][:, n, 0]
+        axes.plot([t / recording.fps for t in range(len(path))], path, "--", color=line.get_color(),
+                  label=f"{subject}, predicted")
+        if "lower90" in predicted:
+            low, high = (predicted[key][:, n, 0] for key in ("lower90", "upper90"))
+            first = predicted["observed"]
+            axes.fill_between([(first + t) / recording.fps for t in range(len(low))], low, high, alpha=0.2,
+                              color=line.get_color())
+    axes.set_xlabel("time, s")
+    axes.set_ylabel("hip, m forwards")
+    axes.legend()
+    return axes
+
+
+def _bar(p):
+    """The interval over the value, from 0 to 2, as a small picture."""
+    if not p.interval or p.value == 0:
+        return ""
+    low, high = (max(0.0, min(2.0, end / p.value)) for end in p.interval)
+    low, high = sorted((60 * low, 60 * high))
+    return ('<svg width="120" height="12"><line x1="60" x2="60" y1="0" y2="12" stroke="#999"/>'
+            f'<line x1="{low:.1f}" x2="{high:.1f}" y1="6" y2="6" stroke="#0072b2" stroke-width="4"/></svg>')
+
+
+def html_table(result):
+    rows = []
+    for p in _free(result):
+        cells = [p.name, f"{p.value:.4g}", f"{p.interval[0]:.4g} to {p.interval[1]:.4g}" if p.interval else "",
+                 p.unit, p.status or ""]
+        rows.append("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in cells) +
+                    f"<td>{_bar(p)}</td></tr>")
+    head = "".join(f"<th>{name}</th>" for name in ("parameter", "value", "95 % interval", "unit", "status", ""))
+    return f"<table><tr>{head}</tr>{''.join(rows)}</table>"

@@ -1,0 +1,91 @@
+"""Recordings: read from manifests, made of arrays, made by the model itself."""
+import os
+
+import numpy as np
+
+from . import _pushid
+
+
+class Recordings(list):
+    """A list of recordings, with what was unusual about their files (`warnings`)."""
+
+    def __init__(self, recordings=(), warnings=()):
+        super().__init__(recordings)
+        self.warnings = list(warnings)
+
+    def __repr__(self):
+        people = {subject for recording in self for subject in recording.subjects}
+        return f"<{len(self)} recordings of {len(people)} people>"
+
+
+def _listed(names):
+    return [names] if isinstance(names, str) else list(names)
+
+
+def read(manifest, setting="all", *, ids=(), leave_out=(), all_joints=False, max_gap_s=0.1, lowpass_hz=0.0,
+         resample_fps=0.0, length_unit=""):
+    """Recordings of a manifest, or of several (a list of paths).
+
+    setting: settings of the manifest, comma-separated, "groups" or "all". ids, leave_out: only these, not these.
+    all_joints: keep whole bodies, for restorations and the report's figure. max_gap_s (s), lowpass_hz (Hz, 0: none)
+    and resample_fps (0: as recorded) prepare the motion; length_unit ("mm", "cm", "m") is the files', whatever
+    they say. Raises DataError with file and line.
+    """
+    paths = [manifest] if isinstance(manifest, (str, os.PathLike)) else manifest
+    found, told = _pushid.read(",".join(os.fspath(path) for path in paths), setting, _listed(ids),
+                               _listed(leave_out), all_joints, max_gap_s, lowpass_hz, resample_fps, length_unit)
+    return Recordings(found, told)
+
+
+def _positions(name, values):
+    array = np.asarray(values)
+    if array.dtype.kind not in "fiu":
+        raise _pushid.DataError(f"{name} holds {array.dtype}; it must hold numbers, in m")
+    return array.astype(float, copy=False)
+
+
+def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recording", subjects=(), pushed_person=0,
+              push_start=0, push_height=1.0, push_kind="external", initial_velocity="zero", setting="single",
+              magnitude="unknown", condition=""):
+    """A recording from arrays, with the checks of one from files.
+
+    hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in m, z up and x forward; NaN where unseen.
+    mass: kg, a number or one for each person. fps: frames per second.
+    push: from frame `push_start` on, on `pushed_person`: (rows,) forwards, (rows, 2) or (rows, 3) in N at the height
+    `push_height` (a fraction of the way from the ankles to the hip), or (rows, 4): generalized forces in N and N m.
+    push_kind: "external" (measured, the whole push), "net" or "net_without_friction". initial_velocity: "zero",
+    "estimated" or "free". setting, magnitude, condition: labels, by which results may differ. Raises DataError.
+    """
+    rows = None if push is None else np.asarray(push, dtype=float)
+    return _pushid.from_arrays(_positions("hip", hip), _positions("left_ankle", left_ankle),
+                               _positions("right_ankle", right_ankle), [float(m) for m in np.atleast_1d(mass)],
+                               float(fps), rows, id, _listed(subjects), pushed_person, push_start, push_height,
+                               push_kind, initial_velocity, setting, magnitude, condition)
+
+
+def simulate(*, people=4, recordings_per_person=6, people_in_row=1, fps=60.0, frames=90, seed=1, push_kind="net",
+             joint_noise_m=0.002, set=None):
+    """Recordings of synthetic people with known parameters: (recordings, {name: true value}).
+
+    set: {name: value} of the truth that differs from the default. joint_noise_m: m, one sigma.
+    """
+    changed = ",".join(f"{name}={value!r}" for name, value in (set or {}).items())
+    found, truth = _pushid.simulate(people, recordings_per_person, people_in_row, fps, frames, seed, push_kind,
+                                    joint_noise_m, changed)
+    return Recordings(found), truth
+
+
+def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothing=9, initial_velocity="auto"):
+    """The push of a recording that has none, by inverse dynamics: (rows of 4 generalized forces, first frame, kind).
+
+    first_frame, end_frame: the window; -1: found by itself. smoothing: Savitzky-Golay window in frames, odd; 0: none.
+    It takes all that speeds the hip up for the push, often too much.
+    """
+    return _pushid.estimate_push(recording, person, first_frame, end_frame, smoothing, initial_velocity)
+
+
+def _described(recording):
+    return f"<{recording.id}: {recording.num_people} people, {recording.num_frames} frames at {recording.fps:g} Hz>"
+
+
+_pushid.Recording.__repr__ = _described

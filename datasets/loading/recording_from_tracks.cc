@@ -1,0 +1,119 @@
+// datasets: a recording from tracks.
+#include "datasets/loading/recording_from_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/content_hash.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/frame_rate.h"
+#include "datasets/loading/motion_checks.h"
+#include "datasets/loading/track_gaps.h"
+#include "datasets/manifest/manifest.h"
+
+namespace pushid {
+namespace {
+
+Error Of(const std::string& id, const std::string& what) {
+  return Error{"recording " + Quoted(id) + ": " + what};
+}
+
+template <typename Rows>
+void AddRows(const Rows& rows, ContentHash* hash) {
+  for (const auto& row : rows) {
+    hash->Add({reinterpret_cast<const char*>(row.data()), row.size() * sizeof(double)});
+  }
+}
+
+Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::string& id) {
+  if (!(tracks.mass_kg > 0.0 && tracks.mass_kg <= kHeaviestPerson)) {
+    return Of(id, "the mass of " + Quoted(tracks.id) + " is " + Rounded(tracks.mass_kg) +
+                      " kg; it must be above 0 and at most " + Rounded(kHeaviestPerson));
+  }
+  const size_t frames = tracks.hip.size();
+  if (tracks.left_ankle.size() != frames || tracks.right_ankle.size() != frames) {
+    return Of(id, "hip and ankles of " + Quoted(tracks.id) + " have " + std::to_string(frames) +
+                      ", " + std::to_string(tracks.left_ankle.size()) + " and " +
+                      std::to_string(tracks.right_ankle.size()) + " frames; they share them");
+  }
+  RecordedPerson person;
+  person.subject_id = tracks.id;
+  person.mass_kg = tracks.mass_kg;
+  std::vector<double> weight(frames, 1.0);
+  for (auto* track : {&tracks.hip, &tracks.left_ankle, &tracks.right_ankle}) {
+    FillGaps(max_gap, track, &weight);
+  }
+  if (frames > 0 && weight[0] == 0.0) {
+    return Of(id, "at frame 0, where the fit starts, hip or ankles of " + Quoted(tracks.id) +
+                      " are not seen; leave the frames before they are out");
+  }
+  person.hip = std::move(tracks.hip);
+  person.left_ankle = std::move(tracks.left_ankle);
+  person.right_ankle = std::move(tracks.right_ankle);
+  if (std::count(weight.begin(), weight.end(), 0.0) > 0) person.weight = std::move(weight);
+  if (MaybeError wrong = CheckMotion(person, LengthUnit::kMetre)) {
+    return Of(id, tracks.id + ": " + wrong->message);
+  }
+  return person;
+}
+
+MaybeError CheckPush(const TrackedRecording& tracks, const Push& push, int frames) {
+  const int people = static_cast<int>(tracks.people.size());
+  if (push.person < 0 || push.person >= people) {
+    return Of(tracks.id, "there is no person " + std::to_string(push.person) + " to push; it has " +
+                             std::to_string(people) + ", counted from 0");
+  }
+  const int rows = static_cast<int>(push.force.size());
+  if (push.start_frame < 0 || rows == 0 || push.start_frame > frames - 2 ||
+      push.start_frame + rows > frames) {
+    return Of(tracks.id, "a push of " + std::to_string(rows) + " rows from frame " +
+                             std::to_string(push.start_frame) + " is not within its " +
+                             std::to_string(frames) + " frames");
+  }
+  for (const Eigen::Vector4d& row : push.force) {
+    if (!row.allFinite()) return Of(tracks.id, "the push has a value that is not finite");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<Recording> RecordingFromTracks(TrackedRecording tracks,
+                                      const PreparationOptions& preparation) {
+  const std::string rate = FrameRateProblem(tracks.fps);
+  if (!rate.empty()) return Of(tracks.id, "fps " + rate);
+  if (tracks.people.empty()) return Of(tracks.id, "nobody is in it");
+  Recording recording;
+  recording.id = tracks.id;
+  recording.fps = tracks.fps;
+  recording.setting = tracks.setting;
+  recording.magnitude = tracks.magnitude;
+  recording.condition = tracks.condition;
+  recording.pushed_person = tracks.pushed_person;
+  recording.push_kind = tracks.push_kind;
+  recording.initial_velocity = tracks.initial_velocity;
+  ContentHash hash;
+  const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
+  for (TrackedPerson& one : tracks.people) {
+    for (const auto* track : {&one.hip, &one.left_ankle, &one.right_ankle}) AddRows(*track, &hash);
+    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id);
+    if (!person.ok()) return person.error();
+    recording.people.push_back(std::move(person.value()));
+    if (recording.people.back().hip.size() != recording.people[0].hip.size()) {
+      return Of(tracks.id, "its people have different numbers of frames");
+    }
+  }
+  for (const Push& push : tracks.pushes) {
+    if (MaybeError wrong = CheckPush(tracks, push, recording.num_frames())) return *wrong;
+    AddRows(push.force, &hash);
+  }
+  recording.pushes = std::move(tracks.pushes);
+  recording.content_hash = hash.Hex();
+  if (MaybeError failed = CheckPreparation(preparation)) return *failed;
+  if (MaybeError failed = PrepareMotion(preparation, &recording)) {
+    return Of(recording.id, failed->message);
+  }
+  return recording;
+}
+
+}  // namespace pushid

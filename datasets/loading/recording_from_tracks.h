@@ -1,0 +1,40 @@
+// datasets: a recording straight from tracks in memory, with the checks of one from files.
+//
+//   TrackedPerson anna{"anna", 62.0, hip, left_ankle, right_ankle};
+//   Result<Recording> recording = RecordingFromTracks({"trial 1", 100.0, {anna}, {push}});
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/loading/motion_preparation.h"
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+
+// One per frame, m, z up and x forward; NaN where it was not seen.
+struct TrackedPerson {
+  std::string id;
+  double mass_kg = 0.0;
+  std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
+};
+
+struct TrackedRecording {
+  std::string id;
+  double fps = 0.0;
+  std::vector<TrackedPerson> people;
+  std::vector<Push> pushes;
+  int pushed_person = 0;
+  PushKind push_kind = PushKind::kExternal;
+  InitialVelocity initial_velocity = InitialVelocity::kZero;
+  std::string setting = "single", magnitude = "unknown", condition;
+};
+
+// Gaps are filled as those of files are, and the motion filtered and resampled. Errors: a mass not
+// in (0, 400] kg, a rate not in [1, 10000], people with different numbers of frames or fewer than
+// three, a first frame that is not seen, what CheckMotion says, pushes on nobody or beyond the
+// motion.
+Result<Recording> RecordingFromTracks(TrackedRecording tracks,
+                                      const PreparationOptions& preparation = {});
+
+}  // namespace pushid

@@ -1,0 +1,73 @@
+// A recording from tracks in memory: as from files, and refused for the same reasons.
+#include "datasets/loading/recording_from_tracks.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+TrackedRecording Standing(int frames) {
+  TrackedPerson person{"anna", 62.0, {}, {}, {}};
+  for (int t = 0; t < frames; ++t) {
+    person.hip.emplace_back(0.001 * t, 0.0, 1.0);
+    person.left_ankle.emplace_back(0.0, 0.1, 0.1);
+    person.right_ankle.emplace_back(0.0, -0.1, 0.1);
+  }
+  TrackedRecording tracks;
+  tracks.id = "trial";
+  tracks.fps = 100.0;
+  tracks.people = {person};
+  tracks.pushes = {{0, 2, std::vector<Eigen::Vector4d>(3, Eigen::Vector4d(50, 0, 0, 0)), ""}};
+  return tracks;
+}
+
+TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
+  TrackedRecording tracks = Standing(60);
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (int t = 10; t < 13; ++t) tracks.people[0].hip[t].setConstant(kNaN);
+  for (int t = 30; t < 50; ++t) tracks.people[0].left_ankle[t].setConstant(kNaN);
+  const Result<Recording> made = RecordingFromTracks(tracks);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  const RecordedPerson& person = made.value().people[0];
+  EXPECT_NEAR(person.hip[11].x(), 0.011, 1e-12);
+  ASSERT_EQ(person.weight.size(), 60u);
+  EXPECT_EQ(person.weight[11], 1.0);
+  EXPECT_EQ(person.weight[40], 0.0);
+  EXPECT_EQ(made.value().pushes[0].EndFrame(), 5);
+  // The same tracks have the same hash, others another.
+  EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.value().content_hash);
+  EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.value().content_hash);
+}
+
+TEST(RecordingFromTracks, WhatIsWrongIsTold) {
+  const auto problem = [](auto change) {
+    TrackedRecording tracks = Standing(20);
+    change(&tracks);
+    const Result<Recording> made = RecordingFromTracks(tracks);
+    return made.ok() ? std::string("no error") : made.error().ToString();
+  };
+  using Tracks = TrackedRecording*;
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->fps = 0.0; }), "recording 'trial': fps"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->people.clear(); }), "nobody"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->people[0].mass_kg = 0.0; }), "mass of 'anna'"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->people[0].hip.pop_back(); }), "19, 20 and 20"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->pushes[0].person = 1; }), "no person 1"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->pushes[0].start_frame = 18; }), "not within"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) {
+                         t->people[0].hip[0].setConstant(std::numeric_limits<double>::quiet_NaN());
+                       }),
+                       "at frame 0"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) {
+                         for (auto* track : {&t->people[0].hip, &t->people[0].left_ankle}) {
+                           for (Eigen::Vector3d& p : *track) p *= 1000.0;
+                         }
+                       }),
+                       "anna"));
+}
+
+}  // namespace
+}  // namespace pushid
