@@ -34,7 +34,8 @@ std::string AxisName(const Eigen::Vector3d& direction) {
 
 class MotionInspector {
  public:
-  MotionInspector(const PointMotion& motion, Inspection* found) : motion_(motion), found_(*found) {}
+  MotionInspector(const PointMotion& motion, const PelvisSides& pelvis, Inspection* found)
+      : motion_(motion), pelvis_(pelvis), found_(*found) {}
 
   void Look(const std::optional<PendulumJoints>& joints) {
     Rate();
@@ -109,13 +110,14 @@ class MotionInspector {
     }
     const Eigen::Vector3d rod = hip[first] - 0.5 * (left[first] + right[first]);
     Unit(rod.norm());
-    Axes(rod, left[first] - right[first]);
+    const Facing facing = FacingOf(motion_, pelvis_, hip, left, right, rod, first, metres_);
+    Axes(rod, facing);
     for (const Eigen::Vector3d& position : hip) {
       found_.hip.push_back(metres_ * (position - hip[first]));
     }
     Onset(first, rod);
     Start(first);
-    Steps(joints, left[first] - right[first], rod);
+    Steps(joints, facing.to_the_left, rod);
   }
 
   // In the person's own axes, forward where they face.
@@ -181,11 +183,16 @@ class MotionInspector {
     }
   }
 
-  void Axes(const Eigen::Vector3d& rod, const Eigen::Vector3d& to_the_left) {
+  void Axes(const Eigen::Vector3d& rod, const Facing& facing) {
     up_ = AxisName(rod);
-    const Eigen::Vector3d forward = to_the_left.cross(rod);
+    const Eigen::Vector3d forward = facing.to_the_left.cross(rod);
     const std::string faces = forward.norm() > 0.0 ? AxisName(forward) : "?";
-    found_.Fact("axes", up_ + " is up, the person faces " + faces);
+    found_.Fact("axes", up_ + " is up, the person faces " + faces + " (by " + facing.by +
+                            (facing.doubt.empty() ? ")" : ", unsure)"));
+    if (!facing.doubt.empty()) {
+      found_.Warn("where the person faces is unsure: " + facing.doubt +
+                  "; set \"forward\" by how the room was");
+    }
     if (up_ != "z") {
       found_.Warn(up_ + " is up in the file: set \"up\" and \"forward\" in the manifest");
     }
@@ -282,6 +289,7 @@ class MotionInspector {
   }
 
   const PointMotion& motion_;
+  const PelvisSides& pelvis_;
   Inspection& found_;
   double metres_ = 0.0;  // 0: not known
   std::string up_;
@@ -290,8 +298,8 @@ class MotionInspector {
 }  // namespace
 
 void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
-                   Inspection* inspection) {
-  MotionInspector(motion, inspection).Look(joints);
+                   const PelvisSides& pelvis, Inspection* inspection) {
+  MotionInspector(motion, pelvis, inspection).Look(joints);
 }
 
 }  // namespace pushid

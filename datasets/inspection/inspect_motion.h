@@ -5,14 +5,15 @@
 #include <optional>
 
 #include "datasets/formats/point_motion.h"
+#include "datasets/inspection/facing.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_choice.h"
 
 namespace pushid {
 
 // Adds facts, warnings and the picture's data. `joints`: indices into motion.names, all of which
-// were read; without them only rate, gaps and jumps are looked at.
+// were read; without them only rate, gaps and jumps are looked at. pelvis: alike.
 void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
-                   Inspection* inspection);
+                   const PelvisSides& pelvis, Inspection* inspection);
 
 }  // namespace pushid

@@ -51,17 +51,21 @@ void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspe
   const Result<PendulumJoints> joints =
       ChoosePendulumPoints(motion.path, motion.names, mapping.joints);
   if (!joints.ok()) found->Warn(joints.error().message);
+  PelvisSides pelvis;
   if (joints.ok()) {
-    found->Fact("body", RolesText(ChooseRoles(motion.path, motion.names, nullptr, joints.value(),
-                                              mapping.joints)));
+    const Result<BodyRoles> roles =
+        ChooseRoles(motion.path, motion.names, nullptr, joints.value(), mapping.joints);
+    found->Fact("body", RolesText(roles));
+    pelvis = SidesOf(roles);
   }
-  InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, found);
+  InspectMotion(motion, joints.ok() ? std::optional(joints.value()) : std::nullopt, pelvis, found);
 }
 
-// A joint of a BVH file is never hidden, so that only hip and feet are kept: files of a gigabyte
-// fit.
+// A joint of a BVH file is never hidden, so that only hip, its sides and the feet are kept: files
+// of a gigabyte fit.
 MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   std::optional<PendulumJoints> places;  // indices into the joints kept
+  PelvisSides pelvis;
   std::string body;
   std::vector<std::string> names;
   BvhPositionOptions options;
@@ -74,12 +78,15 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
       found->Warn(joints.error().message);
       return std::vector<int>{0};
     }
-    body = RolesText(ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints));
+    const Result<BodyRoles> roles =
+        ChooseRoles(found->path, names, &skeleton, joints.value(), mapping.joints);
+    body = RolesText(roles);
+    pelvis = SidesOf(roles);
     std::vector<int> kept;
     places = joints.value();
-    for (std::vector<int>* place :
-         {&places->hip, &places->left_ankle, &places->right_ankle, &places->left_toe,
-          &places->right_toe, &places->left_heel, &places->right_heel}) {
+    for (std::vector<int>* place : {&places->hip, &places->left_ankle, &places->right_ankle,
+                                    &places->left_toe, &places->right_toe, &places->left_heel,
+                                    &places->right_heel, &pelvis.left, &pelvis.right}) {
       if (place->empty()) continue;
       kept.push_back((*place)[0]);
       *place = {static_cast<int>(kept.size()) - 1};
@@ -98,7 +105,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   motion.positions = std::move(bvh.value().positions);
   found->Fact("joints", ListOfNames(names));
   if (!body.empty()) found->Fact("body", body);
-  InspectMotion(motion, places, found);
+  InspectMotion(motion, places, pelvis, found);
   return std::nullopt;
 }
 

@@ -51,7 +51,7 @@ Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::
   person.left_ankle = std::move(tracks.left_ankle);
   person.right_ankle = std::move(tracks.right_ankle);
   if (std::count(weight.begin(), weight.end(), 0.0) > 0) person.weight = std::move(weight);
-  if (MaybeError wrong = CheckMotion(person, LengthUnit::kMetre)) {
+  if (MaybeError wrong = CheckMotion(person, 1.0)) {
     return Of(id, tracks.id + ": " + wrong->message);
   }
   return person;

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "datasets/formats/trc.h"
 #include "tests/datasets/c3d_samples.h"
@@ -49,7 +51,7 @@ TEST_F(InspectionTest, AGoodFileHasNoWarnings) {
   for (const char* part :
        {"a.trc: TRC", "points          Hips, LANK, RANK", "100 at 100 per second, 1 s",
         "unit            mm, as the file says", "hip 0.87 m above the ankles",
-        "z is up, the person faces x", "static (hip 0 m/s)",
+        "z is up, the person faces x (by the ankles)", "static (hip 0 m/s)",
         "the hip has moved 2 cm at frame 43 (0.43 s); it goes 0.472 m, mostly along x"}) {
     EXPECT_TRUE(Contains(said, part));
   }
@@ -63,6 +65,34 @@ TEST_F(InspectionTest, Axes) {
   const std::string said = Said();
   EXPECT_TRUE(Contains(said, "y is up, the person faces z"));
   EXPECT_TRUE(Contains(said, "warning: y is up in the file: set \"up\" and \"forward\""));
+}
+
+// In mid-stride the line between the ankles says little; the pelvis does.
+TEST_F(InspectionTest, FacingInMidStride) {
+  for (int t = 0; t < 100; ++t) {
+    const double ahead = 300.0 * std::cos(2.0 * M_PI * t / 100.0);
+    motion_.positions[0][t].x() = 10.0 * t;
+    motion_.positions[1][t].x() = 10.0 * t + ahead;
+    motion_.positions[2][t].x() = 10.0 * t - ahead;
+  }
+  const std::string said = Said();
+  EXPECT_TRUE(Contains(said, "the person faces x (by the ankles, unsure)"));
+  EXPECT_TRUE(Contains(said, "warning: where the person faces is unsure: one foot is ahead"));
+  for (const auto& [name, x, y] : {std::tuple("LASI", 100.0, 120.0), {"RASI", 100.0, -120.0}}) {
+    motion_.names.push_back(name);
+    motion_.positions.emplace_back();
+    for (int t = 0; t < 100; ++t) motion_.positions.back().push_back({10.0 * t + x, y, 1000.0});
+  }
+  const std::string by_pelvis = Said();
+  EXPECT_TRUE(Contains(by_pelvis, "the person faces x (by the pelvis)"));
+  EXPECT_EQ(by_pelvis.find("unsure"), std::string::npos);
+}
+
+TEST_F(InspectionTest, WalkingToTheSideIsDoubted) {
+  for (int t = 0; t < 100; ++t) {
+    for (auto& track : motion_.positions) track[t].y() += 10.0 * t;
+  }
+  EXPECT_TRUE(Contains(Said(), "unsure: the hip goes 9"));  // 90 degrees, or nearly
 }
 
 // The left foot goes 0.3 m to the side that the person faces, whatever that axis is called.
