@@ -19,6 +19,7 @@ let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],s
 const names=[...new Set(data.people.map(p=>p.name))],pushed=new Set(data.pushes.map(p=>p.person));
 const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
 const frameOf=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
+const bodies=data.people.some(p=>p.body.length);
 const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
 (function extent(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
  for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
@@ -71,7 +72,7 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
    const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
  for(const [name,h] of hips){const p=project(...h);
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
-  if(on('names')){const top=project(h[0],h[1],h[2]+900);words(name,top[0],Math.max(16*d,top[1]-(6+15*(names.indexOf(name)%3))*d),style('--ink'));}}
+  if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));words(name,top[0],Math.max(16*d,top[1]-(6+15*(names.indexOf(name)%3))*d),style('--ink'));}}
  for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
  inset();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}

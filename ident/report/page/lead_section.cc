@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
 
 std::string ValueText(const Estimate& e) {
-  return e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
+  return e.name + " = " + Rounded(e.value, 4) + (e.unit == "1" ? "" : " " + e.unit);
 }
 
 std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {

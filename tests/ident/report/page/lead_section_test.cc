@@ -29,7 +29,8 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   model.advice = {{"Record more people.", "pushid-fit"}};
   const ReportSection section = LeadSection(model);
   ASSERT_EQ(section.paragraphs.size(), 3u);
-  EXPECT_TRUE(Contains(section.paragraphs[0], "What is known: these recordings decide mu = 31.2 "));
+  EXPECT_TRUE(
+      Contains(section.paragraphs[0], "What is known: these recordings decide mu = 31.25 N s/m"));
   EXPECT_TRUE(Contains(section.paragraphs[0], "the fitted person settles within 2 s"));
   EXPECT_EQ(section.paragraphs[1],
             "What is not: decided more by what was put in than by the recordings: a_x; with wide "
