@@ -2,6 +2,8 @@
 
 sensor   TRC markers (y up, mm, pelvis and malleoli) and a force sensor with a clock of its own: inspected, made a
          manifest, pushes, a fit beside the truth, a batch
+gltf     BVH with a hierarchy, names and a unit of its own (CMU's, 0.0564 m): inspected, pushes by inverse dynamics,
+         a fit, rigid bodies as glTF and as BVH in the hierarchy that came in
 crowd    a fitted model on a line of ten: the wave, bodies, the same people as recordings again, fitted as a group
 
     python3 tests/studies/journeys.py BIN [JOURNEY ...]
@@ -178,6 +180,69 @@ def sensor(journey):
     need(os.path.exists(journey.path("batch/summary.html")), "the batch wrote no page")
 
 
+# CMU's names for the joints of the synthetic skeleton.
+CMU = {"Hips": "Hips", "Spine": "LowerBack", "Spine1": "Spine", "Spine2": "Spine1", "Neck": "Neck", "Head": "Head",
+       "RightClavicle": "RightShoulder", "RightShoulder": "RightArm", "RightElbow": "RightForeArm",
+       "RightWrist": "RightHand", "LeftClavicle": "LeftShoulder", "LeftShoulder": "LeftArm", "LeftElbow": "LeftForeArm",
+       "LeftWrist": "LeftHand", "RightHip": "RightUpLeg", "RightKnee": "RightLeg", "RightAnkle": "RightFoot",
+       "RightToe": "RightToeBase", "LeftHip": "LeftUpLeg", "LeftKnee": "LeftLeg", "LeftAnkle": "LeftFoot",
+       "LeftToe": "LeftToeBase"}
+CMU_UNIT = 0.0564  # m
+
+
+def write_cmu(source, target):
+    """A BVH file under CMU's names, in its unit."""
+    per_mm = 0.001 / CMU_UNIT
+    lengths, is_length, lines = [], [], []
+    with open(source, encoding="utf-8") as file:
+        head, motion = file.read().split("MOTION")
+    for line in head.splitlines():
+        words = line.split()
+        if words[:1] in (["ROOT"], ["JOINT"]):
+            line = line.replace(words[1], CMU[words[1]])
+        elif words[:1] == ["OFFSET"]:
+            line = line.split("OFFSET")[0] + "OFFSET " + " ".join(repr(per_mm * float(w)) for w in words[1:])
+        elif words[:1] == ["CHANNELS"]:
+            is_length += [word.endswith("position") for word in words[2:]]
+        lines.append(line)
+    for line in motion.strip().splitlines()[2:]:
+        lengths.append(" ".join(repr(per_mm * float(w)) if scaled else w
+                                for w, scaled in zip(line.split(), is_length)))
+    with open(target, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\nMOTION\n" + "\n".join(motion.strip().splitlines()[:2] + lengths) + "\n")
+
+
+def gltf(journey):
+    journey.run("pushid-simulate", "--out=truth", "--people=2", "--recordings_per_person=6", "--seed=11")
+    os.makedirs(journey.path("cmu"))
+    os.makedirs(journey.path("push"))
+    recordings = journey.json("truth/manifest.json")["recordings"]
+    for r in recordings:
+        write_cmu(journey.path(f"truth/{r['bvh'][0]}"), journey.path(f"cmu/{r['id']}.bvh"))
+    first = recordings[0]["id"]
+    need("LeftFoot" in journey.run("pushid-inspect", f"cmu/{first}.bvh"), "pushid-inspect does not see CMU's ankles")
+    journey.run("pushid-manifest", "--folder=cmu", "--pattern={subject}_{take}_{magnitude}.bvh", "--mass_kg=75",
+                "--out=manifest.json")
+    read = ["--recordings=manifest.json", f"--length_scale={CMU_UNIT}"]
+    journey.run("pushid-push", *read, "--ids=" + ",".join(r["id"] for r in recordings), "--out=push/{id}.csv",
+                "--into_manifest")
+    journey.run("pushid-fit", *read, "--model_out=model.json")
+    predict = ["--model=model.json", *read, f"--id={first}", "--restoration=rigid"]
+    journey.run("pushid-predict", *predict, "--out=motion.glb")
+    with open(journey.path("motion.glb"), "rb") as file:
+        need(file.read(4) == b"glTF", "motion.glb is no glTF file")
+    journey.run("pushid-predict", *predict, "--out=motion.gltf")
+    scene = journey.json("motion.gltf")
+    names = {node.get("name", "") for node in scene["nodes"]}
+    need(scene["animations"] and any("LeftForeArm" in name for name in names), "motion.gltf has not CMU's joints")
+    journey.run("pushid-predict", *predict, "--out=motion.bvh")
+    with open(journey.path("motion.bvh"), encoding="utf-8") as made, \
+            open(journey.path(f"cmu/{first}.bvh"), encoding="utf-8") as given:
+        joints = [[w.split()[1] for w in text.read().splitlines() if w.split()[:1] in (["ROOT"], ["JOINT"])]
+                  for text in (made, given)]
+    need(joints[0] == joints[1], f"the hierarchy changed: {joints[0]}")
+
+
 def crowd(journey):
     journey.run("pushid-simulate", "--out=people", "--people=4", "--recordings_per_person=6", "--seed=5")
     # Nobody touches anybody in these: contact keeps the values of the preset.
@@ -197,7 +262,7 @@ def crowd(journey):
     need(error < 0.005, f"the model that made the line is {error} m off it")
 
 
-JOURNEYS = {"sensor": sensor, "crowd": crowd}
+JOURNEYS = {"sensor": sensor, "gltf": gltf, "crowd": crowd}
 
 if __name__ == "__main__":
     if len(sys.argv) < 2:
