@@ -244,6 +244,15 @@ def test_fits_in_threads_agree(made, result):
     assert found == [result["mu"]] * 3
 
 
+def test_pictures(made, result):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = result.plot()
+    assert any(label.get_text().startswith("mu ") for label in axes.get_yticklabels())
+    axes = result.plot_motion(made[0][0], observed=20)
+    assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
+
+
 def test_no_leak(made):
     pages = lambda: int(open("/proc/self/statm", encoding="ascii").read().split()[1])
     one = made[0][:2]
