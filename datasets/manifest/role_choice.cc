@@ -134,12 +134,9 @@ class RoleFinder {
     if (roles->Has(role)) return;
     for (const std::string& word : Split(words, '|')) {
       const std::vector<int> found = Find(side, word);
-      const bool free = std::none_of(
-          roles->joints.begin(), roles->joints.end(), [&found](const std::vector<int>& other) {
-            return std::any_of(found.begin(), found.end(), [&other](int joint) {
-              return std::find(other.begin(), other.end(), joint) != other.end();
-            });
-          });
+      // A mean leaves its joints to others: a hip between the hip joints.
+      const bool free = found.size() > 1 || std::find(roles->joints.begin(), roles->joints.end(),
+                                                      found) == roles->joints.end();
       if (found.empty() || !free) continue;
       roles->joints[role] = found;
       return;

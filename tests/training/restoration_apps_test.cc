@@ -1,11 +1,13 @@
 // pushid-train-restoration and what uses its output, as a user runs them.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "datasets/formats/bvh.h"
+#include "tests/apps/any_skeleton_fixture.h"
 #include "tests/apps/app_fixture.h"
 
 namespace pushid {
@@ -58,6 +60,33 @@ TEST_F(RestorationAppTest, TrainsEvaluatesAndPredicts) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_NEAR(joints[44][9][i].get<double>(), bvh.value().positions[9][44][i], 2e-5);
   }
+}
+
+// A skeleton of other names with a joint more learns and moves by its roles, and its own joints
+// come out.
+TEST_F(AnySkeletonTest, IsLearnedAndMoved) {
+  const std::string model = Model(), restoration = "--restoration=" + Path("r");
+  const AppRun trained =
+      RunApp("pushid-train-restoration",
+             {recordings_, kScale, model, "--out=" + Path("r"), "--effort=0.3", "--quiet"}, 120);
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  const AppRun predict =
+      RunApp("pushid-predict", {model, recordings_, kScale, restoration, "--id=" + id_,
+                                "--out=" + Path("m.bvh"), "--json_out=" + Path("j.json")});
+  ASSERT_EQ(predict.exit_code, 0) << predict.err;
+  const auto json = Json(Path("j.json"));
+  const auto bvh = ReadBvh(Path("m.bvh"));
+  ASSERT_TRUE(bvh.ok()) << bvh.error().ToString();
+  ASSERT_EQ(json["joint_names"].size(), bvh.value().skeleton.joints.size());
+  EXPECT_EQ(json["joint_names"][kThumb], "mixamorig:LeftHandThumb1");
+  const auto place = [&json](int frame, int joint) {
+    const auto at = json["people"][0]["joints_m"][frame][joint].get<std::vector<double>>();
+    return Eigen::Vector3d(at[0], at[1], at[2]);
+  };
+  for (int t : {0, 20, 44}) {
+    EXPECT_NEAR((place(t, kThumb) - place(t, kThumb - 1)).norm(), 0.03 * std::sqrt(2.0), 2e-5);
+  }
+  EXPECT_GT((place(44, kThumb) - place(0, kThumb)).norm(), 0.01) << "it goes with the hand";
 }
 
 TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {

@@ -152,6 +152,15 @@ TEST(RoleChoiceTest, OpenSimJointsAndBones) {
   EXPECT_EQ(bones[roles.Single(kLeftWrist - 1)], "ulna_l");
 }
 
+// The middle of the hip joints is the hip, and they are themselves all the same.
+TEST(RoleChoiceTest, AMeanLeavesItsJointsToOthers) {
+  const std::vector<std::string> names = {"LHip", "RHip", "LKnee", "RKnee", "LAnkle", "RAnkle"};
+  const BodyRoles roles = RolesOfPoints(names);
+  EXPECT_EQ(roles.joints[kBodyHip], (std::vector<int>{0, 1}));
+  EXPECT_EQ(roles.Single(kLeftHip), 0);
+  EXPECT_EQ(roles.Single(kRightHip), 1);
+}
+
 // Of two people in one file each is their own.
 TEST(RoleChoiceTest, PrefixesTellPeopleApart) {
   std::vector<std::string> names;

@@ -56,6 +56,33 @@ TEST_F(ForecastSceneTest, WithoutFixedPointsTheFirstParticleIsTheRoot) {
   EXPECT_EQ(bvh.num_frames(), 3);
 }
 
+// The forecast and its two futures, each behind the observed frames, side by side in one file.
+TEST_F(ForecastSceneTest, AGltfHoldsAllFuturesInOneScene) {
+  const ForecastScene scene = Scene();
+  const GltfScene gltf = ToGltf(scene);
+  ASSERT_EQ(gltf.people.size(), 3u);
+  EXPECT_EQ(gltf.people[2].name, "future 2");
+  const GltfPerson& person = gltf.people[0];
+  ASSERT_EQ(person.frames.size(), 18u);
+  for (size_t j = 0; j < person.joints.size(); ++j) {
+    const auto at =
+        std::find(scene.layout.names.begin(), scene.layout.names.end(), person.joints[j]);
+    const Eigen::Index i = at - scene.layout.names.begin();
+    ASSERT_LT(i, 4);
+    EXPECT_LT(person.parents[j], static_cast<int>(j));
+    const Eigen::Vector3f expected = scene.forecast.col(5).segment<3>(3 * i);
+    const auto column = static_cast<Eigen::Index>(j);
+    EXPECT_LT((person.frames[17].positions.col(column) - expected.cast<double>()).norm(), 1e-6);
+    EXPECT_LT((person.rest - person.frames[0].positions).norm(), 1e-12);
+  }
+  const auto files = WritePoses(Path("m.glb"), scene);
+  ASSERT_TRUE(files.ok()) << files.error().ToString();
+  EXPECT_EQ(files.value(), std::vector<std::string>{Path("m.glb")});
+  EXPECT_EQ(ReadText(Path("m.glb")).substr(0, 4), "glTF");
+  ASSERT_TRUE(WritePoses(Path("m.BVH"), scene).ok());
+  EXPECT_EQ(ReadText(Path("m.BVH")).substr(0, 9), "HIERARCHY") << "whatever the case";
+}
+
 TEST_F(ForecastSceneTest, ACsvHasARowPerSourceFrameAndJoint) {
   ASSERT_TRUE(WritePoses(Path("m.csv"), Scene()).ok());
   const std::string text = ReadText(Path("m.csv"));
