@@ -81,7 +81,7 @@ TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
 
 TEST_F(CommandLineTest, AMisspeltFlagIsGuessed) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recording=m.json"}), {"mean --recordings?"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--model-out=m.json"}), {"mean --model_out?"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--modl_out=m.json"}), {"mean --model_out?"}));
   const AppRun far = RunApp("pushid-fit", {"--no_such_flag=1"});
   EXPECT_EQ(far.err.find("mean"), std::string::npos) << far.err;
 }
