@@ -124,9 +124,15 @@ class Panel {
 
   void Axes() {
     std::vector<SvgLine> axis = {{left_, floor_, right_, floor_}}, grid;
+    double free_from = -INFINITY;
     for (double tick : x_.Ticks(5)) {
       axis.push_back({x_(tick), floor_, x_(tick), floor_ + 4});
-      if (!chart_.bare_x) svg_.Text(x_(tick), floor_ + 15, TickText(tick), "ink small middle");
+      const std::string text = TickText(tick);
+      const double half = 3.4 * static_cast<double>(text.size());
+      // A number that would touch the one before is left out.
+      if (chart_.bare_x || x_(tick) - half < free_from) continue;
+      free_from = x_(tick) + half + 4;
+      svg_.Text(x_(tick), floor_ + 15, text, "ink small middle");
     }
     svg_.Lines(axis, "axis");
     if (!chart_.bare_x) {

@@ -70,13 +70,27 @@ inline constexpr char kLayoutProbe[] = R"js(
   said.push(`${labels} labels in ${innerWidth} pixels`);
 )js";
 
+// A probed page in a frame of a width of its own, whose note is copied out of it: windows are at
+// least 500 pixels wide.
+inline std::string Framed(const std::string& page, int width) {
+  std::string quoted;
+  for (const char c : page) {
+    quoted += c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+  }
+  return "<!DOCTYPE html><html><head><meta charset=\"utf-8\"></head><body><iframe style=\"border:0;"
+         "height:800px;width:" +
+         std::to_string(width) + "px\" srcdoc=\"" + quoted + R"js("></iframe><script>
+onload = () => document.body.append(
+    document.querySelector('iframe').contentDocument.getElementById('probe').cloneNode(true));
+</script></body></html>)js";
+}
+
 // The page's elements after its scripts ran, on stdout; what the console said, on stderr. profile:
 // a folder for the browser's own files.
-inline AppRun Browse(const std::string& profile, const std::string& page, int width = 1000) {
-  return RunProgram(
-      Browser(), {"--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr",
-                  "--window-size=" + std::to_string(width) + ",800", "--user-data-dir=" + profile,
-                  "--dump-dom", "file://" + page});
+inline AppRun Browse(const std::string& profile, const std::string& page) {
+  return RunProgram(Browser(), {"--headless", "--no-sandbox", "--disable-gpu",
+                                "--enable-logging=stderr", "--window-size=1000,800",
+                                "--user-data-dir=" + profile, "--dump-dom", "file://" + page});
 }
 
 // What a probe said; a remark of its own where the page's script stopped early.

@@ -20,10 +20,10 @@ class LayoutTest : public AppTest {
 
   // The layout's faults at both widths; the last remark, how many labels were seen, is none.
   void ExpectGoodLayout(const std::string& page, bool labels) {
-    const std::string file = WriteText("probed.html", Probed(page, kLayoutProbe));
     for (const int width : {1200, 400}) {
       SCOPED_TRACE(width);
-      const AppRun seen = Browse(Path("browser"), file, width);
+      const AppRun seen = Browse(
+          Path("browser"), WriteText("probed.html", Framed(Probed(page, kLayoutProbe), width)));
       EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
       const std::string said = WhatItSaid(seen);
       EXPECT_EQ(said.find("; "), std::string::npos) << said;
