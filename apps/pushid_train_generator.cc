@@ -4,10 +4,10 @@
 #include <numeric>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_generator_flags.h"
 #include "apps/support/interruption.h"
-#include "apps/support/model_file.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"

@@ -33,7 +33,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
       "prediction", "validation", "push", "bodies", "generators", "training", "formations",
       "report", "report/page", ""}},
-    {"apps", {"support", "flags", "batch", ""}},
+    {"apps", {"support", "flags", "batch", "", "python"}},
 };
 
 // The floor that a file "room/folder/file.h" stands on; -1: none.

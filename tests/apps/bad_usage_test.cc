@@ -126,15 +126,17 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   const std::string other = Path(Json(manifest_)["recordings"][1]["bvh"][0]);
   const std::string pushed = Path(Json(manifest_)["recordings"][0]["push_csv"]);
   std::filesystem::create_symlink(model, Path("link.json"));
-  const std::vector<std::string> make = {"--folder=" + folder_.string(), "--pattern={take}.bvh"};
+  // --overwrite replaces no input either.
+  const std::vector<std::string> make = {"--folder=" + folder_.string(), "--pattern={take}.bvh",
+                                         "--overwrite"};
   const std::vector<std::string> found = {"--folder=" + folder_.string(), "--mass_kg=70",
-                                          "--pattern=bvh/{take}.bvh"};
+                                          "--pattern=bvh/{take}.bvh", "--overwrite"};
   struct Use {
     std::string program, input;
     std::vector<std::string> flags;
   };
   const std::vector<std::string> predict = {Recordings(), "--id=" + id_, "--model=" + model};
-  const std::vector<std::string> push = {Recordings(), "--id=" + id_};
+  const std::vector<std::string> push = {Recordings(), "--id=" + id_, "--overwrite"};
   const auto with = [](std::vector<std::string> flags, const std::vector<std::string>& more) {
     flags.insert(flags.end(), more.begin(), more.end());
     return flags;

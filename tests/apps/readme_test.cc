@@ -118,7 +118,8 @@ TEST(ReadmeTest, EveryBlockOfNumbersHasItsStudy) {
   EXPECT_GT(places.size(), 10u);
   for (const auto& entry : fs::directory_iterator(kSource / "tests/studies")) {
     const std::string script = entry.path().filename().string();
-    if (entry.path().extension() != ".py" || script == "studies.py") continue;
+    if (entry.path().extension() != ".py") continue;
+    if (script == "studies.py" || script == "journeys.py") continue;  // they make no numbers
     const std::string text = ReadFile(entry.path());
     const size_t list = text.find("studies.main(__file__, {");
     ASSERT_NE(list, std::string::npos) << script;

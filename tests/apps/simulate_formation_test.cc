@@ -114,10 +114,12 @@ TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   ASSERT_EQ(pushes.size(), 3u);
   EXPECT_EQ(pushes[1]["start_frame"], 120);
   EXPECT_EQ(pushes[2]["start_frame"], 300);
-  // Its own output may be replaced, recordings may not.
-  EXPECT_EQ(Simulate({"--formation=line", "--bvh_out=" + Path("three")}).exit_code, 0);
+  // Its own output may be replaced when told, recordings may not.
+  const std::vector<std::string> again = {"--formation=line", "--bvh_out=" + Path("three")};
+  EXPECT_TRUE(Refused(Simulate(again), {Path("three/manifest.json"), "--overwrite"}));
+  EXPECT_EQ(Simulate({again[0], again[1], "--overwrite"}).exit_code, 0);
   WriteText("real/manifest.json", R"({"recordings": []})");
-  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--bvh_out=" + Path("real")}),
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--bvh_out=" + Path("real"), "--overwrite"}),
                       {Path("real/manifest.json"), "--bvh_out"}));
 }
 

@@ -153,7 +153,7 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(
       Refused(Generate({"--target_window=3", "--target_distance=1"}), {"chooses among --samples"}));
   EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
-  EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
+  EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh, .gltf, .glb or .csv"}));
 }
 
 TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {

@@ -92,7 +92,7 @@ TEST_F(InspectionTest, WalkingToTheSideIsDoubted) {
   for (int t = 0; t < 100; ++t) {
     for (auto& track : motion_.positions) track[t].y() += 10.0 * t;
   }
-  EXPECT_TRUE(Contains(Said(), "unsure: the hip goes 9"));  // 90 degrees, or nearly
+  EXPECT_TRUE(Contains(Said(), "unsure: the hip goes 65 degrees off it"));
 }
 
 // The left foot goes 0.3 m to the side that the person faces, whatever that axis is called.

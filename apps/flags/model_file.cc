@@ -1,5 +1,5 @@
 // apps: fitted models as files that say what made them.
-#include "apps/support/model_file.h"
+#include "apps/flags/model_file.h"
 
 #include <ctime>
 
