@@ -191,7 +191,8 @@ int Run() {
   }
   if (!flags.into_manifest) return kDone;
   if (MaybeError error = WriteManifest(manifest.path, manifest)) return Fail(*error);
-  std::printf("entries of %zu recordings written to %s\n", pushes.size(), manifest.path.c_str());
+  std::printf("%zu %s written to %s\n", pushes.size(), pushes.size() == 1 ? "entry" : "entries",
+              manifest.path.c_str());
   return kDone;
 }
 

@@ -195,7 +195,7 @@ TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
   told.push_back("--overwrite");
   const AppRun run = RunApp("pushid-push", told);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(Contains(run.out, "entries of 2 recordings"));
+  EXPECT_TRUE(Contains(run.out, "2 entries written to"));
   const auto after = Json(manifest_)["recordings"];
   for (int i : {0, 1}) {
     EXPECT_FALSE(after[i].contains("push_csv"));
