@@ -30,6 +30,9 @@ MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run
   if (!error && !outputs.csv_out.empty()) {
     error = WriteTrajectoryCsv(outputs.csv_out, run.recording, run.prediction);
   }
+  if (!error && !outputs.trajectories_out.empty()) {
+    error = WriteFormationTrajectories(outputs.trajectories_out, run);
+  }
   if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
   if (!error && !outputs.svg_out.empty()) {
     error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title, onsets));
@@ -46,12 +49,13 @@ std::string Fixed(double value, int decimals) {
   return text;
 }
 
-void PrintPeople(const FormationRun& run) {
+void PrintPeople(const FormationRun& run, bool named) {
   const bool steps = !run.prediction.steps.empty();
   std::vector<std::string> header = {"person",   "x m",         "y m",    "onset s",
                                      "peak m/s", "displaced m", "outcome"};
   std::vector<bool> left = {false, false, false, false, false, false, true};
   if (steps) header.push_back("P(step)"), left.push_back(false);
+  if (named) header.push_back("id"), left.push_back(true);
   TextTable table(header, left);
   for (int n = 0; n < run.num_people(); ++n) {
     const PersonSummary& person = run.summaries[n];
@@ -65,6 +69,7 @@ void PrintPeople(const FormationRun& run) {
         Fixed(person.displacement, 2),
         std::string(Name(person.outcome))};
     if (steps) row.push_back(Fixed(run.prediction.steps[n].probability, 2));
+    if (named) row.push_back(run.recording.subject_ids[n]);
     table.Add(row);
   }
   std::printf("%s%s", table.ToString().c_str(), OutcomeLegend().c_str());
@@ -181,7 +186,8 @@ int SimulateFormation() {
          " was fitted without interaction: people will not touch; fit one with "
          "pushid-fit --setting=groups --interaction=contact");
   }
-  const FormationRun run = RunFormation(model.value(), scene, flags.value().frames);
+  const FormationRun run =
+      RunFormation(model.value(), scene, flags.value().frames, flags.value().names);
   for (const std::string& warning : ExtrapolationWarnings(model.value(), {run.recording})) {
     Warn(warning);
   }
@@ -202,7 +208,7 @@ int SimulateFormation() {
   }
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
-  PrintPeople(run);
+  PrintPeople(run, !flags.value().names.empty());
   PrintWave(run);
   PrintFitWarnings(fitted.value());
   return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());

@@ -5,7 +5,7 @@
 
 build_packages=(g++ cmake ninja-build ccache
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libtomlplusplus-dev
-  libxxhash-dev)
+  libxxhash-dev libsqlite3-dev)
 # LibTorch trains restorations and generators, with OpenBLAS in half the time; everything else builds and
 # runs without them.
 test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium
@@ -17,7 +17,7 @@ workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This is no Debian, so nothing is installed. Needed are a C++17 compiler, CMake 3.23, Ceres" >&2
-    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json and xxHash; to train restorations LibTorch; for the" >&2
+    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json, xxHash and SQLite; to train restorations LibTorch; for the" >&2
     echo "tests GoogleTest, Google Benchmark and assimp (Debian's names: $*)." >&2
     return 0
   fi

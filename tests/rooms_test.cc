@@ -27,7 +27,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 // The order of each room's subfolders; "" is the room itself.
 const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "generators"}},
-    {"datasets", {"files", "formats", "manifest", "sensors", "loading", "synthetic", "inspection"}},
+    {"datasets",
+     {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
     {"residuals", {"kernels", "", "sensitivities", "cost_functions", "adjoint"}},
     {"ident",
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",

@@ -9,16 +9,21 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_output_flags.h"
+#include "datasets/exchange/crowd_places.h"
 #include "datasets/files/number_text.h"
+#include "datasets/formats/motion_formats.h"
 
 DECLARE_int32(people);
 DECLARE_double(fps);
 
 DEFINE_string(
     formation, "",
-    "line, diamond or grid: instead of recordings, roll --model out on --people who stand "
-    "together; its table judges everybody 2 s after the last push (or the onset, where that is "
-    "later), never at the end");
+    "line, diamond or grid, or a file of trajectories (.txt, .sqlite): instead of recordings, roll "
+    "--model out on --people who stand together, or as they stand in the file's "
+    "--formation_frame; its table judges everybody 2 s after the last push (or the onset, where "
+    "that is later), never at the end");
+DEFINE_int32(formation_frame, 0,
+             "formation from a file: the frame in which people are placed, from 0 for its first");
 DEFINE_double(spacing, 0.45, "formation: between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
               "formation: who is pushed, comma-separated; people count from 0, from the back "
@@ -43,6 +48,8 @@ namespace {
 
 constexpr double kMostPersonFrames = 2e6;  // half a gigabyte of forces
 constexpr double kWatchSeconds = 6.0;      // after the last push
+constexpr int kMostPeople = 10000;
+constexpr double kClosestSpacing = 0.05;  // m
 
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -53,14 +60,69 @@ std::vector<std::string> Split(const std::string& text, char separator) {
   return parts;
 }
 
+bool FromFile() {
+  const std::optional<MotionFormat> format = MotionFormatOfFile(FLAGS_formation);
+  return format && HoldsCrowd(*format);
+}
+
 Result<FormationShape> Shape() {
   if (FLAGS_formation == "line") return FormationShape::kLine;
   if (FLAGS_formation == "diamond") return FormationShape::kDiamond;
   if (FLAGS_formation == "grid") return FormationShape::kGrid;
-  return Error{"--formation is '" + FLAGS_formation + "'; it must be line, diamond or grid"};
+  return Error{"--formation is '" + FLAGS_formation +
+               "'; it must be line, diamond or grid, or a file of trajectories (.txt, .sqlite)"};
 }
 
-Result<std::vector<int>> PushedPeople() {
+struct Places {
+  std::vector<Eigen::Vector2d> positions;
+  std::vector<std::string> names;  // of a file's people
+};
+
+MaybeError CheckApart(const Places& places) {
+  for (size_t i = 0; i < places.positions.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if ((places.positions[i] - places.positions[k]).norm() >= kClosestSpacing) continue;
+      return Error{"people " + places.names[k] + " and " + places.names[i] +
+                       " stand less than 5 cm apart; take another --formation_frame",
+                   FLAGS_formation};
+    }
+  }
+  return std::nullopt;
+}
+
+Result<Places> PlacesOfFile() {
+  for (const char* flag : {"people", "spacing"}) {
+    if (!Given(flag)) continue;
+    return Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
+                 " says who stands where"};
+  }
+  const Result<std::vector<CrowdPlace>> read =
+      ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame);
+  if (!read.ok()) return read.error();
+  Places places;
+  for (const CrowdPlace& place : read.value()) {
+    places.positions.push_back(place.position);
+    places.names.push_back(place.name);
+  }
+  if (places.names.size() > kMostPeople) {
+    return Error{std::to_string(places.names.size()) + " people are too many", FLAGS_formation};
+  }
+  if (MaybeError error = CheckApart(places)) return *error;
+  return places;
+}
+
+Result<Places> FormationPlaces() {
+  if (FromFile()) return PlacesOfFile();
+  if (Given("formation_frame")) {
+    return Error{"--formation_frame goes with a file of trajectories (.txt, .sqlite)"};
+  }
+  const Result<FormationShape> shape = Shape();
+  if (!shape.ok()) return shape.error();
+  return Places{FormationPositions(shape.value(), FLAGS_people, FLAGS_spacing), {}};
+}
+
+// Counted from the back, whatever the file's ids.
+Result<std::vector<int>> PushedPeople(const Places& places) {
   std::vector<int> people;
   std::set<int> seen;
   for (const std::string& word : Split(FLAGS_pushed, ',')) {
@@ -68,10 +130,12 @@ Result<std::vector<int>> PushedPeople() {
     if (!ParseInteger(word, &person)) {
       return Error{"--pushed: " + Quoted(word) + " is no person; give numbers as in 0,1,3"};
     }
-    if (person < 0 || person >= FLAGS_people) {
-      return Error{"--pushed names person " + word +
-                   ", but --people=" + std::to_string(FLAGS_people) + " counts them from 0 to " +
-                   std::to_string(FLAGS_people - 1)};
+    const int count = static_cast<int>(places.positions.size());
+    if (person < 0 || person >= count) {
+      return Error{"--pushed names person " + word + ", but " +
+                   (FromFile() ? "the " + std::to_string(count) + " people of the file count"
+                               : "--people=" + std::to_string(count) + " counts them") +
+                   " from 0 to " + std::to_string(count - 1)};
     }
     if (!seen.insert(static_cast<int>(person)).second) {
       return Error{"--pushed names person " + word + " twice"};
@@ -114,8 +178,8 @@ Result<std::vector<HipPush>> Pushes() {
 
 MaybeError CheckNumbers() {
   for (MaybeError error :
-       {CheckRange("people", FLAGS_people, 1, 10000), CheckRange("fps", FLAGS_fps, 10, 10000),
-        CheckRange("spacing", FLAGS_spacing, 0.05, 100),
+       {CheckRange("people", FLAGS_people, 1, kMostPeople), CheckRange("fps", FLAGS_fps, 10, 10000),
+        CheckRange("spacing", FLAGS_spacing, kClosestSpacing, 100),
         CheckRange("push_duration", FLAGS_push_duration, 0.001, 60),
         CheckRange("mass", FLAGS_mass, 1, 400), CheckRange("rod_length", FLAGS_rod_length, 0.2, 2),
         CheckRange("duration", FLAGS_duration, 0, 3600)}) {
@@ -124,11 +188,23 @@ MaybeError CheckNumbers() {
   return std::nullopt;
 }
 
-std::string Title(const std::vector<HipPush>& pushes) {
+// "10 people in a line, 0.45 m apart".
+std::string PeopleText(int people) {
   std::ostringstream text;
-  text << FLAGS_people << (FLAGS_people == 1 ? " person, " : " people in a ")
-       << (FLAGS_people == 1 ? "alone" : FLAGS_formation);
-  if (FLAGS_people > 1) text << ", " << FLAGS_spacing << " m apart";
+  text << people << (people == 1 ? " person" : " people");
+  if (FromFile()) {
+    text << " of " << FLAGS_formation << ", frame " << FLAGS_formation_frame;
+  } else if (people == 1) {
+    text << ", alone";
+  } else {
+    text << " in a " << FLAGS_formation << ", " << FLAGS_spacing << " m apart";
+  }
+  return text.str();
+}
+
+std::string Title(int people, const std::vector<HipPush>& pushes) {
+  std::ostringstream text;
+  text << PeopleText(people);
   const char* separator = "; ";
   for (const HipPush& push : pushes) {
     text << separator << push.impulse << " N s at " << push.start << " s";
@@ -157,7 +233,7 @@ int NumFrames(const Scene& scene) {
   return static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
 }
 
-MaybeError CheckFrames(int frames, const std::vector<HipPush>& pushes) {
+MaybeError CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
   if (frames < 3) return Error{"--duration is shorter than two frames"};
   for (const HipPush& push : pushes) {
     if (std::lround(push.start * FLAGS_fps) < frames - 1) continue;
@@ -166,8 +242,8 @@ MaybeError CheckFrames(int frames, const std::vector<HipPush>& pushes) {
          << " N s at " << push.start << " s; lengthen it, or leave the push out";
     return Error{text.str()};
   }
-  if (static_cast<double>(frames) * FLAGS_people > kMostPersonFrames) {
-    return Error{std::to_string(FLAGS_people) + " people over " + std::to_string(frames) +
+  if (static_cast<double>(frames) * people > kMostPersonFrames) {
+    return Error{std::to_string(people) + " people over " + std::to_string(frames) +
                  " frames are too many; lower --people, --duration or --fps"};
   }
   return std::nullopt;
@@ -178,8 +254,8 @@ MaybeError CheckFrames(int frames, const std::vector<HipPush>& pushes) {
 bool FormationGiven() { return !FLAGS_formation.empty(); }
 
 const char* GivenFormationFlag() {
-  for (const char* flag : {"spacing", "pushed", "push", "push_duration", "mass", "rod_length",
-                           "duration", "as_setting"}) {
+  for (const char* flag : {"formation_frame", "spacing", "pushed", "push", "push_duration", "mass",
+                           "rod_length", "duration", "as_setting"}) {
     if (Given(flag)) return flag;
   }
   return GivenFormationOutput();
@@ -187,24 +263,26 @@ const char* GivenFormationFlag() {
 
 Result<FormationFlags> FormationFlagsFromCommandLine() {
   if (MaybeError error = CheckNoneOfRecordings()) return *error;
-  const Result<FormationShape> shape = Shape();
-  if (!shape.ok()) return shape.error();
   if (MaybeError error = CheckNumbers()) return *error;
-  const Result<std::vector<int>> pushed = PushedPeople();
+  const Result<Places> placed = FormationPlaces();
+  if (!placed.ok()) return placed.error();
+  const std::vector<Eigen::Vector2d>& positions = placed.value().positions;
+  const int people = static_cast<int>(positions.size());
+  const Result<std::vector<int>> pushed = PushedPeople(placed.value());
   if (!pushed.ok()) return pushed.error();
   const Result<std::vector<HipPush>> pushes = Pushes();
   if (!pushes.ok()) return pushes.error();
 
   FormationFlags flags;
-  flags.title = Title(pushes.value());
+  flags.title = Title(people, pushes.value());
+  flags.names = placed.value().names;
   flags.as_setting = FLAGS_as_setting;
-  flags.scene = FormationScene(FormationPositions(shape.value(), FLAGS_people, FLAGS_spacing),
-                               {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
+  flags.scene = FormationScene(positions, {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
   for (const HipPush& push : pushes.value()) {
     for (int person : pushed.value()) AddHipPush(person, push, &flags.scene);
   }
   flags.frames = NumFrames(flags.scene);
-  if (MaybeError error = CheckFrames(flags.frames, pushes.value())) return *error;
+  if (MaybeError error = CheckFrames(flags.frames, people, pushes.value())) return *error;
   return flags;
 }
 

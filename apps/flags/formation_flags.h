@@ -10,8 +10,9 @@
 namespace pushid {
 
 struct FormationFlags {
-  std::string title;  // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
-  Scene scene;        // people and pushes
+  std::string title;               // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
+  Scene scene;                     // people and pushes
+  std::vector<std::string> names;  // of people who come from a file; otherwise empty
   int frames = 0;
   std::string as_setting;  // whose parameters all people have; empty: the shared ones
 };

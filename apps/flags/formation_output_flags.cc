@@ -8,9 +8,13 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/diffusion_flags.h"
 #include "apps/flags/overwrite_flag.h"
+#include "datasets/exchange/hip_trajectories.h"
 #include "ident/formations/formation_pictures.h"
 
 DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");
+DEFINE_string(trajectories_out, "",
+              "formation: hips as trajectories of a crowd, for PedPy and JuPedSim (.txt, or "
+              ".sqlite)");
 DEFINE_string(forces_out, "", "formation: net forces, one row a frame, person and part (CSV)");
 DEFINE_string(bvh_out, "",
               "formation: folder for the pendulums as BVH, with manifest.json and the pushes");
@@ -76,9 +80,9 @@ MaybeError CheckPicture(const std::string& flag, const std::string& file, int pe
 }  // namespace
 
 const char* GivenFormationOutput() {
-  std::vector<const char*> flags = {"csv_out",          "forces_out",  "bvh_out",   "svg_out",
-                                    "forces_svg_out",   "restoration", "generator", "html_out",
-                                    "forces_own_scale", "strip_out"};
+  std::vector<const char*> flags = {"csv_out",  "trajectories_out", "forces_out",  "bvh_out",
+                                    "svg_out",  "forces_svg_out",   "restoration", "generator",
+                                    "html_out", "forces_own_scale", "strip_out"};
   for (const std::vector<const char*>& more : {DiffusionFlagNames(), kOfBodies}) {
     flags.insert(flags.end(), more.begin(), more.end());
   }
@@ -89,7 +93,9 @@ Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
   for (MaybeError error :
        {CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave),
         CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces),
-        CheckOutputFiles({FLAGS_csv_out, FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out})}) {
+        CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out),
+        CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
+                          FLAGS_forces_svg_out})}) {
     if (error) return *error;
   }
   if (!FLAGS_bvh_out.empty()) {
@@ -98,10 +104,13 @@ Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
   if (FLAGS_forces_own_scale && FLAGS_forces_svg_out.empty()) {
     return Error{"--forces_own_scale needs --forces_svg_out"};
   }
-  return FormationOutputs{
-      FLAGS_csv_out,        FLAGS_forces_out,
-      FLAGS_bvh_out,        FLAGS_svg_out,
-      FLAGS_forces_svg_out, FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared};
+  return FormationOutputs{FLAGS_csv_out,
+                          FLAGS_trajectories_out,
+                          FLAGS_forces_out,
+                          FLAGS_bvh_out,
+                          FLAGS_svg_out,
+                          FLAGS_forces_svg_out,
+                          FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared};
 }
 
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {

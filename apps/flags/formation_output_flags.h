@@ -11,11 +11,12 @@ namespace pushid {
 
 // Files and folders; empty: not written.
 struct FormationOutputs {
-  std::string csv_out;         // trajectories
-  std::string forces_out;      // net forces by part (CSV)
-  std::string bvh_out;         // folder: pendulums as BVH, manifest, pushes
-  std::string svg_out;         // picture of the wave
-  std::string forces_svg_out;  // picture of the net forces
+  std::string csv_out;           // trajectories
+  std::string trajectories_out;  // hips, for PedPy and JuPedSim
+  std::string forces_out;        // net forces by part (CSV)
+  std::string bvh_out;           // folder: pendulums as BVH, manifest, pushes
+  std::string svg_out;           // picture of the wave
+  std::string forces_svg_out;    // picture of the net forces
   ForceScale force_scale = ForceScale::kShared;
 };
 // Errors: outputs that cannot be written, or too many people for a picture.

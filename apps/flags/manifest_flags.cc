@@ -13,7 +13,8 @@ DEFINE_string(pattern, "",
               "setting, subject, magnitude, condition and person are understood, any other "
               "{name} tells recordings apart, * does not matter");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with names of --pattern");
-DEFINE_string(masses, "", "CSV file id,mass_kg of the subjects");
+DEFINE_string(masses, "",
+              "masses of the subjects: a CSV file id,mass_kg, or participants.tsv of Motion-BIDS");
 DEFINE_double(mass_kg, pushid::ManifestOptions{}.mass_kg,
               "mass of everybody who is not in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: as each file says");

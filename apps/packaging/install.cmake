@@ -61,7 +61,7 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS snakemake)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libpushid-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev")
+    "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev, libsqlite3-dev")
 set(CPACK_DEBIAN_TRAINING_PACKAGE_NAME pushid-training)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pushid)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

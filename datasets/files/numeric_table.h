@@ -6,7 +6,7 @@
 //   Storage: a head with `name=value` lines and `endheader`, then a line of column names and rows,
 //   separated by blanks.
 //
-// Cells that are empty, NaN or nan are missing and come out as NaN.
+// Cells that are empty, NaN, nan or n/a are missing and come out as NaN.
 #pragma once
 
 #include <functional>
@@ -42,6 +42,8 @@ struct TableReadOptions {
   // Which columns to keep, from all names; unset: all.
   std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
   bool keep_lines = false;
+  // Of every column, where the file has no line of names (and tabs between its cells).
+  std::vector<std::string> names;
 };
 
 // Errors name the line: no names, a name twice, rows of another length, text that is no number, a

@@ -26,13 +26,7 @@ const MotionFormatRow& RowOf(MotionFormat format) {
 
 std::string Name(MotionFormat format) { return RowOf(format).key; }
 
-std::string Title(MotionFormat format) {
-  std::string title = Name(format);
-  for (char& c : title) {
-    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  }
-  return title;
-}
+std::string Title(MotionFormat format) { return RowOf(format).title; }
 
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path) {
   const std::size_t dot = path.rfind('.');

@@ -13,17 +13,29 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d_points.h"
+#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/formats/table_points.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/formats/trc.h"
 
 namespace pushid {
 
-enum class MotionFormat { kBvh, kC3d, kTrc, kCsv, kStorage };
+enum class MotionFormat {
+  kBvh,
+  kC3d,
+  kTrc,
+  kCsv,
+  kStorage,
+  kBids,
+  kTrajectoryText,
+  kTrajectorySqlite
+};
 
 struct MotionFormatRow {
   MotionFormat format;
   const char* key;                     // of the list of files in a manifest
+  const char* title;                   // as people write it
   std::array<const char*, 2> endings;  // of file names, whatever the case; null: none
   // Null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
   Result<PointMotion> (*read)(const std::string& path, const PointReadOptions& options);
@@ -31,16 +43,38 @@ struct MotionFormatRow {
 };
 
 inline constexpr MotionFormatRow kMotionFormats[] = {
-    {MotionFormat::kBvh, "bvh", {"bvh"}, nullptr, std::nullopt},
-    {MotionFormat::kC3d, "c3d", {"c3d"}, &ReadC3dPoints, std::nullopt},
-    {MotionFormat::kTrc, "trc", {"trc"}, &ReadTrc, std::nullopt},
-    {MotionFormat::kCsv, "csv", {"csv"}, &ReadCsvPoints, TableFormat::kCsv},
-    {MotionFormat::kStorage, "sto", {"sto", "mot"}, &ReadStoragePoints, TableFormat::kStorage},
+    {MotionFormat::kBvh, "bvh", "BVH", {"bvh"}, nullptr, std::nullopt},
+    {MotionFormat::kC3d, "c3d", "C3D", {"c3d"}, &ReadC3dPoints, std::nullopt},
+    {MotionFormat::kTrc, "trc", "TRC", {"trc"}, &ReadTrc, std::nullopt},
+    {MotionFormat::kCsv, "csv", "CSV", {"csv"}, &ReadCsvPoints, TableFormat::kCsv},
+    {MotionFormat::kStorage,
+     "sto",
+     "STO",
+     {"sto", "mot"},
+     &ReadStoragePoints,
+     TableFormat::kStorage},
+    {MotionFormat::kBids, "tsv", "Motion-BIDS", {"tsv"}, &ReadMotionBids, std::nullopt},
+    {MotionFormat::kTrajectoryText,
+     "txt",
+     "trajectories",
+     {"txt"},
+     &ReadTrajectoryText,
+     std::nullopt},
+    {MotionFormat::kTrajectorySqlite,
+     "sqlite",
+     "JuPedSim SQLite",
+     {"sqlite"},
+     &ReadTrajectorySqlite,
+     std::nullopt},
 };
 
 const MotionFormatRow& RowOf(MotionFormat format);
 
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
+// Whether its points are people of a crowd.
+inline bool HoldsCrowd(MotionFormat format) {
+  return format == MotionFormat::kTrajectoryText || format == MotionFormat::kTrajectorySqlite;
+}
 // The manifest's key: "bvh", "c3d", ...
 std::string Name(MotionFormat format);
 // As people write it: "BVH", "C3D", ...

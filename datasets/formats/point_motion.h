@@ -1,5 +1,6 @@
-// datasets: trajectories of named points (markers or joints) from files other than BVH: C3D, TRC,
-// and tables (CSV, OpenSim STO and MOT) with three columns per point.
+// datasets: trajectories of named points (markers, joints or people of a crowd) from files other
+// than BVH: C3D, TRC, tables (CSV, OpenSim STO and MOT) with three columns per point, Motion-BIDS,
+// trajectories of crowds.
 //
 //   Result<PointMotion> motion = ReadTrc("trial.trc");  // any format: motion_formats.h
 #pragma once

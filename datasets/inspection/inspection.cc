@@ -11,39 +11,18 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
+#include "datasets/inspection/inspect_crowd.h"
+#include "datasets/inspection/inspect_forces.h"
 #include "datasets/inspection/inspect_manifest.h"
 #include "datasets/inspection/inspect_motion.h"
 #include "datasets/manifest/role_choice.h"
-#include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_csv.h"
 
 namespace pushid {
 namespace {
-
-constexpr std::size_t kMostSignals = 6;  // in the picture
-constexpr double kForceOnset = 20.0;     // N
-
-// Peak, impulse and onset of a force; keeps it for the picture.
-void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
-              Inspection* found) {
-  double peak = 0.0, impulse = 0.0;
-  int onset = -1;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) continue;
-    if (std::fabs(values[i]) > std::fabs(peak)) peak = values[i];
-    impulse += values[i] / rate_hz;
-    if (onset < 0 && std::fabs(values[i]) > kForceOnset) onset = static_cast<int>(i);
-  }
-  found->Fact(name, "peak " + Rounded(peak, 3) + " N, impulse " + Rounded(impulse, 3) + " N s" +
-                        (onset >= 0 ? ", above " + Rounded(kForceOnset) + " N from " +
-                                          Rounded(onset / rate_hz, 3) + " s"
-                                    : ""));
-  if (found->forces.size() < kMostSignals) {
-    found->forces.push_back({name, "N", rate_hz, std::move(values)});
-  }
-}
 
 // A warning where hip and ankles cannot be found.
 void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
@@ -109,52 +88,6 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   return std::nullopt;
 }
 
-void LookAtAnalog(const C3dFile& file, Inspection* found) {
-  std::vector<std::string> names;
-  std::set<std::string> units;
-  for (const C3dAnalogChannel& channel : file.analog) {
-    names.push_back(channel.name);
-    units.insert(channel.unit);
-    const bool steady =
-        std::all_of(channel.samples.begin(), channel.samples.end(),
-                    [&channel](double sample) { return sample == channel.samples[0]; });
-    if (steady && file.num_frames() > 1) names.back() += " (constant)";
-  }
-  found->Fact("analog", ListOfNames(names) + " at " + Rounded(file.analog_rate_hz) +
-                            " per second, in " + ListOfNames({units.begin(), units.end()}));
-  for (const C3dAnalogChannel& channel : file.analog) {
-    if (channel.unit == "N" && file.platforms.empty()) {
-      AddForce(channel.name, file.analog_rate_hz, channel.samples, found);
-    }
-  }
-}
-
-void LookAtPlatforms(const C3dFile& file, Inspection* found) {
-  const LengthUnit unit = LengthUnitFromName(file.point_unit).value_or(LengthUnit::kMillimetre);
-  for (std::size_t i = 0; i < file.platforms.size(); ++i) {
-    const std::string name = "platform:" + std::to_string(i + 1);
-    const Result<PlatformRecord> platform = EvaluatePlatform(file, static_cast<int>(i), unit);
-    if (!platform.ok()) {
-      found->Warn(platform.error().message);
-      continue;
-    }
-    const Eigen::Vector3d& normal = platform.value().normal;
-    std::vector<double> pressing;
-    for (const Eigen::Vector3d& force : platform.value().force) {
-      pressing.push_back(force.dot(normal));
-    }
-    found->Fact(name + " type", std::to_string(file.platforms[i].type) + ", surface faces (" +
-                                    Rounded(normal.x(), 2) + ", " + Rounded(normal.y(), 2) + ", " +
-                                    Rounded(normal.z(), 2) + ")");
-    AddForce(name, platform.value().rate_hz, std::move(pressing), found);
-    if (file.platforms[i].origin.z() > 0.0) {
-      found->Warn(name +
-                  " has its sensors above its surface (ORIGIN z > 0); they are taken to be "
-                  "below");
-    }
-  }
-}
-
 MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   const Result<C3dFile> read = ReadC3d(found->path, {true});
   if (!read.ok()) return read.error();
@@ -177,6 +110,30 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
     found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
                              (event.context.empty() ? "" : " (" + event.context + ")"));
   }
+  return std::nullopt;
+}
+
+MaybeError LookAtBids(const ColumnMapping& mapping, Inspection* found) {
+  const Result<BidsHeader> header = ReadBidsHeader(found->path);
+  if (!header.ok()) return header.error();
+  const Result<NumericTable> table = ReadBidsTable(found->path, header.value());
+  if (!table.ok()) return table.error();
+  const std::vector<BidsChannel>& channels = header.value().channels;
+  found->Fact("channels", ListOfNames(table.value().names));
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i].units != "N") continue;
+    AddForce(channels[i].name, header.value().rate_hz, table.value().data[i], found);
+  }
+  const Result<PointMotion> motion = ReadPointMotion(found->path, MotionFormat::kBids);
+  if (!motion.ok()) return motion.error();
+  LookAtPoints(motion.value(), mapping, found);
+  return std::nullopt;
+}
+
+MaybeError LookAtCrowd(MotionFormat format, Inspection* found) {
+  const Result<PointMotion> motion = ReadPointMotion(found->path, format);
+  if (!motion.ok()) return motion.error();
+  InspectCrowd(motion.value(), found);
   return std::nullopt;
 }
 
@@ -265,6 +222,8 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   found->format = Title(*format);
   if (HasSkeleton(*format)) return LookAtBvh(mapping, found);
   if (*format == MotionFormat::kC3d) return LookAtC3d(mapping, found);
+  if (*format == MotionFormat::kBids) return LookAtBids(mapping, found);
+  if (HoldsCrowd(*format)) return LookAtCrowd(*format, found);
   if (!RowOf(*format).table) {
     const Result<PointMotion> motion = ReadPointMotion(path, *format);
     if (!motion.ok()) return motion.error();

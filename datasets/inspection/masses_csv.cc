@@ -1,28 +1,64 @@
-// datasets: masses of subjects from a CSV file.
+// datasets: masses of subjects from a CSV file, or from Motion-BIDS's participants.tsv.
+#include <algorithm>
+
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
+#include "datasets/files/table_cells.h"
 #include "datasets/inspection/manifest_maker.h"
 
 namespace pushid {
+namespace {
+
+constexpr char kBidsPrefix[] = "sub-";  // of participants
+
+std::vector<std::string> Cells(std::string_view line, char separator) {
+  std::vector<std::string> cells;
+  TableCells row(line, separator);
+  for (std::string_view cell; row.Next(&cell);) cells.emplace_back(Trimmed(cell));
+  return cells;
+}
+
+// Which cells hold who and how heavy.
+struct MassColumns {
+  char separator = ',';
+  std::size_t id = 0, mass = 1, count = 2;
+};
+
+Result<MassColumns> ReadHead(const LineReader& reader, std::string_view line) {
+  MassColumns columns;
+  if (line.find('\t') == std::string_view::npos) {
+    if (Cells(line, ',') == std::vector<std::string>{"id", "mass_kg"}) return columns;
+    return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
+  }
+  const std::vector<std::string> names = Cells(line, '\t');
+  const auto place = [&names](const char* name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  columns = {'\t', place("participant_id"), std::min(place("mass_kg"), place("weight")),
+             names.size()};
+  if (columns.id < names.size() && columns.mass < names.size()) return columns;
+  return reader.ErrorHere("participants need the columns participant_id and mass_kg, not " +
+                          Quoted(line));
+}
+
+}  // namespace
 
 Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
   LineReader reader;
   if (MaybeError failed = reader.Open(path)) return *std::move(failed);
   std::map<std::string, double> masses;
   std::string_view line;
-  bool head = true;
+  if (!reader.NextNonBlank(&line)) {
+    return reader.error() ? *reader.error() : Error{"the file lists no masses", path};
+  }
+  const Result<MassColumns> columns = ReadHead(reader, line);
+  if (!columns.ok()) return columns.error();
   while (reader.NextNonBlank(&line)) {
-    const std::size_t comma = line.find(',');
-    const std::string_view id = Trimmed(line.substr(0, comma));
-    const std::string_view mass =
-        comma == std::string_view::npos ? "" : Trimmed(line.substr(comma + 1));
-    if (head) {
-      if (id != "id" || mass != "mass_kg") {
-        return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
-      }
-      head = false;
-      continue;
-    }
+    std::vector<std::string> cells = Cells(line, columns.value().separator);
+    cells.resize(std::max(cells.size(), columns.value().count));
+    std::string id = cells[columns.value().id];
+    if (id.rfind(kBidsPrefix, 0) == 0 && columns.value().separator == '\t') id.erase(0, 4);
+    const std::string& mass = cells[columns.value().mass];
     double value = 0.0;
     if (!ParseDouble(mass, &value)) return reader.ErrorHere("mass_kg: " + NumberProblem(mass));
     if (!(value > 0.0 && value <= kHeaviestPerson)) {

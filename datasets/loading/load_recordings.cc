@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/motion_bids.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/loading/load_person.h"
 #include "datasets/manifest/manifest_keys.h"
@@ -19,16 +21,15 @@ Error OfRecording(const ManifestRecording& entry, Error error) {
   return error;
 }
 
-Result<Push> LoadPush(const std::string& manifest, const ManifestPush& entry, int num_frames,
-                      ContentHash* hash) {
-  Push push;
-  push.person = entry.person;
-  push.start_frame = entry.start_frame;
-  push.file = ResolvePath(manifest, entry.csv);
-  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(push.file);
+// One, or several where a Motion-BIDS file holds them; frames count from the push's own start.
+Result<std::vector<TimedForce>> ReadPushFile(const std::string& path) {
+  if (MotionFormatOfFile(path) == MotionFormat::kBids) return ReadBidsPushes(path);
+  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(path);
   if (!force.ok()) return force.error();
-  push.force = std::move(force.value());
+  return std::vector<TimedForce>{{0, std::move(force.value())}};
+}
 
+MaybeError CheckWithin(const Push& push, int num_frames) {
   const std::string motion = "the motion has " + std::to_string(num_frames) + " frames";
   if (push.start_frame > num_frames - 2) {
     return Error{"the push starts at frame " + std::to_string(push.start_frame) + ", but " + motion,
@@ -36,18 +37,33 @@ Result<Push> LoadPush(const std::string& manifest, const ManifestPush& entry, in
   }
   // One row per frame is fine: a sensor records as long as the cameras, its last row drives no
   // step.
-  if (push.force.size() > static_cast<std::size_t>(num_frames - push.start_frame)) {
-    return Error{
-        "the push is longer than the motion: it has " + std::to_string(push.force.size()) +
-            " rows" +
-            (push.start_frame > 0 ? " from frame " + std::to_string(push.start_frame) : "") + ", " +
-            motion,
-        push.file, 0};
+  if (push.force.size() <= static_cast<std::size_t>(num_frames - push.start_frame)) {
+    return std::nullopt;
+  }
+  return Error{"the push is longer than the motion: it has " + std::to_string(push.force.size()) +
+                   " rows" +
+                   (push.start_frame > 0 ? " from frame " + std::to_string(push.start_frame) : "") +
+                   ", " + motion,
+               push.file, 0};
+}
+
+MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, ContentHash* hash,
+                      Recording* recording) {
+  Push push;
+  push.person = entry.person;
+  push.file = ResolvePath(manifest, entry.csv);
+  Result<std::vector<TimedForce>> read = ReadPushFile(push.file);
+  if (!read.ok()) return read.error();
+  for (TimedForce& timed : read.value()) {
+    push.start_frame = entry.start_frame + timed.start_frame;
+    push.force = std::move(timed.force);
+    if (MaybeError failed = CheckWithin(push, recording->num_frames())) return failed;
+    recording->pushes.push_back(push);
   }
   const Result<std::string> file_hash = HashFile(push.file);
   if (!file_hash.ok()) return file_hash.error();
   hash->Add(file_hash.value());
-  return push;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -96,9 +112,9 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
   }
   for (const ManifestPush& push : pushes) {
-    Result<Push> loaded = LoadPush(entry.manifest, push, recording.num_frames(), &hash);
-    if (!loaded.ok()) return OfRecording(entry, loaded.error());
-    recording.pushes.push_back(std::move(loaded.value()));
+    if (MaybeError failed = LoadPushes(entry.manifest, push, &hash, &recording)) {
+      return OfRecording(entry, *std::move(failed));
+    }
   }
   recording.content_hash = hash.Hex();
   if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {

@@ -9,6 +9,7 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/axes.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/sensors/force_platform.h"
 
@@ -24,6 +25,33 @@ Error NoColumn(const SensorChoice& choice, const char* noun,
   return error;
 }
 
+// The column of this name, or the three whose common part it is; empty: none.
+std::vector<int> ColumnsCalled(const std::string& name, const std::vector<std::string>& names) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return {static_cast<int>(i)};
+  }
+  for (const TablePoint& point : PointsOf(names)) {
+    if (point.name == name) return {point.columns, point.columns + 3};
+  }
+  return {};
+}
+
+// The first columns of the table, one or three.
+MaybeError TakeForces(const SensorChoice& choice, const NumericTable& table, std::size_t columns,
+                      SensorRecord* record) {
+  record->is_vector = columns == 3;
+  for (int row = 0; row < table.num_rows(); ++row) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < columns; ++i) force[i] = table.data[i][row];
+    if (!force.allFinite()) {
+      return Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
+                   table.lines[row]};
+    }
+    record->force.push_back(force);
+  }
+  return std::nullopt;
+}
+
 // Times and values of a column or three.
 Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
   std::vector<int> columns;
@@ -33,14 +61,7 @@ Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
   options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
     time = FindTimeColumn(names, "");
     if (time < 0) return Error{"there is no column called time", choice.file};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == choice.column) columns = {static_cast<int>(i)};
-    }
-    for (const TablePoint& point : PointsOf(names)) {
-      if (columns.empty() && point.name == choice.column) {
-        columns.assign(point.columns, point.columns + 3);
-      }
-    }
+    columns = ColumnsCalled(choice.column, names);
     if (columns.empty()) return NoColumn(choice, "column", names);
     std::vector<int> wanted = columns;
     wanted.push_back(time);
@@ -49,26 +70,50 @@ Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
   const Result<NumericTable> table = ReadNumericTable(choice.file, format, options);
   if (!table.ok()) return table.error();
   SensorRecord record;
-  record.is_vector = columns.size() == 3;
   record.time_s = table.value().data.back();
   const Result<double> step = EvenTimeStep(table.value(), time);
   if (!step.ok()) return step.error();
+  if (MaybeError failed = TakeForces(choice, table.value(), columns.size(), &record)) {
+    return *std::move(failed);
+  }
+  return record;
+}
+
+// A channel of a Motion-BIDS file, or three: "cell" for cell_x, cell_y, cell_z. Its clock starts
+// with the file.
+Result<SensorRecord> FromBids(const SensorChoice& choice) {
+  const Result<BidsHeader> header = ReadBidsHeader(choice.file);
+  if (!header.ok()) return header.error();
+  std::vector<int> columns;
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    columns = ColumnsCalled(choice.column, names);
+    if (columns.empty()) return NoColumn(choice, "channel", names);
+    return columns;
+  };
+  const Result<NumericTable> table = ReadBidsTable(choice.file, header.value(), options);
+  if (!table.ok()) return table.error();
+  SensorRecord record;
   for (int row = 0; row < table.value().num_rows(); ++row) {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < columns.size(); ++i) force[i] = table.value().data[i][row];
-    if (!force.allFinite()) {
-      return Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
-                   table.value().lines[row]};
-    }
-    record.force.push_back(force);
+    record.time_s.push_back(row / header.value().rate_hz);
+  }
+  if (MaybeError failed = TakeForces(choice, table.value(), columns.size(), &record)) {
+    return *std::move(failed);
   }
   return record;
 }
 
 // For files that hold more than a push.
-Error WhichColumn(const SensorChoice& choice, bool c3d) {
+Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
   std::vector<std::string> names;
-  if (c3d) {
+  if (format == MotionFormat::kBids) {
+    const Result<BidsHeader> header = ReadBidsHeader(choice.file);
+    if (!header.ok()) return header.error();
+    for (const BidsChannel& channel : header.value().channels) {
+      if (!EqualsIgnoringCase(channel.type, "POS")) names.push_back(channel.name);
+    }
+  } else if (format == MotionFormat::kC3d) {
     const Result<C3dFile> file = ReadC3d(choice.file);
     if (!file.ok()) return file.error();
     for (const C3dAnalogChannel& channel : file.value().analog) names.push_back(channel.name);
@@ -155,17 +200,18 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
   const Result<Eigen::Matrix3d> rotation = AxesRotation(
       choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
   if (!rotation.ok()) return rotation.error();
-  const std::optional<MotionFormat> format = MotionFormatOfFile(choice.file);
-  const bool c3d = format == MotionFormat::kC3d, storage = format == MotionFormat::kStorage;
-  if (choice.column.empty() && (c3d || storage)) return WhichColumn(choice, c3d);
+  const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
+  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage ||
+                       format == MotionFormat::kBids;
+  if (choice.column.empty() && several) return WhichColumn(choice, format);
   if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
     return Error{"the gain of a sensor must be a number of N per unit other than 0"};
   }
   Result<SensorRecord> record =
-      c3d ? FromC3d(choice, rotation.value().row(2).transpose())
-      : choice.column.empty()
-          ? ReadSensorCsv(choice.file)
-          : FromTable(choice, storage ? TableFormat::kStorage : TableFormat::kCsv);
+      format == MotionFormat::kC3d    ? FromC3d(choice, rotation.value().row(2).transpose())
+      : format == MotionFormat::kBids ? FromBids(choice)
+      : choice.column.empty()         ? ReadSensorCsv(choice.file)
+                              : FromTable(choice, RowOf(format).table.value_or(TableFormat::kCsv));
   if (!record.ok()) return record;
   record.value().file = choice.file;
   if (choice.zero_n != 0.0 && record.value().is_vector) {

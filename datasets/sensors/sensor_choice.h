@@ -1,5 +1,6 @@
 // datasets: force sensors in any file: CSV of the two forms in sensor_csv.h, a column or three of
-// another CSV or an OpenSim storage file, an analog channel or a force platform of a C3D file.
+// another CSV or an OpenSim storage file, a channel or three of a Motion-BIDS file, an analog
+// channel or a force platform of a C3D file.
 #pragma once
 
 #include <Eigen/Core>

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "datasets/exchange/hip_trajectories.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/push_csv.h"
@@ -100,6 +101,17 @@ MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
     }
   }
   return file.Commit();
+}
+
+MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run) {
+  PointMotion motion;
+  motion.rate_hz = 1.0 / run.recording.scene.dt;
+  motion.names = run.recording.subject_ids;
+  for (int n = 0; n < run.num_people(); ++n) {
+    motion.chosen.push_back(n);
+    motion.positions.push_back(run.prediction.hip[n]);
+  }
+  return WriteTrajectories(path, motion);
 }
 
 MaybeError WriteFormationRecording(const std::string& folder, const FormationRun& run) {

@@ -12,6 +12,9 @@ namespace pushid {
 //   frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm
 MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run);
 
+// The hips, for programs that know crowds; the file's ending says the format (hip_trajectories.h).
+MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run);
+
 // The pendulums as recordings: folder/manifest.json, folder/bvh/NAME.bvh and folder/push/*.csv, in
 // millimetres. Each BVH is Cart (position) -> Rod (rotations phi about x, then theta about y) ->
 // Hips, with both ankles at the cart's sides, so that the programs that read recordings find cart,

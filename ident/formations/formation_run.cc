@@ -102,9 +102,11 @@ std::vector<ForcePart> ActingParts(const FormationRun& run) {
   return acting;
 }
 
-FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames) {
+FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
+                          const std::vector<std::string>& names) {
   FormationRun run;
   run.recording = AsRecording(scene);
+  if (!names.empty()) run.recording.subject_ids = names;
   // No person of a formation is a subject of the fit.
   IdentifiedModel shared = model;
   shared.by_unit.clear();

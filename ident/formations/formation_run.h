@@ -53,7 +53,9 @@ struct FormationRun {
 std::vector<ForcePart> ActingParts(const FormationRun& run);
 
 // When the prediction leaves the model's domain, the summaries stay empty.
-FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames);
+// names: of the people; empty: p00, p01, ...
+FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
+                          const std::vector<std::string>& names = {});
 
 // |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.
 double HipSpeed(const FormationRun& run, int person, int frame);

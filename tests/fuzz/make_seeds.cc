@@ -10,6 +10,7 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/push_csv.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -76,6 +77,8 @@ NumericTable SampleTable() {
 }
 
 void TextSeeds(const std::string& out) {
+  Check(WriteTrajectoryText(In(out, "trajectories", "a.txt"), SamplePoints()));
+  Check(WriteTrajectorySqlite(In(out, "trajectories", "a.sqlite"), SamplePoints()));
   Check(WriteTrc(In(out, "trc", "a.trc"), SamplePoints()));
   Check(WriteNumericTable(In(out, "trc", "a.sto"), TableFormat::kStorage, SampleTable()));
   Check(WriteNumericTable(In(out, "csv", "table.csv"), TableFormat::kCsv, SampleTable()));

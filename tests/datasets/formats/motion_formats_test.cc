@@ -16,7 +16,7 @@ TEST(MotionFormatsTest, ByTheFilesEnding) {
   EXPECT_EQ(MotionFormatOfFile("run.sto"), MotionFormat::kStorage);
   EXPECT_EQ(MotionFormatOfFile("run.mot"), MotionFormat::kStorage);
   EXPECT_FALSE(MotionFormatOfFile("bvh"));
-  EXPECT_FALSE(MotionFormatOfFile("a.bvh.txt"));
+  EXPECT_FALSE(MotionFormatOfFile("a.bvh.gz"));
 }
 
 // Every format is found by its key, which is an ending of its files, and can be read.
@@ -27,8 +27,9 @@ TEST(MotionFormatsTest, EveryRow) {
     EXPECT_EQ(HasSkeleton(row.format), row.format == MotionFormat::kBvh);
   }
   EXPECT_EQ(Title(MotionFormat::kC3d), "C3D");
-  EXPECT_EQ(MotionKeys(), "bvh, c3d, trc, csv, sto");
-  EXPECT_EQ(MotionFileEndings(), ".bvh, .c3d, .trc, .csv, .sto, .mot");
+  EXPECT_EQ(Title(MotionFormat::kBids), "Motion-BIDS");
+  EXPECT_EQ(MotionKeys(), "bvh, c3d, trc, csv, sto, tsv, txt, sqlite");
+  EXPECT_EQ(MotionFileEndings(), ".bvh, .c3d, .trc, .csv, .sto, .mot, .tsv, .txt, .sqlite");
 }
 
 TEST(FrameRateTest, RoundedFrameTimesAreWholeRates) {

@@ -230,7 +230,7 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   EXPECT_TRUE(Contains(MakingMessage(), "are both recording 'anna'"));
   options_.pattern = "{subject}.c3d";
   EXPECT_TRUE(Contains(MakingMessage(), "none of its 6 files fits"));
-  options_.pattern = "{subject}.txt";
+  options_.pattern = "{subject}.md";
   EXPECT_TRUE(Contains(MakingMessage(), "must end like its files"));
   options_.pattern = "{subject}.bvh";
   options_.folder = Path("nowhere");

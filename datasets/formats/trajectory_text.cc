@@ -1,0 +1,135 @@
+// datasets: trajectories as text.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/input_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/trajectories.h"
+#include "datasets/formats/trajectory_rows.h"
+
+namespace pushid {
+namespace {
+
+// The first number of the comment's words.
+double NumberIn(std::string_view comment) {
+  for (std::string_view word = NextToken(&comment); !word.empty(); word = NextToken(&comment)) {
+    double number = 0.0;
+    if (ParseDouble(word, &number)) return number;
+  }
+  return 0.0;
+}
+
+bool Holds(std::string_view text, std::string_view word) {
+  return text.find(word) != std::string_view::npos;
+}
+
+void ReadComment(std::string_view comment, PointMotion* motion) {
+  if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
+  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
+    if (Holds(comment, "x/" + Name(unit)) || Holds(comment, "in " + Name(unit))) {
+      motion->unit = unit;
+      return;
+    }
+  }
+}
+
+MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRows* rows) {
+  std::int64_t id[2] = {0, 0};
+  for (int i = 0; i < 2; ++i) {
+    const std::string_view token = NextToken(&line);
+    double number = 0.0;
+    if (!ParseDouble(token, &number) || number != std::floor(number) || std::fabs(number) > 1e15) {
+      return reader.ErrorHere(std::string(i == 0 ? "the id" : "the frame") +
+                              " must be a whole number, not " + Quoted(token) +
+                              "; a row is: id frame x y z");
+    }
+    id[i] = static_cast<std::int64_t>(number);
+  }
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string_view token = NextToken(&line);
+    if (axis == 2 && token.empty()) break;
+    if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
+    if (!ParseDouble(token, &position[axis])) {
+      return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
+    }
+  }
+  if (rows->Add(id[0], id[1], position)) return std::nullopt;
+  return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
+                          std::to_string(id[1]) + " before");
+}
+
+}  // namespace
+
+Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
+  LineReader reader;
+  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+  PointMotion motion;
+  motion.path = path;
+  motion.unit = LengthUnit::kMetre;
+  TrajectoryRows rows;
+  std::string_view line;
+  while (reader.NextNonBlank(&line)) {
+    line = Trimmed(line);
+    if (line.front() == '#') {
+      ReadComment(line.substr(1), &motion);
+    } else if (MaybeError failed = ReadRow(reader, line, &rows)) {
+      return *std::move(failed);
+    }
+  }
+  if (reader.error()) return *reader.error();
+  const std::string problem = FrameRateProblem(motion.rate_hz);
+  if (!problem.empty()) {
+    return Error{"no comment says the frames per second; add a line such as '# framerate: 16'",
+                 path};
+  }
+  if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);
+  motion.content_hash = reader.HashHex();
+  return motion;
+}
+
+std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
+  std::vector<std::int64_t> ids(names.size());
+  std::set<std::int64_t> seen;
+  bool numbers = true;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
+  }
+  for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
+    ids[i] = static_cast<std::int64_t>(i) + 1;
+  }
+  return ids;
+}
+
+MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion) {
+  AtomicFile file;
+  if (MaybeError failed = file.Open(path)) return failed;
+  const std::vector<std::int64_t> ids = TrajectoryIds(motion.names);
+  // PedPy takes the rate from the word after framerate, and the unit from x/m.
+  std::string text = "# framerate: " + DoubleText(motion.rate_hz) + "\n";
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (std::to_string(ids[i]) == motion.names[i]) continue;
+    text += "# person " + std::to_string(ids[i]) + ": " + motion.names[i] + "\n";
+  }
+  text += "# id\tframe\tx/m\ty/m\tz/m\n";
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (int frame = 0; frame < motion.num_frames(); ++frame) {
+      const Eigen::Vector3d& position = motion.positions[i][frame];
+      if (!position.allFinite()) continue;
+      text += std::to_string(ids[i]) + '\t' + std::to_string(frame);
+      for (int axis = 0; axis < 3; ++axis) {
+        text += '\t';
+        AppendDouble(position[axis], &text);
+      }
+      text += '\n';
+    }
+    file.Append(text);
+    text.clear();
+  }
+  return file.Commit();
+}
+
+}  // namespace pushid

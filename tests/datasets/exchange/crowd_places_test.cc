@@ -1,0 +1,39 @@
+// Where a crowd's people stand in one frame.
+#include "datasets/exchange/crowd_places.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+class CrowdPlacesTest : public TempDirTest {
+ protected:
+  std::string Crowd() {
+    return WriteText("crowd.txt",
+                     "# framerate: 10\n# id frame x/cm y/cm\n1 5 100 0\n2 5 50 30\n3 5 50 -30\n1 6 "
+                     "110 0\n4 7 0 0\n");
+  }
+};
+
+TEST_F(CrowdPlacesTest, FromTheBackForwardsInMetres) {
+  const auto read = ReadCrowdPlaces(Crowd(), 0);
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  ASSERT_EQ(read.value().size(), 3u);
+  EXPECT_EQ(read.value()[0].name, "3");
+  EXPECT_EQ(read.value()[1].name, "2");
+  EXPECT_EQ(read.value()[2].name, "1");
+  EXPECT_EQ(read.value()[0].position, Eigen::Vector2d(0.5, -0.3));
+  EXPECT_EQ(ReadCrowdPlaces(Crowd(), 1).value().size(), 1u);
+}
+
+TEST_F(CrowdPlacesTest, Errors) {
+  EXPECT_TRUE(Contains(ReadCrowdPlaces(Crowd(), 3).error().ToString(),
+                       "there is no frame 3; frames count from 0 to 2"));
+  EXPECT_TRUE(Contains(ReadCrowdPlaces(Crowd(), -1).error().ToString(), "there is no frame -1"));
+  EXPECT_TRUE(Contains(ReadCrowdPlaces("a.csv", 0).error().ToString(), ".txt or .sqlite"));
+}
+
+}  // namespace
+}  // namespace pushid
