@@ -38,8 +38,8 @@ Result<std::vector<std::string>> WriteScene(const PredictFlags& flags, const Bod
 
 int WriteBodies(const PredictFlags& flags, const Recording& recorded, SkeletonMapping mapping,
                 const Prediction& prediction) {
-  const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, prediction.rod_moves);
+  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration(
+      flags.restoration, prediction.rod_moves, static_cast<int>(recorded.people.size()));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<BodyRecording> recording = MakeBodyRecording(recorded, mapping);
   if (!recording.ok()) return Fail(recording.error());

@@ -35,11 +35,12 @@ int Run() {
   const Result<std::vector<WhatIf>> what_ifs = LoadWhatIfs();
   if (!what_ifs.ok()) return Fail(what_ifs.error());
   const IdentifiedModel& model = what_ifs.value().front().model;
-  const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options));
-  if (!restoration.ok()) return Fail(restoration.error());
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id}, true);
   if (!recordings.ok()) return Fail(recordings.error());
+  const Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options),
+                             static_cast<int>(recordings.value().front().people.size()));
+  if (!restoration.ok()) return Fail(restoration.error());
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.mapping);
   if (!recording.ok() && flags.bodies_asked) return Fail(recording.error());
@@ -47,7 +48,6 @@ int Run() {
 
   const PendulumRecording pendulum =
       MakePendulumRecording(recordings.value().front(), model.mapping);
-  if (MaybeError error = WarnOfCrowd(flags.restoration, pendulum.num_people())) return Fail(*error);
   Animation animation;
   animation.title = pendulum.id;
   animation.dt = pendulum.scene.dt;

@@ -1,4 +1,5 @@
 // apps: pushid-evaluate: how far a model's predictions are from recordings, beside the baselines.
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 
@@ -26,8 +27,10 @@ Result<std::optional<BodyEvaluation>> Bodies(const EvaluateFlags& flags,
                                              const IdentifiedModel& model,
                                              const std::vector<Recording>& recordings) {
   if (!flags.restoration.given()) return std::optional<BodyEvaluation>();
+  size_t people = 0;
+  for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options));
+      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options), static_cast<int>(people));
   if (!restoration.ok()) return restoration.error();
   const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
   if (!bodies.ok()) return bodies.error();

@@ -70,10 +70,9 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
     plan.generator = std::move(generator.value());
   } else {
     Result<std::unique_ptr<Restoration>> restoration =
-        LoadFlaggedRestoration(flags.restoration, rod_moves);
+        LoadFlaggedRestoration(flags.restoration, rod_moves, scene->num_people());
     if (!restoration.ok()) return restoration.error();
     plan.restoration = std::move(restoration.value());
-    if (MaybeError error = WarnOfCrowd(flags.restoration, scene->num_people())) return *error;
   }
   const Result<std::vector<Pose>> poses =
       FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);

@@ -22,20 +22,9 @@ Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& othe
   return flags;
 }
 
-MaybeError CheckRod(const std::string& flag, bool rod_moves) {
-  if (!rod_moves) return std::nullopt;
-  return Error{
-      "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
-      "--rod=constant for --" +
-      flag};
-}
+namespace {
 
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            bool rod_moves) {
-  if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
-  return LoadRestoration(flags.name);
-}
-
+// A restoration that never saw a group is to make one.
 MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
   if (people < 2) return std::nullopt;
   const Result<bool> alone = LearnedAlone(flags.name);
@@ -46,6 +35,25 @@ MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
          "others push them on: train one with --more_settings=groups");
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+MaybeError CheckRod(const std::string& flag, bool rod_moves) {
+  if (!rod_moves) return std::nullopt;
+  return Error{
+      "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
+      "--rod=constant for --" +
+      flag};
+}
+
+Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
+                                                            bool rod_moves, int people) {
+  if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
+  Result<std::unique_ptr<Restoration>> restoration = LoadRestoration(flags.name);
+  if (!restoration.ok()) return restoration;
+  if (MaybeError error = WarnOfCrowd(flags, people)) return *error;
+  return restoration;
 }
 
 Error NeedsRestoration(const std::string& flag) {

@@ -24,11 +24,10 @@ Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& othe
 // carried by rods of constant length.
 MaybeError CheckRod(const std::string& flag, bool rod_moves);
 
+// people: the most there are in one recording. Warns where a restoration that never saw a group is
+// to make one.
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            bool rod_moves);
-
-// Warns where a restoration that never saw a group is to make one.
-MaybeError WarnOfCrowd(const RestorationFlags& flags, int people);
+                                                            bool rod_moves, int people);
 
 // "--joints_out needs bodies: name the folder ...".
 Error NeedsRestoration(const std::string& flag);

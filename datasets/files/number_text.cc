@@ -4,9 +4,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 namespace pushid {
 namespace {
+
+constexpr double kLargestPlain = 1e6;
 
 char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -101,6 +105,11 @@ std::string DoubleText(double value) {
 std::string Rounded(double value, int digits) {
   char buffer[64];
   std::snprintf(buffer, sizeof(buffer), "%.*g", digits, value);
+  // "1.05e+03" is hard to read: 1050.
+  const bool exponent = std::strchr(buffer, 'e') != nullptr;
+  if (exponent && std::fabs(value) >= 1.0 && std::fabs(value) < kLargestPlain) {
+    std::snprintf(buffer, sizeof(buffer), "%.0f", std::strtod(buffer, nullptr));
+  }
   return buffer;
 }
 

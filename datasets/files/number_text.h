@@ -35,7 +35,7 @@ std::string Quoted(std::string_view text);
 void AppendDouble(double value, std::string* out);
 std::string DoubleText(double value);
 
-// "%.<digits>g" for messages.
+// "%.<digits>g" for messages, without an exponent from 1 to a million: 1050, not 1.05e+03.
 std::string Rounded(double value, int digits = 6);
 
 }  // namespace pushid

@@ -5,6 +5,7 @@ motion     what groups do: social states, words of motion, who moved first; with
 crowds     people who were not recorded, ahead of a group and beside it
 spread     whether sampled futures hold what was recorded; with the first run
 seconds    six seconds of every group, beside physics
+poolings   errors by how people see each other; seven minutes of one core each
 
 PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
 diffusion and ten minutes for `window` bodies, which carry physics on the same folds.
@@ -53,6 +54,14 @@ def errors(json):
 def groups():
     return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"],
                          [[title, *errors(json)] for title, json in rows()])
+
+
+def poolings():
+    scored = [(pooling, studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
+                                              f"--pooling={pooling}").json)
+              for pooling in ("local", "mean", "attention", "none")]
+    return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"],
+                         [[f"`{pooling}`", *errors(json)] for pooling, json in scored])
 
 
 def share(value):
@@ -122,4 +131,5 @@ def seconds():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "crowds": crowds, "seconds": seconds})
+    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "crowds": crowds, "seconds": seconds,
+                            "poolings": poolings})
