@@ -1,5 +1,6 @@
 // apps: pushid-push: the push of a recording that has none, by inverse dynamics or from a sensor.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -106,6 +107,11 @@ void PrintPush(const RecordingsPush& of, double dt) {
   std::printf("impulse %s N s forwards, %s N s to the left; peak %s N\n",
               Rounded(impulse[0], 3).c_str(), Rounded(impulse[1], 3).c_str(),
               Rounded(peak, 3).c_str());
+  if (std::fabs(impulse[1]) > std::fabs(impulse[0])) {
+    Warn("recording " + of.id +
+         ": the push goes to the side rather than forwards; are `up` and `forward` of the manifest "
+         "right?");
+  }
   std::printf("written to %s\n", of.file.c_str());
 }
 

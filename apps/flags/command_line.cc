@@ -223,9 +223,29 @@ MaybeError CheckRange(const char* flag, double value, double lowest, double high
   return Error{text.str()};
 }
 
+namespace {
+
+// A file that would hold something else than its name says.
+MaybeError CheckEnding(const std::string& file) {
+  const size_t dot = file.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  for (const char* other : {"fbx", "obj", "usd", "png", "jpg", "jpeg", "gif", "mp4", "avi", "webm",
+                            "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
+    if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
+    return Error{"nothing writes ." + std::string(other) +
+                     "; pages are .html, pictures .svg, bodies .bvh, .gltf or .glb, tables .csv, "
+                     "models and scores .json",
+                 file};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 MaybeError CheckOutputFiles(std::initializer_list<std::string> files) {
   for (const std::string& file : files) {
     if (file.empty()) continue;
+    if (MaybeError error = CheckEnding(file)) return error;
     if (MaybeError error = CheckWritable(file)) return error;
   }
   return std::nullopt;

@@ -81,7 +81,8 @@ std::string PushFlags::OutOf(const std::string& id) const {
 Result<PushFlags> PushFlagsFromCommandLine() {
   PushFlags flags;
   flags.ids = FLAGS_id.empty() ? RecordingFlagsFromCommandLine().ids : std::vector{FLAGS_id};
-  if (flags.ids.empty()) return Error{"--id is missing: name a recording of the manifest"};
+  if (flags.ids.empty())
+    return Error{"--id is missing: name a recording of the manifest, or several by --ids"};
   if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) return *missing;
   if (MaybeError error = CheckInverseDynamics()) return *error;
   if (Given("resample_fps")) {

@@ -58,7 +58,7 @@ Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFla
 
 Error NeedsRestoration(const std::string& flag) {
   return Error{"--" + flag +
-               " needs bodies: name the folder of pushid-train-restoration by --restoration"};
+               " needs bodies: --restoration=rigid, or the folder of pushid-train-restoration"};
 }
 
 }  // namespace pushid

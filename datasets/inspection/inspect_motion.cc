@@ -15,6 +15,7 @@ namespace {
 
 using Track = std::vector<Eigen::Vector3d>;
 
+constexpr double kUsualRod = 0.9;                        // m
 constexpr double kShortestRod = 0.5, kLongestRod = 1.3;  // m; adults 0.7 to 1.1
 constexpr double kJumpSpeed = 12.0;     // m/s; no joint of a pushed person is as fast
 constexpr double kSmallestJump = 0.05;  // m; less is noise, however high the rate
@@ -178,8 +179,10 @@ class MotionInspector {
     }
     found_.Fact("standing height", "hip " + Rounded(rod * metres_, 3) + " m above the ankles");
     if (!fits) {
-      found_.Warn("no unit makes a standing person of it: hip " + Rounded(rod * metres_, 3) +
-                  " m above the ankles; check hip and ankles, or say the unit by length_scale");
+      found_.Warn(
+          "no unit makes a standing person of it: hip " + Rounded(rod * metres_, 3) +
+          " m above the ankles; check hip and ankles, or say the unit by length_scale (about " +
+          Rounded(kUsualRod / rod, 2) + " makes a person of it)");
     }
   }
 

@@ -10,12 +10,13 @@
 namespace pushid {
 namespace {
 
-constexpr double kStrong = 1000.0;                  // N
-constexpr double kStandsOut = 3.0;                  // times the largest of the other rows
-constexpr double kShortRod = 0.6, kLongRod = 1.2;   // m
-constexpr double kSeen = 0.5;                       // s after the push began
-constexpr double kMoved = 0.05;                     // m; less has no direction
-constexpr double kElsewhere = 60.0 * M_PI / 180.0;  // rad between push and way
+constexpr double kStrong = 1000.0;                       // N
+constexpr double kStandsOut = 3.0;                       // times the largest of the other rows
+constexpr double kShortRod = 0.6, kLongRod = 1.2;        // m
+constexpr double kSeen = 0.5;                            // s after the push began
+constexpr double kMoved = 0.05;                          // m; less has no direction
+constexpr double kFacesElsewhere = 75.0 * M_PI / 180.0;  // rad; one foot may be ahead
+constexpr double kElsewhere = 60.0 * M_PI / 180.0;       // rad between push and way
 
 double Horizontal(const Eigen::Vector4d& row) { return row.head<2>().norm(); }
 
@@ -34,6 +35,14 @@ double AngleToWay(const Recording& recording, const Push& push) {
   const Eigen::Vector2d way = (hip[end] - hip[push.start_frame]).head<2>();
   if (way.norm() < kMoved || !(impulse.norm() > 0.0)) return 0.0;
   return std::acos(std::clamp(impulse.normalized().dot(way.normalized()), -1.0, 1.0));
+}
+
+// rad between forward and where the person faces by the line between the ankles, +-; 0 where they
+// stand too close to say it.
+double FacingAngle(const RecordedPerson& person) {
+  const Eigen::Vector2d to_the_left = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
+  if (to_the_left.norm() < kMoved) return 0.0;
+  return std::atan2(-to_the_left.x(), to_the_left.y());
 }
 
 }  // namespace
@@ -61,6 +70,12 @@ void PlausibilityCheck::Look(const Recording& recording) {
     }
   }
   for (const RecordedPerson& person : recording.people) {
+    const double facing = std::fabs(FacingAngle(person));
+    if (facing > kFacesElsewhere) {
+      facing_.cases.push_back(
+          recording.id + ", " +
+          Case(person.subject_id, std::round(facing * 180.0 / M_PI), "degrees off"));
+    }
     const double rod =
         (person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0])).norm();
     if (rod >= kShortRod && rod <= kLongRod) continue;
@@ -70,7 +85,7 @@ void PlausibilityCheck::Look(const Recording& recording) {
 
 std::vector<std::string> PlausibilityCheck::Warnings() const {
   std::vector<std::string> warnings;
-  for (const Doubt* doubt : {&strong_, &first_, &way_, &rod_}) {
+  for (const Doubt* doubt : {&strong_, &first_, &way_, &facing_, &rod_}) {
     if (doubt->cases.empty()) continue;
     warnings.push_back(doubt->what + " in " + std::to_string(doubt->cases.size()) +
                        (doubt->cases.size() == 1 ? " case (" : " cases (") +

@@ -16,7 +16,8 @@ bool FirstRowStandsOut(const Push& push);
 class PlausibilityCheck {
  public:
   // Pushes above 1 kN, or whose first row stands out; a person who goes elsewhere than the push
-  // (wrong axes, or the wrong sign); a rod (ankles' midpoint to hip, frame 0) unlike people's.
+  // (wrong axes, or the wrong sign), or whose ankles say that they face elsewhere than forward; a
+  // rod (ankles' midpoint to hip, frame 0) unlike people's.
   void Look(const Recording& recording);
 
   // One sentence a kind: "the push is above 1 kN in 2 recordings (a: 1650 N; b: 1219 N); ...".
@@ -36,6 +37,9 @@ class PlausibilityCheck {
   Doubt way_{"the person goes elsewhere than pushed",
              "are `up` and `forward` right, and the push's sign?",
              {}};
+  Doubt facing_{"by their ankles people face elsewhere than forward",
+                "are `up` and `forward` right, and the ankles not exchanged?",
+                {}};
   Doubt rod_{
       "the hip is at no person's distance from the ankles", "are `joints` and the unit right?", {}};
 };

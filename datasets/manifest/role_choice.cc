@@ -185,6 +185,21 @@ void SetSpine(const BvhSkeleton& skeleton, BodyRoles* roles) {
   }
 }
 
+// Of hip and ankles the prefix that most of the file's names have: a manifest may name a joint that
+// lacks it.
+std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJoints& pendulum) {
+  std::string best;
+  long most = -1;
+  for (int joint : {pendulum.left_ankle[0], pendulum.right_ankle[0], pendulum.hip[0]}) {
+    const std::string prefix = PrefixOf(names[joint]);
+    const long count =
+        std::count_if(names.begin(), names.end(),
+                      [&prefix](const std::string& name) { return PrefixOf(name) == prefix; });
+    if (count > most) best = prefix, most = count;
+  }
+  return best;
+}
+
 }  // namespace
 
 Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::string>& names,
@@ -211,7 +226,7 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   roles.joints[kRightAnkle] = pendulum.right_ankle;
   roles.joints[kLeftToe] = pendulum.left_toe;
   roles.joints[kRightToe] = pendulum.right_toe;
-  const RoleFinder finder(names, PrefixOf(names[pendulum.left_ankle[0]]));
+  const RoleFinder finder(names, CommonPrefix(names, pendulum));
   BodyRoles best = roles;
   for (int naming = 0; naming < kNamings; ++naming) {
     BodyRoles named = finder.Named(naming, roles);

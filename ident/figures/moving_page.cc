@@ -16,7 +16,7 @@ header,footer{padding:8px 14px;display:flex;gap:14px;align-items:center;flex-wra
 h1{font-size:15px;margin:0 auto 0 0}canvas{flex:1;min-height:0;width:100%;touch-action:none;cursor:grab}
 input[type=range]{flex:1;min-width:160px}button{font:inherit;padding:4px 12px;min-width:70px}
 .chip{display:inline-block;width:1.1em;height:.6em;margin:0 .2em}
-@media print{footer{display:none}}
+@media print{footer{display:none}body{display:block;height:auto;min-height:0}canvas{height:auto}}
 output{font-variant-numeric:tabular-nums;min-width:11em}label{white-space:nowrap}
 </style></head><body>
 <header><h1 id="title"></h1>

@@ -259,6 +259,7 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
   EXPECT_TRUE(Contains(run.out, "goes elsewhere than pushed in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "face elsewhere than forward in 1 case (" + id(1)));
   EXPECT_TRUE(Contains(run.out, "no person's distance from the ankles in 1 case (" + id(2)));
 }
 

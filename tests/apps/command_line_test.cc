@@ -51,6 +51,13 @@ TEST_F(CommandLineTest, UnknownFlagsAndLooseWordsAreRefused) {
   }
 }
 
+TEST_F(CommandLineTest, OutputsOfFormatsThatNothingWrites) {
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-predict", {Recordings(), "--model=" + FitModel(), "--id=" + id_,
+                                        "--restoration=rigid", "--out=" + Path("body.fbx")}),
+              {"body.fbx", "nothing writes .fbx", ".bvh"}));
+}
+
 TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
   const auto interrupted = [](const std::string& program, std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"--preserve-status", "--signal=INT", "2",

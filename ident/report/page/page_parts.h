@@ -46,7 +46,8 @@ circle.m{fill:var(--ink);stroke:none}circle.p{fill:#3b82f6;stroke:none}
 :focus-visible{outline:2px solid var(--link);outline-offset:2px}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--box:#fff}
 nav,.controls{display:none}body{max-width:none}h2{break-after:avoid}svg{max-width:100%;height:auto}
-pre{white-space:pre-wrap;overflow-wrap:anywhere}
+pre{white-space:pre-wrap;overflow-wrap:anywhere}.scroll{overflow:visible}summary,caption{break-after:avoid}
+table{font-size:.62rem}th,td{white-space:normal;padding-right:.35rem}td:last-child{min-width:0}
 svg .paper{fill:#fff}svg .ink,svg .axis{fill:#222}svg .faint{fill:#666}svg line.axis,svg path.axis,svg path.ink{stroke:#222;fill:none}svg line.grid,svg path.grid{stroke:#ddd}}
 )css";
 

@@ -66,6 +66,23 @@ TEST(RoleChoiceTest, MixamoIsCmuWithAPrefixAndAThreeJointSpine) {
   EXPECT_EQ(roles.Single(kLeftClavicle), 17);
 }
 
+// Feet that were renamed without it, and are named in the manifest.
+TEST(RoleChoiceTest, AnkleWithoutTheSkeletonsPrefix) {
+  BvhSkeleton skeleton = BvhOf(CmuSkeleton());
+  for (BvhJoint& joint : skeleton.joints) {
+    const bool foot = joint.name == "LeftFoot" || joint.name == "RightFoot";
+    joint.name = foot ? "my_" + joint.name : "mixamorig:" + joint.name;
+  }
+  JointMapping mapping;
+  mapping.Set(kLeftAnkle, {"my_LeftFoot"});
+  mapping.Set(kRightAnkle, {"my_RightFoot"});
+  const auto pendulum = ChoosePendulumJoints("a.bvh", skeleton, mapping);
+  ASSERT_TRUE(pendulum.ok()) << pendulum.error().ToString();
+  const auto roles = ChooseRoles("a.bvh", NamesOf(skeleton), &skeleton, pendulum.value(), mapping);
+  ASSERT_TRUE(roles.ok());
+  EXPECT_TRUE(UnfilledRoles(roles.value()).empty()) << RolesText(roles);
+}
+
 TEST(RoleChoiceTest, XsensShouldersAreShoulders) {
   const BvhSkeleton skeleton = BvhOf(XsensSkeleton());
   const BodyRoles roles = RolesOf(skeleton);
