@@ -43,7 +43,8 @@ std::string PathFromManifest(const std::string& file) {
 
 Result<MadePush> FromSensor(const PushFlags& flags, const Recording& recorded,
                             const PendulumRecording& recording) {
-  const Result<SensorPush> made = PushFromSensors(flags.sensor, recorded, recording, flags.person);
+  const Result<SensorPush> made =
+      PushFromSensors(flags.SensorOf(recorded.id), recorded, recording, flags.person);
   if (!made.ok()) return made.error();
   for (const std::string& warning : made.value().warnings) Warn(warning);
   return MadePush{made.value().push, PushKind::kExternal, made.value().how};

@@ -11,7 +11,8 @@
 namespace pushid {
 namespace {
 
-constexpr double kOddGain = 3.0;  // beyond what friction and recovery blur
+constexpr double kCutShort = 0.2;  // of the peak
+constexpr double kOddGain = 3.0;   // beyond what friction and recovery blur
 
 // Rows of several pushes on one person, added frame by frame.
 void AddPush(const Push& more, Push* sum) {
@@ -38,6 +39,22 @@ TimedForce AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
   const Eigen::Vector3d along = sensor.direction.normalized();
   for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
   return timed;
+}
+
+// A record that begins or ends while it measures a push has lost the rest of it.
+MaybeError CutShort(const SensorRecord& record) {
+  double peak = 0.0;
+  for (const Eigen::Vector3d& force : record.force) peak = std::max(peak, force.norm());
+  for (const bool first : {true, false}) {
+    const double force = (first ? record.force.front() : record.force.back()).norm();
+    if (!(force > kCutShort * peak)) continue;
+    return Error{std::string("the record ") + (first ? "begins" : "ends") + " with " +
+                     Rounded(force, 3) + " N, of " + Rounded(peak, 3) +
+                     " N at most: part of the push is missing, or it reads a force at rest "
+                     "(--sensor_zero)",
+                 record.file};
+  }
+  return std::nullopt;
 }
 
 struct ReadSensors {
@@ -117,6 +134,7 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     options.idle_force = sensor.idle_force;
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
+    if (const MaybeError cut = CutShort(record)) result.warnings.push_back(cut->ToString());
     if (record.height_m && *record.height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
                                 " lies on the floor: what it measures is the ground's force on "

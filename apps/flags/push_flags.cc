@@ -3,6 +3,9 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
@@ -34,7 +37,23 @@ DEFINE_string(initial_velocity, kAuto,
 namespace pushid {
 namespace {
 
-constexpr char kPlace[] = "{id}";  // in --out
+constexpr char kPlace[] = "{id}";  // in --out and --sensor
+
+std::string WithId(std::string path, const std::string& id) {
+  const size_t at = path.find(kPlace);
+  return at == std::string::npos ? path : path.replace(at, sizeof kPlace - 1, id);
+}
+
+bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string::npos; }
+
+// The folder of a name that is made for every recording.
+MaybeError MakeFolderOf(const std::string& file) {
+  std::error_code failed;
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
+  if (failed) return Error{"cannot make this folder: " + failed.message(), folder.string()};
+  return std::nullopt;
+}
 
 // A flag of the other way would be taken and do nothing.
 MaybeError CheckInverseDynamics() {
@@ -52,12 +71,18 @@ MaybeError CheckInverseDynamics() {
 // Inputs and outputs of one recording, or of several.
 MaybeError CheckRecordings(const PushFlags& flags) {
   const std::vector<std::string>& ids = flags.ids;
-  if (ids.size() > 1 && flags.out.find(kPlace) == std::string::npos) {
+  if (ids.size() > 1 && !HasPlace(flags.out)) {
     return Error{"--out needs {id} for " + std::to_string(ids.size()) +
                  " recordings, as in push/{id}.csv"};
   }
-  if (ids.size() > 1 && SensorGiven()) {
-    return Error{"a sensor measured one recording; name it by --id"};
+  const std::vector<SensorChoice>& sensors = flags.sensor.sensors;
+  const bool each_its_own =
+      std::all_of(sensors.begin(), sensors.end(),
+                  [](const SensorChoice& sensor) { return HasPlace(sensor.file); });
+  if (ids.size() > 1 && !each_its_own) {
+    return Error{
+        "a sensor measured one recording; name it by --id, or put {id} into the sensor's file, as "
+        "in force/{id}.csv"};
   }
   const std::string manifest = RecordingFlagsFromCommandLine().manifest;
   if (flags.into_manifest && ManifestPaths(manifest).size() > 1) {
@@ -65,6 +90,9 @@ MaybeError CheckRecordings(const PushFlags& flags) {
   }
   for (const std::string& id : ids) {
     if (MaybeError error = CheckNew("out", flags.OutOf(id))) return error;
+    if (HasPlace(flags.out)) {
+      if (MaybeError error = MakeFolderOf(flags.OutOf(id))) return error;
+    }
     if (MaybeError error = CheckOutputFiles({flags.OutOf(id)})) return error;
   }
   return std::nullopt;
@@ -72,10 +100,12 @@ MaybeError CheckRecordings(const PushFlags& flags) {
 
 }  // namespace
 
-std::string PushFlags::OutOf(const std::string& id) const {
-  std::string path = out;
-  const size_t at = path.find(kPlace);
-  return at == std::string::npos ? path : path.replace(at, sizeof kPlace - 1, id);
+std::string PushFlags::OutOf(const std::string& id) const { return WithId(out, id); }
+
+SensorFlags PushFlags::SensorOf(const std::string& id) const {
+  SensorFlags of = sensor;
+  for (SensorChoice& choice : of.sensors) choice.file = WithId(choice.file, id);
+  return of;
 }
 
 Result<PushFlags> PushFlagsFromCommandLine() {

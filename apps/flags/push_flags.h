@@ -24,6 +24,7 @@ struct PushFlags {
   std::optional<InitialVelocity> initial_velocity;  // as PushEstimationOptions has it
 
   std::string OutOf(const std::string& id) const;
+  SensorFlags SensorOf(const std::string& id) const;  // {id} in the names of its files alike
 };
 Result<PushFlags> PushFlagsFromCommandLine();
 

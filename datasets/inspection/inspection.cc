@@ -159,6 +159,7 @@ MaybeError LookAtSensor(Inspection* found) {
   for (int axis = 0; axis < (record.value().is_vector ? 3 : 1); ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& force : record.value().force) values.push_back(force[axis]);
+    if (!record.value().is_vector) TakeOffRest(&values, found);
     AddForce(record.value().is_vector ? std::string("f") + "xyz"[axis] : "force", rate,
              std::move(values), found);
   }

@@ -9,6 +9,7 @@
 #include "datasets/files/name_pattern.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
+#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/manifest_keys.h"
@@ -215,7 +216,17 @@ class Maker {
     return ReadFrameRate(path, format_, point_options);
   }
 
+  // Those in the channels of Motion-BIDS.
+  void SetPushesOfChannels(ManifestRecording* recording) const {
+    for (std::size_t person = 0; person < recording->motion.size(); ++person) {
+      const std::string& file = recording->motion[person];
+      if (!ReadBidsPushes(ResolvePath(options_.manifest_path, file)).ok()) continue;
+      recording->pushes.push_back({static_cast<int>(person), file, 0});
+    }
+  }
+
   void SetPush(const NameValues& values, ManifestRecording* recording) {
+    if (format_ == MotionFormat::kBids) SetPushesOfChannels(recording);
     if (!push_pattern_) return;
     const std::optional<std::string> path = push_pattern_->Fill(values);
     std::error_code ignored;

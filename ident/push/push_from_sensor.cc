@@ -11,6 +11,7 @@
 namespace pushid {
 namespace {
 
+constexpr double kNoise = 0.01;        // of the largest row: what no push ends with
 constexpr double kReadsAtRest = 0.02;  // of the peak: the median sample, where a sensor has no zero
 constexpr double kLostImpulse = 0.01;  // of the whole, tolerated outside the recording
 
@@ -105,7 +106,10 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   for (int t = 0; t + 1 < recording.num_frames(); ++t) {
     rows.push_back(Impulse(record, zero + t * dt, zero + (t + 1) * dt) / dt);
   }
-  const auto idle = [&](const Vector3<double>& row) { return !(row.norm() > options.idle_force); };
+  double largest = 0.0;
+  for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());
+  const double resting = std::max(options.idle_force, kNoise * largest);
+  const auto idle = [resting](const Vector3<double>& row) { return !(row.norm() > resting); };
   const auto first = std::find_if_not(rows.begin(), rows.end(), idle);
   const auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
   if (MaybeError error = CheckPushInside(record, recording, options, first == rows.end())) {

@@ -324,6 +324,21 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   ASSERT_NE(at, std::string::npos) << run.out;
   EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
 
+  // Every recording its own file, into a folder that is made; one that breaks off is told of.
+  run = RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
+                               "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
+  EXPECT_TRUE(Refused(run, {recording.id + ".c3d"}));
+  auto& samples = c3d.analog[0].samples;
+  samples.resize(20 * (push.start_frame + push.force.size() / 2));
+  c3d.points[0].resize(samples.size() / 20);
+  ASSERT_FALSE(WriteC3d(Path(recording.id + ".c3d"), c3d));
+  run = RunApp("pushid-push",
+               {common[0], "--ids=" + recording.id, "--sensor_column=rod", "--sensor_gain=-50",
+                "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(Path("made/" + recording.id + ".csv")));
+  EXPECT_TRUE(Contains(run.err, "part of the push is missing"));
+
   EXPECT_TRUE(Refused(with({c3d_flag}), {"--sensor_column", "it has rod"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));

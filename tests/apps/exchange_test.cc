@@ -49,6 +49,7 @@ TEST_F(ExchangeTest, ADatasetWithoutManifest) {
   const auto json = Json(bids + "/m.json");
   EXPECT_EQ(json.at("recordings").size(), 12u);
   const std::string file = json.at("recordings")[0].at("tsv")[0];
+  EXPECT_EQ(json.at("recordings")[0].at("pushes")[0].at("csv"), file) << "the push it holds";
   const AppRun seen = RunApp("pushid-inspect", {bids + "/" + file});
   ASSERT_EQ(seen.exit_code, 0) << seen.err;
   EXPECT_TRUE(Contains(seen.out, "Motion-BIDS"));

@@ -112,6 +112,18 @@ TEST(PushFromSensor, ClockAndIdlingAreHonoured) {
   EXPECT_EQ(push.value().file, "sensor.csv");
 }
 
+// Noise before and after it is no push, whose end what follows (constant velocity, tail) begins at.
+TEST(PushFromSensor, NoiseIsNoPush) {
+  const PendulumRecording recording = StandingPerson();
+  SensorRecord record = HalfSine(1e-3);
+  const Result<Push> clean = PushFromSensor(record, recording, {});
+  for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += 0.5 * std::sin(0.7 * i * i);
+  const Result<Push> noisy = PushFromSensor(record, recording, {});
+  ASSERT_TRUE(noisy.ok()) << noisy.error().ToString();
+  EXPECT_EQ(noisy.value().start_frame, clean.value().start_frame);
+  EXPECT_EQ(noisy.value().EndFrame(), clean.value().EndFrame());
+}
+
 TEST(PushFromSensor, UnsoundInputsAreErrors) {
   const PendulumRecording recording = StandingPerson();
   const SensorRecord record = HalfSine(1e-3);
