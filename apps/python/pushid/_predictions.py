@@ -48,6 +48,7 @@ class OnlinePredictor:
         return self._online.observed
 
     def predict(self):
+        """As Result.predict, from what was seen so far, without bands."""
         return self._online.predict()
 
 

@@ -53,6 +53,7 @@ class Result:
 
     @property
     def names(self):
+        """Of all parameters, fitted or not."""
         return [row["name"] for row in self.json["parameters"]]
 
     def __getitem__(self, name):
@@ -73,6 +74,7 @@ class Result:
 
     @property
     def converged(self):
+        """Whether the solver did; advice says what to try where it did not."""
         return self._model.converged
 
     @property
