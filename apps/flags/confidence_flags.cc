@@ -13,11 +13,9 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
 #include "ident/report/design_text.h"
 #include "ident/report/population_text.h"
-#include "ident/report/studies_text.h"
 #include "ident/results/confidence.h"
 
 DEFINE_string(profile, "",
@@ -49,8 +47,6 @@ DEFINE_bool(horizon_check, false,
 
 namespace pushid {
 namespace {
-
-constexpr int kDesignRows = 10;
 
 std::vector<std::string> ProfileNames() {
   std::vector<std::string> names;
@@ -187,16 +183,10 @@ std::string FlaggedPopulation(const FitResult& result) {
 Result<std::string> FlaggedDesign(const std::vector<PendulumRecording>& recordings,
                                   const FitResult& result) {
   if (FLAGS_design.empty()) return std::string();
-  const FitProblem problem(recordings, result.options);
-  const FitPoint& estimate = result.starts[result.best_start].to;
-  const ExperimentDesign design =
-      DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
-                        DefaultCandidates(recordings));
-  const std::string studies = "\n" + StudiesText(design.studies, FLAGS_design);
-  if (!design.refused.empty()) return "\nno further push: " + design.refused + "\n" + studies;
-  Result<std::string> text = DesignText(design, FLAGS_design, kDesignRows);
+  const ExperimentDesign design = DesignExperiments(recordings, result);
+  const Result<std::string> text = DesignText(design, FLAGS_design);
   if (!text.ok()) return Error{"--design: " + text.error().message};
-  return "\n" + text.value() + studies;
+  return "\n" + text.value();
 }
 
 }  // namespace pushid

@@ -1,8 +1,9 @@
 // apps: fits in Python: options by the names of the flags, results with everything the programs
 // say.
+#include <algorithm>
 #include <ctime>
 
-#include "apps/python/bindings.h"
+#include "apps/python/model.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
@@ -18,33 +19,27 @@
 namespace pushid {
 namespace {
 
-// A fitted model with what it was fitted to; without recordings where it was loaded.
-struct Model {
-  FittedModel fitted;
-  std::vector<SharedRecording> recordings;
-  std::vector<PendulumRecording> pendulums;
-  std::string source;
-};
+std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
 
-std::string JsonText(const Model& model) { return ToJson(model.fitted, RunInfo()).dump(); }
-
-void CheckFitted(const Model& model) {
-  if (!model.pendulums.empty()) return;
-  Raise(Fault::kUsage, Error{"this result was loaded, and its recordings are not with it; fit them "
-                             "again, or give them as recordings=..."});
+std::shared_ptr<const FittedTo> Data(const std::vector<SharedRecording>& recordings,
+                                     SkeletonMapping mapping) {
+  return std::make_shared<const FittedTo>(FittedTo{recordings, Pendulums(recordings, mapping)});
 }
 
 // Gives recordings to a model that was loaded.
 void Attach(Model* model, const std::vector<SharedRecording>& recordings) {
-  const std::vector<FittedRecording>& fitted = model->fitted.fit.recordings;
-  bool same = fitted.size() == recordings.size();
-  for (size_t i = 0; same && i < fitted.size(); ++i) same = fitted[i].id == recordings[i]->id;
+  const std::vector<FittedRecording>& fitted = model->fitted->fit.recordings;
+  auto to = Data(recordings, model->fitted->fit.options.mapping);
+  const bool same =
+      std::equal(fitted.begin(), fitted.end(), to->pendulums.begin(), to->pendulums.end(),
+                 [](const FittedRecording& was, const PendulumRecording& is) {
+                   return was.id == is.id && was.content_hash == is.content_hash;
+                 });
   if (!same) {
     Raise(Fault::kUsage, Error{"these are not the " + std::to_string(fitted.size()) +
-                               " recordings that were fitted, in their order"});
+                               " recordings that were fitted, in their order and unchanged"});
   }
-  model->recordings = recordings;
-  model->pendulums = Pendulums(recordings, model->fitted.fit.options.mapping);
+  model->to = std::move(to);
 }
 
 FitOptions Options(const GivenOptions& given, const std::vector<PendulumRecording>& pendulums) {
@@ -75,40 +70,43 @@ void CheckRecordings(const std::vector<SharedRecording>& recordings) {
 }
 
 std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
-                                const GivenOptions& given, const py::object& progress) {
+                                const GivenOptions& given, const py::object& progress,
+                                const std::vector<std::string>& file_warnings) {
   CheckRecordings(recordings);
   const FitOptions roughly = Unwrapped(MakeFitOptions(given), Fault::kUsage);
   auto model = std::make_shared<Model>();
-  model->recordings = recordings;
-  model->pendulums = Pendulums(recordings, roughly.mapping);
-  FitOptions options = Options(given, model->pendulums);
+  model->to = Data(recordings, roughly.mapping);
+  const std::vector<PendulumRecording>& pendulums = model->to->pendulums;
+  FitOptions options = Options(given, pendulums);
   std::vector<std::string> warnings = OptionWarnings(given, options);
-  Check(PrepareFit(model->pendulums, &options, &warnings), Fault::kUsage);
+  Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
+  for (const std::string& warning : warnings) Warn(warning);
+  FittedModel fitted;
   {
     const SolveProgress told = ProgressOf(progress);
     const py::gil_scoped_release no_gil;
-    model->fitted.fit = Fit(model->pendulums, options, told);
+    fitted.fit = Fit(pendulums, options, told);
   }
-  FitResult& fit = model->fitted.fit;
+  FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
-  fit.warnings.insert(fit.warnings.begin(), warnings.begin(), warnings.end());
-  model->fitted.provenance = From(given, options);
-  model->fitted.advice = Advise(model->fitted);
+  fit.warnings.insert(fit.warnings.begin(), file_warnings.begin(), file_warnings.end());
+  fitted.provenance = From(given, options);
+  fitted.advice = Advise(fitted);
+  model->fitted = std::make_shared<const FittedModel>(std::move(fitted));
   return model;
 }
 
-std::shared_ptr<Model> Load(const std::string& path) {
+// A model alone.
+std::shared_ptr<Model> WithoutData(Result<FittedModel> read) {
   auto model = std::make_shared<Model>();
-  model->fitted = Unwrapped(ReadFittedModel(path), Fault::kData);
-  model->source = path;
+  model->fitted = std::make_shared<const FittedModel>(Unwrapped(std::move(read), Fault::kData));
   return model;
 }
+
+std::shared_ptr<Model> Load(const std::string& path) { return WithoutData(ReadFittedModel(path)); }
 
 std::shared_ptr<Model> FromText(const std::string& text) {
-  auto model = std::make_shared<Model>();
-  model->fitted =
-      Unwrapped(FittedModelFromJson(nlohmann::ordered_json::parse(text), "pickle"), Fault::kData);
-  return model;
+  return WithoutData(FittedModelFromJson(nlohmann::ordered_json::parse(text), "pickle"));
 }
 
 void Save(const Model& model, const std::string& path) {
@@ -118,48 +116,28 @@ void Save(const Model& model, const std::string& path) {
   RunInfo run;
   run.date = date;
   run.model_path = path;
-  run.num_threads = model.fitted.fit.options.num_threads;
-  run.total_seconds = model.fitted.fit.solve_seconds;
-  Check(WriteJson(path, ToJson(model.fitted, run)), Fault::kData);
+  run.num_threads = model.fitted->fit.options.num_threads;
+  run.total_seconds = model.fitted->fit.solve_seconds;
+  Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
 void WriteReport(const Model& model, const std::string& path) {
+  const std::shared_ptr<const FittedModel> fitted = model.fitted;
+  const std::shared_ptr<const FittedTo> to = model.to;
+  BuildReportOptions options;
+  options.progress = JobsOf(py::none());
   std::string page;
   {
     const py::gil_scoped_release no_gil;
-    BuildReportOptions options;
-    page = ToPage(BuildReport(model.fitted, Copies(model.recordings), options));
+    const auto drawn = to ? Copies(to->recordings) : std::vector<Recording>();
+    page = ToPage(BuildReport(*fitted, drawn, options));
   }
   Check(WriteFileAtomically(path, page), Fault::kData);
 }
 
-void AddProfilesOf(Model* model, const std::vector<std::string>& names) {
-  CheckFitted(*model);
-  MaybeError error;
-  {
-    const py::gil_scoped_release no_gil;
-    error = AddProfiles(model->pendulums, names, 1, nullptr, &model->fitted);
-  }
-  Check(error, Fault::kUsage);
-}
-
-void AddReplicas(Model* model, int replicas, uint64_t seed, int num_threads) {
-  CheckFitted(*model);
-  BootstrapOptions options;
-  options.replicas = replicas;
-  options.seed = seed;
-  options.num_threads = num_threads;
-  MaybeError error;
-  {
-    const py::gil_scoped_release no_gil;
-    error = AddBootstrap(model->pendulums, options, nullptr, &model->fitted);
-  }
-  Check(error, Fault::kUsage);
-}
-
 py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
                       int observed) {
-  const IdentifiedModel identified = ModelOf(model.fitted.fit);
+  const IdentifiedModel identified = IdentifiedOf(model);
   const auto pendulums = Pendulums(recordings, identified.mapping);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
   nlohmann::ordered_json json;
@@ -173,7 +151,8 @@ py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& re
 py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
                             const std::vector<std::pair<std::string, GivenOptions>>& candidates,
                             const std::string& scheme, int num_folds, int repeats, uint64_t seed,
-                            int observed, bool baselines, int num_threads) {
+                            int observed, bool baselines, int num_threads,
+                            const py::object& progress) {
   CheckRecordings(recordings);
   FoldScheme how = FoldScheme::kStratified;
   Check(ParseName("scheme", scheme, &how), Fault::kUsage);
@@ -195,9 +174,10 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   {
+    const JobProgress told = JobsOf(progress);
     const py::gil_scoped_release no_gil;
     for (const auto& predictor : predictors) {
-      json.push_back(ToJson(CrossValidate(pendulums, folds, *predictor, num_threads)));
+      json.push_back(ToJson(CrossValidate(pendulums, folds, *predictor, num_threads, told)));
     }
   }
   return FromJson(json);
@@ -218,22 +198,31 @@ py::list OptionList() {
 
 }  // namespace
 
-// For the other parts of the module.
-IdentifiedModel IdentifiedOf(const py::object& model) {
-  return ModelOf(py::cast<std::shared_ptr<Model>>(model)->fitted.fit);
+std::shared_ptr<const FittedTo> DataOf(const Model& model) {
+  if (model.to) return model.to;
+  Raise(Fault::kUsage, Error{"this result was loaded or unpickled, and its recordings are not with "
+                             "it; give them by result.attach(recordings)"});
 }
+
+IdentifiedModel IdentifiedOf(const Model& model) { return ModelOf(model.fitted->fit); }
 
 void BindFits(py::module_* module) {
   py::class_<Model, std::shared_ptr<Model>>(*module, "Model")
       .def("json", &JsonText)
-      .def("text", [](const Model& m) { return ReportText(m.fitted); })
-      .def_property_readonly("fitted_here", [](const Model& m) { return !m.pendulums.empty(); })
-      .def_property_readonly("converged", [](const Model& m) { return m.fitted.fit.converged; })
-      .def_property_readonly("warnings", [](const Model& m) { return m.fitted.fit.warnings; })
+      .def("text", [](const Model& m) { return ReportText(*m.fitted); })
+      .def_property_readonly("converged", [](const Model& m) { return m.fitted->fit.converged; })
+      .def_property_readonly("warnings",
+                             [](const Model& m) {
+                               std::vector<std::string> told;
+                               for (const std::string& warning : m.fitted->fit.warnings) {
+                                 told.push_back(InPython(warning));
+                               }
+                               return told;
+                             })
       .def_property_readonly("advice",
                              [](const Model& m) {
                                std::vector<std::pair<std::string, std::string>> advice;
-                               for (const Advice& a : m.fitted.advice) {
+                               for (const Advice& a : m.fitted->advice) {
                                  advice.emplace_back(a.sentence, a.command);
                                }
                                return advice;
@@ -241,8 +230,6 @@ void BindFits(py::module_* module) {
       .def("save", &Save)
       .def("report", &WriteReport)
       .def("attach", &Attach)
-      .def("profile", &AddProfilesOf)
-      .def("bootstrap", &AddReplicas)
       .def("evaluate", &EvaluateOn);
   module->def("fit", &FitModel);
   module->def("load", &Load);

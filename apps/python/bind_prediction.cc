@@ -1,19 +1,15 @@
-// apps: predictions in Python: from the first frame and the push, from frames as they come, on
-// formations, and as whole bodies.
-#include "apps/python/bindings.h"
+// apps: predictions in Python: from the first frame and the push, from frames as they come, and as
+// whole bodies.
+#include "apps/python/predicted.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/formations/formation_run.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
-#include "models/formation.h"
+#include "ident/prediction/predictive_bands.h"
+#include "ident/results/push_range.h"
 
 namespace pushid {
-
-IdentifiedModel IdentifiedOf(const py::object& model);  // bind_fit.cc
-
-namespace {
 
 Array StatesOf(const RolloutPath<double>& path, int people) {
   return TableArray(path.num_frames(), people, 8, [&](int t, int n) {
@@ -42,81 +38,101 @@ py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording
   return dict;
 }
 
-// Hips of drawn futures, (samples, frames, people, 3).
-Array DrawsArray(const Futures& futures) {
-  const auto& paths = futures.paths;
-  const size_t people = paths.empty() ? 0 : paths[0].size();
-  const size_t frames = people == 0 ? 0 : paths[0][0].size();
-  Array array({paths.size(), frames, people, size_t{3}});
-  auto cells = array.mutable_unchecked<4>();
-  for (size_t s = 0; s < paths.size(); ++s) {
-    for (size_t n = 0; n < people; ++n) {
-      for (size_t t = 0; t < frames; ++t) {
-        for (int i = 0; i < 3; ++i) cells(s, t, n, i) = paths[s][n][t][i];
-      }
-    }
-  }
-  return array;
-}
-
-IdentifiedModel With(const py::object& model, const std::string& set) {
+IdentifiedModel With(const Model& model, const std::string& set) {
   IdentifiedModel identified = IdentifiedOf(model);
   Check(SetValues(set, &identified), Fault::kUsage);
   return identified;
 }
 
-py::dict PredictOn(const py::object& model, const SharedRecording& recording, int observed,
-                   int frames, int samples, uint64_t seed, const std::string& set) {
+void WarnOfExtrapolation(const IdentifiedModel& model, const PendulumRecording& recording) {
+  for (const std::string& warning : ExtrapolationWarnings(model, {recording})) Warn(warning);
+}
+
+namespace {
+
+// Hips of drawn futures, (samples, frames, people, 3).
+Array DrawsArray(const std::vector<HipPaths>& futures) {
+  const size_t people = futures.empty() ? 0 : futures[0].size();
+  const size_t frames = people == 0 ? 0 : futures[0][0].size();
+  Array array({futures.size(), frames, people, size_t{3}});
+  auto cells = array.mutable_unchecked<4>();
+  for (size_t s = 0; s < futures.size(); ++s) {
+    for (size_t n = 0; n < people; ++n) {
+      for (size_t t = 0; t < frames; ++t) {
+        for (int i = 0; i < 3; ++i) cells(s, t, n, i) = futures[s][n][t][i];
+      }
+    }
+  }
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint>>>& paths) {
+  std::vector<HipPaths> hips;
+  for (const auto& draw : paths) {
+    hips.emplace_back();
+    for (const auto& person : draw) {
+      hips.back().emplace_back();
+      for (const BandPoint& point : person) hips.back().back().push_back(point.head<3>());
+    }
+  }
+  return hips;
+}
+
+// Futures by what the model knows of them: after frames that were seen, what recordings differ by
+// and how rollouts err; with process noise, its draws; else parameters drawn from their covariance,
+// with the errors of the fitted recordings.
+Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& identified,
+                                    const PendulumRecording& seen, int observed, int frames,
+                                    int samples, uint64_t seed) {
+  if (observed > 0) return DrawFrom(identified, seen, observed, samples, seed, frames);
+  if (identified.options.process_noise.Any()) {
+    Result<Futures> futures = DrawFutures(identified, seen, samples, seed, frames);
+    if (!futures.ok()) return futures.error();
+    return HipsOf(futures.value().paths);
+  }
+  BandOptions options;
+  options.samples = samples;
+  options.seed = seed;
+  const FitResult& fit = model.fitted->fit;
+  const auto sets = SampleParameters(fit, options);
+  if (!sets.ok()) return sets.error();
+  return HipsOf(
+      DrawPaths(fit, sets.value(), ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames));
+}
+
+py::dict PredictOn(const Model& model, const SharedRecording& recording, int observed, int frames,
+                   int samples, uint64_t seed, const std::string& set) {
   const IdentifiedModel identified = With(model, set);
   const PendulumRecording seen = MakePendulumRecording(*recording, identified.mapping);
+  if (observed < 0 || frames < 0 || samples < 0) {
+    Raise(Fault::kUsage, Error{"observed, frames and samples must not be negative"});
+  }
   if (observed > 0) Check(CheckObserved({seen}, observed), Fault::kUsage);
+  if (frames > 0 && frames <= observed) {
+    Raise(Fault::kUsage, Error{"frames=" + std::to_string(frames) +
+                               " leaves none to predict "
+                               "after observed=" +
+                               std::to_string(observed)});
+  }
+  if (samples > 0 && observed == 0 && !set.empty() && !identified.options.process_noise.Any()) {
+    Raise(Fault::kUsage, Error{"samples draw the parameters, which set=... holds; give one of "
+                               "them, or observed=... too"});
+  }
+  WarnOfExtrapolation(identified, seen);
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames), Fault::kUsage), seen);
   if (samples > 0) {
-    dict["samples"] =
-        DrawsArray(Unwrapped(DrawFutures(identified, seen, samples, seed, frames), Fault::kUsage));
+    dict["samples"] = DrawsArray(
+        Unwrapped(Drawn(model, identified, seen, observed, frames, samples, seed), Fault::kUsage));
   }
-  return dict;
-}
-
-py::dict OnFormation(const py::object& model, const std::string& shape, int people, double spacing,
-                     int pushed, double push, double push_duration, double mass, double rod,
-                     double duration, double fps, const std::string& set) {
-  const std::map<std::string, FormationShape> shapes = {{"line", FormationShape::kLine},
-                                                        {"diamond", FormationShape::kDiamond},
-                                                        {"grid", FormationShape::kGrid}};
-  const auto how = shapes.find(shape);
-  if (how == shapes.end()) {
-    Raise(Fault::kUsage, Error{"shape is '" + shape + "'; it must be line, diamond or grid"});
-  }
-  if (people < 1 || people > 1000 || pushed < 0 || pushed >= people || !(spacing > 0.0) ||
-      !(mass > 0.0) || !(rod > 0.0) || !(duration > 0.0) || !(fps >= 1.0)) {
-    Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
-                               "spacing, mass, rod, duration and fps above 0"});
-  }
-  Body body;
-  body.mass = mass;
-  body.rod_length = rod;
-  Scene scene = FormationScene(FormationPositions(how->second, people, spacing), body, 1.0 / fps);
-  AddHipPush(pushed, {push, 0.0, push_duration}, &scene);
-  const FormationRun run =
-      RunFormation(With(model, set), scene, static_cast<int>(duration * fps) + 1);
-  py::dict dict = DictOf(run.prediction, run.recording);
-  py::list onset, outcome;
-  for (const PersonSummary& person : run.summaries) {
-    onset.append(person.onset_frame < 0 ? py::object(py::none())
-                                        : py::object(py::float_(run.Seconds(person.onset_frame))));
-    outcome.append(std::string(Name(person.outcome)));
-  }
-  dict["onset_s"] = onset;
-  dict["outcome"] = outcome;
   return dict;
 }
 
 // Everybody's frames as they come; states need the frame before.
 class Online {
  public:
-  Online(const py::object& model, const SharedRecording& recording, int frames)
+  Online(const Model& model, const SharedRecording& recording, int frames)
       : model_(std::make_unique<IdentifiedModel>(IdentifiedOf(model))),
         recording_(std::make_unique<PendulumRecording>(
             MakePendulumRecording(*recording, model_->mapping))),
@@ -169,8 +185,8 @@ class Online {
 };
 
 // (frames, people, 22, 3), m.
-Array Restored(const Restoration& restoration, const py::object& model,
-               const SharedRecording& recording, int observed) {
+Array Restored(const Restoration& restoration, const Model& model, const SharedRecording& recording,
+               int observed) {
   const IdentifiedModel identified = IdentifiedOf(model);
   const BodyRecording bodies =
       Unwrapped(MakeBodyRecording(*recording, identified.mapping), Fault::kData);
@@ -197,14 +213,13 @@ Array Restored(const Restoration& restoration, const py::object& model,
 
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
-  module->def("simulate_formation", &OnFormation);
   py::class_<Online>(*module, "Online")
-      .def(py::init<const py::object&, const SharedRecording&, int>())
+      .def(py::init<const Model&, const SharedRecording&, int>())
       .def("observe", &Online::Observe)
       .def("predict", &Online::Predict)
       .def_property_readonly("observed", &Online::observed);
   py::class_<Restoration, std::shared_ptr<Restoration>>(*module, "Restoration")
-      .def("apply", [](const std::shared_ptr<Restoration>& r, const py::object& model,
+      .def("apply", [](const std::shared_ptr<Restoration>& r, const Model& model,
                        const SharedRecording& recording,
                        int observed) { return Restored(*r, model, recording, observed); });
   module->def("load_restoration", [](const std::string& folder) {

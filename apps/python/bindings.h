@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/length_unit.h"
 #include "ident/fit.h"
 
 namespace pushid {
@@ -34,11 +35,22 @@ inline void Check(const MaybeError& error, Fault fault) {
 // iteration, cost). Called without the GIL.
 SolveProgress ProgressOf(const py::object& callable);
 
+// Progress of many jobs: the same, `callable` (done, total).
+JobProgress JobsOf(const py::object& callable);
+
+// Flags by the names of options: "--fix=mu" -> "fix=mu".
+std::string InPython(const std::string& text);
+// As warnings.warn does.
+void Warn(const std::string& text);
+
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;
 std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings);
 std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings,
                                          SkeletonMapping mapping);
+
+// Errors: not mm, cm or m.
+LengthUnit UnitOf(const std::string& name);
 
 using Array = py::array_t<double>;
 // paths[person][frame] as (frames, people, 3), read-only.
@@ -58,11 +70,14 @@ Array TableArray(int frames, int people, int size, Value value) {
   return array;
 }
 
-// A document as Python has it.
+// A document as Python has it; the texts that stand for numbers JSON does not know are numbers.
 py::object FromJson(const nlohmann::ordered_json& json);
 
+void BindArrays(py::module_* module);
 void BindRecordings(py::module_* module);
 void BindFits(py::module_* module);
+void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
+void BindFormations(py::module_* module);
 
 }  // namespace pushid

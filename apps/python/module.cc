@@ -1,5 +1,7 @@
 // apps: the Python module: errors, and what the other parts share.
 #include <cmath>
+#include <limits>
+#include <regex>
 
 #include "apps/python/bindings.h"
 
@@ -13,7 +15,7 @@ PyObject* g_errors[3] = {};
 
 void Raise(Fault fault, const Error& error) {
   PyObject* type = g_errors[static_cast<int>(fault)];
-  py::object value = py::reinterpret_borrow<py::object>(type)(error.ToString());
+  py::object value = py::reinterpret_borrow<py::object>(type)(InPython(error.ToString()));
   value.attr("file") = error.file.empty() ? py::object(py::none()) : py::str(error.file);
   value.attr("line") = error.line > 0 ? py::object(py::int_(error.line)) : py::none();
   PyErr_SetObject(type, value.ptr());
@@ -27,6 +29,26 @@ SolveProgress ProgressOf(const py::object& callable) {
     if (callable == Py_None) return;
     py::reinterpret_borrow<py::object>(callable)(phase, iteration, cost);
   };
+}
+
+JobProgress JobsOf(const py::object& callable) {
+  return [callable = callable.ptr()](int done, int total) {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (callable == Py_None) return;
+    py::reinterpret_borrow<py::object>(callable)(done, total);
+  };
+}
+
+std::string InPython(const std::string& text) {
+  static const std::regex flag(R"((^|[^A-Za-z0-9_-])--([a-z]))");
+  return std::regex_replace(text, flag, "$1$2");
+}
+
+void Warn(const std::string& text) {
+  if (PyErr_WarnEx(PyExc_UserWarning, InPython(text).c_str(), 2) != 0) {
+    throw py::error_already_set();
+  }
 }
 
 std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings) {
@@ -55,7 +77,14 @@ py::object FromJson(const nlohmann::ordered_json& json) {
   if (json.is_boolean()) return py::bool_(json.get<bool>());
   if (json.is_number_integer()) return py::int_(json.get<std::int64_t>());
   if (json.is_number()) return py::float_(json.get<double>());
-  if (json.is_string()) return py::str(json.get<std::string>());
+  if (json.is_string()) {
+    const std::string text = json.get<std::string>();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (text == "infinity") return py::float_(kInfinity);
+    if (text == "-infinity") return py::float_(-kInfinity);
+    if (text == "nan") return py::float_(std::nan(""));
+    return py::str(text);
+  }
   if (json.is_array()) {
     py::list list;
     for (const auto& item : json) list.append(FromJson(item));
@@ -83,6 +112,9 @@ PYBIND11_MODULE(_pushid, module) {
     module.add_object(errors[i].first, py::reinterpret_borrow<py::object>(g_errors[i]));
   }
   BindRecordings(&module);
+  BindArrays(&module);
   BindFits(&module);
+  BindStudies(&module);
   BindPredictions(&module);
+  BindFormations(&module);
 }

@@ -1,5 +1,6 @@
 """pip install ./apps/python --no-build-isolation: builds the extension by the project's own CMake."""
 import os
+import shutil
 import subprocess
 import sys
 
@@ -7,20 +8,23 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+BUILD = os.path.join(SOURCE, "build", "pip")  # all that is left of a build, setuptools' own files among it
 
 
 class ByCMake(build_ext):
     def build_extension(self, ext):
         target = os.path.abspath(self.get_ext_fullpath(ext.name))
-        build = os.path.join(SOURCE, "build", "pip")
-        subprocess.run(["cmake", "-S", SOURCE, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DPUSHID_TESTS=OFF",
+        ninja = ["-G", "Ninja"] if shutil.which("ninja") else []  # so that ccache knows what other builds compiled
+        subprocess.run(["cmake", *ninja, "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", "-DPUSHID_TESTS=OFF",
                         "-DPUSHID_BENCHMARKS=OFF", "-DPUSHID_PYTHON=ON", "-DPUSHID_TORCH=OFF",
                         f"-DPython_EXECUTABLE={sys.executable}"], check=True)
-        subprocess.run(["cmake", "--build", build, "--target", "_pushid", "--parallel", str(os.cpu_count())],
+        subprocess.run(["cmake", "--build", BUILD, "--target", "_pushid", "--parallel", str(os.cpu_count())],
                        check=True)
         os.makedirs(os.path.dirname(target), exist_ok=True)
-        built = os.path.join(build, "python", "pushid", os.path.basename(target))
+        built = os.path.join(BUILD, "python", "pushid", os.path.basename(target))
         self.copy_file(built, target)
 
 
-setup(ext_modules=[Extension("pushid._pushid", sources=[])], cmdclass={"build_ext": ByCMake})
+os.makedirs(BUILD, exist_ok=True)
+setup(ext_modules=[Extension("pushid._pushid", sources=[])], cmdclass={"build_ext": ByCMake},
+      options={"build": {"build_base": os.path.join(BUILD, "setuptools")}, "egg_info": {"egg_base": BUILD}})

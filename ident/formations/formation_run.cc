@@ -122,4 +122,12 @@ double HipSpeed(const FormationRun& run, int person, int frame) {
   return (hip[frame] - hip[frame - 1]).norm() / run.recording.scene.dt;
 }
 
+double SignedHipSpeed(const FormationRun& run, int person, int frame) {
+  const double speed = HipSpeed(run, person, frame);
+  if (frame == 0) return speed;
+  const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
+  const Vector3<double> step = hip[frame] - hip[frame - 1];
+  return -step.x() > std::abs(step.y()) ? -speed : speed;
+}
+
 }  // namespace pushid

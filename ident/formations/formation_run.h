@@ -59,5 +59,7 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
 
 // |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.
 double HipSpeed(const FormationRun& run, int person, int frame);
+// The same, negative for a person who goes back more than aside: what colours a wave.
+double SignedHipSpeed(const FormationRun& run, int person, int frame);
 
 }  // namespace pushid

@@ -52,12 +52,9 @@ class WavePicture {
   }
   // Negative for a person who goes back more than aside.
   int Level(int person, int frame) const {
-    const int level =
-        static_cast<int>(std::lround(Fraction(HipSpeed(run_, person, frame)) * (kColours - 1)));
-    if (frame == 0) return level;
-    const std::vector<Vector3<double>>& hip = run_.prediction.hip[person];
-    const Vector3<double> step = hip[frame] - hip[frame - 1];
-    return -step.x() > std::abs(step.y()) ? -level : level;
+    const double speed = SignedHipSpeed(run_, person, frame);
+    const int level = static_cast<int>(std::lround(Fraction(std::abs(speed)) * (kColours - 1)));
+    return speed < 0.0 ? -level : level;
   }
 
   // Frames of the same level are one rectangle.

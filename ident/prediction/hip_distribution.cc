@@ -58,4 +58,23 @@ double HipDistribution::Quantile(int person, int frame, int axis, double share) 
   return 0.5 * (low + high);
 }
 
+HipPaths HipDistribution::Draw(Random* random) const {
+  size_t component = 0;
+  double left = random->Unit();
+  for (size_t j = 0; j < weights_.size() && left >= 0.0; ++j) {
+    if (weights_[j] > 0.0) component = j;  // rounding never ends in one that cannot be
+    left -= weights_[j];
+  }
+  HipPaths paths;
+  for (const std::vector<MixturePoint>& person : points_) {
+    Vector3<double> out;
+    for (double& deviations : out) deviations = random->Normal();
+    paths.emplace_back();
+    for (const MixturePoint& point : person) {
+      paths.back().push_back(point.mean[component] + point.deviation.cwiseProduct(out));
+    }
+  }
+  return paths;
+}
+
 }  // namespace pushid

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "datasets/files/random.h"
 #include "ident/results/recording_filter.h"
 
 namespace pushid {
@@ -24,6 +25,10 @@ class HipDistribution {
   // frame: 0 is the first that was not seen; axis: 0 x, 1 y, 2 z.
   double Cdf(int person, int frame, int axis, double value) const;
   double Quantile(int person, int frame, int axis, double share) const;
+  // One future: a component, and how far from its middle each person goes on each axis, in
+  // deviations. Frame by frame draws are spread as the distribution says; a person who is far out
+  // stays so, as errors of velocity do, which add up.
+  HipPaths Draw(Random* random) const;
 
  private:
   std::vector<double> weights_;

@@ -95,13 +95,24 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
   return HipDistribution(*filter_, *model_->recording_effect, centre);
 }
 
+namespace {
+
+// A predictor that has seen the first frames.
+Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
+                              int observed, int num_frames) {
+  Result<OnlinePredictor> made =
+      OnlinePredictor::Make(model, recording, num_frames > 0 ? num_frames : recording.num_frames());
+  for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
+  return made;
+}
+
+}  // namespace
+
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames) {
   if (observed == 0) return Predict(model, recording, num_frames);
-  Result<OnlinePredictor> made =
-      OnlinePredictor::Make(model, recording, num_frames > 0 ? num_frames : recording.num_frames());
+  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames);
   if (!made.ok()) return made.error();
-  for (int t = 1; t < observed; ++t) made.value().Observe(FrameAt(recording, t));
   Prediction prediction = made.value().Predict();
   if (!prediction.status.ok) return prediction;
   const HipDistribution hips = made.value().Distribution(prediction);
@@ -118,6 +129,27 @@ Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecor
     prediction.bands.push_back(std::move(band));
   }
   return prediction;
+}
+
+Result<std::vector<HipPaths>> DrawFrom(const IdentifiedModel& model,
+                                       const PendulumRecording& recording, int observed, int draws,
+                                       uint64_t seed, int num_frames) {
+  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames);
+  if (!made.ok()) return made.error();
+  const Prediction prediction = made.value().Predict();
+  if (!prediction.status.ok) return Error{OutsideText(prediction.status)};
+  const HipDistribution hips = made.value().Distribution(prediction);
+  Random random(seed);
+  std::vector<HipPaths> futures;
+  for (int i = 0; i < draws; ++i) {
+    HipPaths future = hips.Draw(&random);
+    for (size_t n = 0; n < future.size(); ++n) {
+      const HipPath& seen = prediction.hip[n];
+      future[n].insert(future[n].begin(), seen.begin(), seen.begin() + observed);
+    }
+    futures.push_back(std::move(future));
+  }
+  return futures;
 }
 
 std::string EffectText(const Prediction& prediction) {

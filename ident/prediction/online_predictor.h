@@ -12,6 +12,7 @@
 // are the rollout's. Before anything is seen the prediction is that of Predict, to the bit.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -61,6 +62,12 @@ class OnlinePredictor {
 // recording has, otherwise more than observed. observed 0: nobody asked, Predict.
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames = 0);
+
+// Hips of futures drawn from the distribution behind those bands, by [draw][person][frame]; frames
+// that were seen are as they were. observed: at least 1 (frame 0 alone: what recordings differ by).
+Result<std::vector<HipPaths>> DrawFrom(const IdentifiedModel& model,
+                                       const PendulumRecording& recording, int observed, int draws,
+                                       uint64_t seed, int num_frames = 0);
 
 // "tail 1.2 times that of the mean recording (b 0.18 +- 0.21), from 12 frames"; empty where nothing
 // was seen.

@@ -150,28 +150,23 @@ std::vector<ErrorPath> ErrorPaths(const FitResult& result,
   return paths;
 }
 
-PredictiveBands ComputeBands(const FitResult& result,
-                             const std::vector<ParameterSet<double>>& samples,
-                             const std::vector<ErrorPath>& errors,
-                             const PendulumRecording& recording, uint64_t seed) {
-  PredictiveBands bands;
-  bands.id = recording.id;
-  bands.samples = static_cast<int>(samples.size());
+std::vector<std::vector<std::vector<BandPoint>>> DrawPaths(
+    const FitResult& result, const std::vector<ParameterSet<double>>& samples,
+    const std::vector<ErrorPath>& errors, const PendulumRecording& recording, uint64_t seed,
+    int num_frames) {
   const double speed = PushSpeed(recording);
   Random random(seed);
   std::vector<const ErrorPath*> others;
   for (const ErrorPath& error : errors) {
     if (error.recording != recording.id) others.push_back(&error);
   }
-  std::vector<std::vector<std::vector<BandPoint>>> paths(recording.scene.num_people());
+  std::vector<std::vector<std::vector<BandPoint>>> draws;
   const IdentifiedModel model = ModelOf(result);
   for (const ParameterSet<double>& sample : samples) {
     const double draw = random.Unit();
-    const Prediction prediction = Predict(WithShared(model, sample), recording);
-    if (!prediction.status.ok) {
-      ++bands.failed;
-      continue;
-    }
+    const Prediction prediction = Predict(WithShared(model, sample), recording, num_frames);
+    if (!prediction.status.ok) continue;
+    draws.emplace_back();
     for (int n = 0; n < recording.scene.num_people(); ++n) {
       std::vector<BandPoint> path;
       for (int t = 0; t < prediction.path.num_frames(); ++t) {
@@ -185,11 +180,27 @@ PredictiveBands ComputeBands(const FitResult& result,
           path[t] += speed * error[std::min(t, error.size() - 1)];
         }
       }
-      paths[n].push_back(std::move(path));
+      draws.back().push_back(std::move(path));
     }
   }
-  if (bands.failed == bands.samples) return bands;
-  for (const auto& person : paths) bands.people.push_back(QuantilesOf(person));
+  return draws;
+}
+
+PredictiveBands ComputeBands(const FitResult& result,
+                             const std::vector<ParameterSet<double>>& samples,
+                             const std::vector<ErrorPath>& errors,
+                             const PendulumRecording& recording, uint64_t seed) {
+  const auto draws = DrawPaths(result, samples, errors, recording, seed);
+  PredictiveBands bands;
+  bands.id = recording.id;
+  bands.samples = static_cast<int>(samples.size());
+  bands.failed = bands.samples - static_cast<int>(draws.size());
+  if (draws.empty()) return bands;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    std::vector<std::vector<BandPoint>> paths;
+    for (const auto& draw : draws) paths.push_back(draw[n]);
+    bands.people.push_back(QuantilesOf(paths));
+  }
   return bands;
 }
 

@@ -62,8 +62,14 @@ struct ErrorPath {
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
                                   const std::vector<PendulumRecording>& fitted);
 
-// errors: empty for bands of the parameters alone. A recording's own path is no guess about it and
-// is left out.
+// The paths that bands are quantiles of, by [draw][person][frame]; rollouts that left the domain
+// are missing. num_frames: 0 means as many as the recording has. errors: empty for paths of the
+// parameters alone. A recording's own path is no guess about it and is left out.
+std::vector<std::vector<std::vector<BandPoint>>> DrawPaths(
+    const FitResult& result, const std::vector<ParameterSet<double>>& samples,
+    const std::vector<ErrorPath>& errors, const PendulumRecording& recording, uint64_t seed,
+    int num_frames = 0);
+
 PredictiveBands ComputeBands(const FitResult& result,
                              const std::vector<ParameterSet<double>>& samples,
                              const std::vector<ErrorPath>& errors,

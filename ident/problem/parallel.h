@@ -1,9 +1,14 @@
 // ident: independent jobs over a few threads. Which thread does which job makes no difference to a
 // result: every job writes to its own place.
+//
+// What a job or its progress throws (a user who interrupts, no memory) ends the jobs that have not
+// begun and is thrown again by the thread that asked for them: out of another one it would end the
+// program.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <mutex>
 #include <thread>
@@ -19,17 +24,25 @@ inline void ParallelFor(int total, int num_threads, const std::function<void(int
   std::atomic<int> next{0};
   std::mutex mutex;
   int done = 0;
+  std::exception_ptr thrown;  // the first one
   const auto work = [&] {
-    for (int i = next++; i < total; i = next++) {
-      job(i);
+    try {
+      for (int i = next++; i < total; i = next++) {
+        job(i);
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (progress && !thrown) progress(++done, total);
+      }
+    } catch (...) {
+      next = total;
       const std::lock_guard<std::mutex> lock(mutex);
-      if (progress) progress(++done, total);
+      if (!thrown) thrown = std::current_exception();
     }
   };
   std::vector<std::thread> threads;
   for (int i = 1; i < std::min(num_threads, total); ++i) threads.emplace_back(work);
   work();
   for (std::thread& thread : threads) thread.join();
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace pushid

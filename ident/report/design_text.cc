@@ -6,9 +6,12 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
+#include "ident/report/studies_text.h"
 
 namespace pushid {
 namespace {
+
+constexpr int kRows = 10;
 
 std::string DirectionText(double degrees) {
   if (degrees == 0.0) return "forwards";
@@ -20,16 +23,10 @@ std::string DirectionText(double degrees) {
 std::string Change(double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; }
 
 // Where the parameter stands among those with an error; nothing for "all".
-Result<std::optional<size_t>> IndexOf(const ExperimentDesign& design,
-                                      const std::string& parameter) {
-  if (parameter == "all") return std::optional<size_t>();
+std::optional<size_t> IndexOf(const ExperimentDesign& design, const std::string& parameter) {
+  if (parameter == "all") return std::nullopt;
   const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
-  if (at != design.parameters.end()) {
-    return std::optional<size_t>(static_cast<size_t>(at - design.parameters.begin()));
-  }
-  std::string known = "all";
-  for (const std::string& name : design.parameters) known += ", " + name;
-  return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
+  return static_cast<size_t>(at - design.parameters.begin());
 }
 
 TextTable EmptyTable(const std::optional<size_t>& index, const std::string& parameter) {
@@ -54,17 +51,10 @@ std::vector<std::string> Cells(const DesignRow& row, const std::optional<size_t>
 
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
                               int count) {
-  if (!design.refused.empty()) return Error{design.refused};
-  const Result<std::optional<size_t>> found = IndexOf(design, parameter);
-  if (!found.ok()) return found.error();
-  const std::optional<size_t>& index = found.value();
-  const auto score = [&index](const DesignRow& row) {
-    return index ? row.error_ratio[*index] : row.volume_ratio;
-  };
-  std::vector<DesignRow> rows = design.rows;
-  std::stable_sort(rows.begin(), rows.end(), [&score](const DesignRow& a, const DesignRow& b) {
-    return score(a) < score(b);
-  });
+  const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
+  if (!ranked.ok()) return ranked.error();
+  const std::vector<DesignRow>& rows = ranked.value();
+  const std::optional<size_t> index = IndexOf(design, parameter);
   TextTable table = EmptyTable(index, parameter);
   const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
   for (size_t i = 0; i < shown; ++i) table.Add(Cells(rows[i], index));
@@ -75,19 +65,20 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
   return table;
 }
 
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
-                               int count) {
-  const Result<TextTable> table = DesignTable(design, parameter, count);
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter) {
+  if (!design.refused.empty()) {
+    return "no further push: " + design.refused + "\n\n" + StudiesText(design.studies, parameter);
+  }
+  const Result<TextTable> table = DesignTable(design, parameter, kRows);
   if (!table.ok()) return table.error();
   std::string text = "what one more recording would change, best first, and the least useful of " +
                      std::to_string(design.rows.size()) + " candidates last\n" +
                      table.value().ToString();
-  const Result<std::optional<size_t>> index = IndexOf(design, parameter);
-  if (index.value()) {
-    text += "now: " + parameter + " +- " + Rounded(design.standard_error[*index.value()], 3) + " " +
-            design.units[*index.value()] + "\n";
+  if (const std::optional<size_t> index = IndexOf(design, parameter)) {
+    text += "now: " + parameter + " +- " + Rounded(design.standard_error[*index], 3) + " " +
+            design.units[*index] + "\n";
   }
-  return text;
+  return text + "\n" + StudiesText(design.studies, parameter);
 }
 
 }  // namespace pushid

@@ -14,8 +14,8 @@ namespace pushid {
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
                               int count);
 
-// With a heading and the present error below it. Errors: no such parameter.
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter,
-                               int count);
+// With a heading and the present error below it; then what a force sensor and more people would
+// tell. Errors: no such parameter.
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
 
 }  // namespace pushid

@@ -218,4 +218,32 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   return design;
 }
 
+ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
+                                   const FitResult& result) {
+  const FitProblem problem(recordings, result.options);
+  const FitPoint& estimate = result.starts[result.best_start].to;
+  return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
+                           DefaultCandidates(recordings));
+}
+
+Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
+                                          const std::string& parameter) {
+  if (!design.refused.empty()) return Error{design.refused};
+  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
+  if (parameter != "all" && at == design.parameters.end()) {
+    std::string known = "all";
+    for (const std::string& name : design.parameters) known += ", " + name;
+    return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
+  }
+  const size_t index = static_cast<size_t>(at - design.parameters.begin());
+  const auto score = [&](const DesignRow& row) {
+    return parameter == "all" ? row.volume_ratio : row.error_ratio[index];
+  };
+  std::vector<DesignRow> rows = design.rows;
+  std::stable_sort(rows.begin(), rows.end(), [&score](const DesignRow& a, const DesignRow& b) {
+    return score(a) < score(b);
+  });
+  return rows;
+}
+
 }  // namespace pushid

@@ -20,7 +20,9 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/results/fit_result.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "ident/validation/study_plan.h"
 
@@ -57,6 +59,16 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
                                    const Uncertainty& uncertainty, const ErrorParts& parts,
                                    const std::vector<CandidatePush>& candidates);
+
+// What one more default candidate, a sensor and more people would bring to a finished fit.
+// recordings: those it was fitted to.
+ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
+                                   const FitResult& result);
+
+// The rows by what they bring to a parameter, or to all together ("all"), best first. Errors: the
+// design's refusal, no such parameter.
+Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
+                                          const std::string& parameter);
 
 // The recording a candidate would be: an upright person at rest, and the motion that the model
 // expects.

@@ -35,9 +35,23 @@ END
 grep -q ',done,' "$scratch/out/summary.csv"
 test -x "$scratch/moved/share/pushid/workflow/profiles/slurm/status.sh"
 
+# `import pushid` from a folder of packages, where the build made it.
+import_from() {
+  [ -d "$1/pushid" ] || return 0
+  PYTHONPATH="$1" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -c "
+import pushid
+assert pushid.__file__.startswith('$1'), pushid.__file__
+assert pushid.fit(pushid.read('$scratch/recordings/manifest.json')).converged"
+}
+import_from "$scratch/moved/lib/python3/dist-packages"
+
 if ! command -v dpkg-deb >/dev/null; then exit 0; fi
 (cd "$build" && cpack -G DEB -B "$scratch/packages" >/dev/null)
 for package in "$scratch"/packages/*.deb; do dpkg-deb -x "$package" "$scratch/unpacked"; done
 "$scratch/unpacked/usr/bin/pushid-batch" --version
 "$scratch/unpacked/usr/bin/pushid-fit" --recordings="$scratch/recordings/manifest.json" --quiet >/dev/null
 find "$scratch/unpacked" -name pushidConfig.cmake | grep -q .
+import_from "$scratch/unpacked/usr/lib/python3/dist-packages"
+if [ -d "$scratch/moved/lib/python3/dist-packages" ]; then
+  dpkg-deb -f "$scratch"/packages/python3-pushid_*.deb Depends | grep -q python3-numpy
+fi

@@ -3,11 +3,8 @@ import gc
 import json
 import os
 import pickle
-import signal
 import subprocess
 import sys
-import threading
-import time
 
 import numpy as np
 import pytest
@@ -15,17 +12,6 @@ import pytest
 import pushid
 
 BIN = os.environ.get("PUSHID_BIN", "")
-
-
-@pytest.fixture(scope="module")
-def made():
-    recordings, truth = pushid.simulate(people=3, recordings_per_person=4, joint_noise_m=0.001, seed=7)
-    return recordings, truth
-
-
-@pytest.fixture(scope="module")
-def result(made):
-    return pushid.fit(made[0])
 
 
 def arrays(recording):
@@ -88,7 +74,7 @@ def test_options_are_those_of_the_flags(made):
         pushid.fit(made[0], preset="nonsense")
     with pytest.raises(pushid.UsageError, match="no parameter"):
         pushid.fit(made[0], fix={"nu": 3})
-    held = pushid.fit(made[0], fix={"mu": 25.0}, prior={"Kp_theta": (1500, 300)})
+    held = pushid.fit(made[0], fix={"mu": np.float64(25)}, prior={"Kp_theta": (1500, np.float32(300))})
     assert held["mu"].value == 25.0 and held["mu"].fixed
     assert "tail" in pushid.options()["preset"][0]
 
@@ -126,6 +112,26 @@ def test_bad_arrays_are_told(made, changed, says):
         from_arrays(made[0][0], **changed)
 
 
+def test_units_masks_and_names(made):
+    recording = made[0][0]
+    mm = {name: 1000.0 * track for name, track in zip(("hip", "left_ankle", "right_ankle"), arrays(recording))}
+    with pytest.raises(pushid.DataError, match="looks like mm, pass length_unit=mm"):
+        from_arrays(recording, **mm)
+    again = from_arrays(recording, **mm, length_unit="mm", id=7, subjects=3)
+    assert np.allclose(again.hip, recording.hip) and again.id == "7" and again.subjects == ["3"]
+    hidden = np.ma.array(arrays(recording)[0].copy())
+    hidden[30:33] = np.ma.masked
+    assert np.abs(from_arrays(recording, hip=hidden).hip[30:33] - recording.hip[30:33]).max() < 0.01
+
+
+def test_what_is_no_recording_is_told(made, result):
+    for call in (lambda: pushid.fit(made[0][0].hip), lambda: result.predict("a"), lambda: result.evaluate([1])):
+        with pytest.raises((pushid.UsageError, TypeError), match="recording"):
+            call()
+    with pytest.raises(pushid.UsageError, match="no recordings"):
+        pushid.fit([])
+
+
 def test_gaps_are_filled(made):
     hip = arrays(made[0][0])[0].copy()
     hip[30:33] = np.nan
@@ -137,6 +143,29 @@ def test_forces_become_generalized_ones(made):
     recording = from_arrays(made[0][0], push=np.full(10, 100.0), push_start=5, push_kind="external")
     assert (recording.push[5:15, 0, 0] == 100.0).all() and (recording.push[:5] == 0).all()
     assert (recording.push[5:15, 0, 2] > 60.0).all()  # times the rod
+
+
+def test_files_in_odd_units(tmp_path, made):
+    inches = 1.0 / 0.0254
+    recording = made[0][0]
+    tracks = [inches * track for track in arrays(recording)]
+    lines = ["time,hip_x,hip_y,hip_z,left_ankle_x,left_ankle_y,left_ankle_z,right_ankle_x,right_ankle_y,right_ankle_z"]
+    for t in range(recording.num_frames):
+        lines.append(",".join([repr(t / 60), *(repr(float(x)) for track in tracks for x in track[t])]))
+    (tmp_path / "a.csv").write_text("\n".join(lines))
+    (tmp_path / "p.csv").write_text("frame,fx,fy,ftheta,fphi\n0,90,0,90,0\n1,90,0,90,0\n")
+    joints = ("hip", "left_ankle", "right_ankle")
+    (tmp_path / "m.json").write_text(json.dumps({"recordings": [
+        {"id": "a", "setting": "single", "magnitude": "weak", "subjects": [{"id": "S", "mass_kg": 70.0}], "fps": 60,
+         "pushed_person": 0, "csv": ["a.csv"], "push_csv": "p.csv", "push_kind": "net", "joints": {name: name for name in joints}}]}))
+    read = pushid.read(tmp_path / "m.json", length_scale=0.0254)
+    assert np.allclose(read[0].hip, recording.hip, atol=1e-9)
+    for wrong in (dict(length_scale=-1.0), dict(length_scale=0.0254, length_unit="mm"), dict(length_unit="ell")):
+        with pytest.raises(pushid.UsageError, match="length_"):
+            pushid.read(tmp_path / "m.json", **wrong)
+    with pytest.raises(pushid.DataError) as told:
+        pushid.read(tmp_path / "m.json", length_unit="m")
+    assert "--" not in str(told.value)
 
 
 def test_errors_say_file_and_line(tmp_path):
@@ -165,8 +194,10 @@ def test_predictions(made, result):
     assert (seen["lower90"] <= seen["upper90"]).all() and seen["observed"] == 20
     less = result.predict(recording, set={"mu": 0.0})
     assert less["hip"][-1, 0, 0] > predicted["hip"][-1, 0, 0]
-    with pytest.raises(pushid.UsageError):
-        result.predict(recording, samples=5)  # a model without process noise
+    with pytest.raises(pushid.UsageError, match="observed"):
+        result.predict(recording, observed=91)
+    with pytest.raises(pushid.UsageError, match="negative"):
+        result.predict(recording, samples=-5)
     scores = result.evaluate(made[0])
     assert 0 < scores["mean"]["hipADE_m"] < 0.05
 
@@ -184,13 +215,6 @@ def test_online(made, result):
         online.observe(np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3)))
 
 
-def test_formations(result):
-    line = pushid.simulate_formation(result, "line", 4, push=60.0)
-    assert line["hip"].shape[1:] == (4, 3) and len(line["onset_s"]) == 4
-    with pytest.raises(pushid.UsageError):
-        pushid.simulate_formation(result, "circle", 4)
-
-
 def test_saved_loaded_and_pickled(made, result, tmp_path):
     result.save(tmp_path / "model.json")
     loaded = pushid.load(tmp_path / "model.json")
@@ -199,71 +223,14 @@ def test_saved_loaded_and_pickled(made, result, tmp_path):
     with pytest.raises(pushid.UsageError, match="recordings"):
         loaded.profile("mu")
     assert loaded.attach(made[0]).profile("mu")
-    with pytest.raises(pushid.UsageError):
-        loaded.attach(made[0][:3])
-
-
-def test_profile_bootstrap_crossvalidation(made, result):
-    assert "mu" in result.profile("mu")
-    assert result.bootstrap(9)["replicas"] == 9
-    scores = pushid.crossvalidate(made[0], {"pd": {"preset": "ldp"}}, folds=2)
-    assert [s["name"] for s in scores] == ["model", "pd", "static", "constant velocity"]
+    for others in (made[0][:3], made[0][::-1], [from_arrays(made[0][0])] + made[0][1:]):
+        with pytest.raises(pushid.UsageError, match="not the 12 recordings"):
+            loaded.attach(others)
 
 
 def test_report_is_a_page(result, tmp_path):
     page = result.report(tmp_path / "report.html").read_text(encoding="utf-8")
     assert page.lstrip().startswith("<!DOCTYPE html>") and "mu" in page
-
-
-def test_progress_is_told_and_its_errors_come_back(made):
-    told = []
-    pushid.fit(made[0], progress=lambda *step: told.append(step))
-    assert len(told) > 3 and isinstance(told[0][0], str)
-
-    def stop(phase, iteration, cost):
-        raise RuntimeError("enough")
-    with pytest.raises(RuntimeError, match="enough"):
-        pushid.fit(made[0], progress=stop)
-
-
-def test_ctrl_c_ends_a_fit(made):
-    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
-    begin = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
-        pushid.fit(made[0], starts=100000)
-    assert time.monotonic() - begin < 5.0
-
-
-def test_fits_in_threads_agree(made, result):
-    found = []
-    threads = [threading.Thread(target=lambda: found.append(pushid.fit(made[0])["mu"])) for _ in range(3)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert found == [result["mu"]] * 3
-
-
-def test_pictures(made, result):
-    matplotlib = pytest.importorskip("matplotlib")
-    matplotlib.use("Agg")
-    axes = result.plot()
-    assert any(label.get_text().startswith("mu ") for label in axes.get_yticklabels())
-    axes = result.plot_motion(made[0][0], observed=20)
-    assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
-
-
-def test_no_leak(made):
-    pages = lambda: int(open("/proc/self/statm", encoding="ascii").read().split()[1])
-    one = made[0][:2]
-    for _ in range(20):
-        pushid.fit(one)
-    gc.collect()
-    before = pages()
-    for _ in range(200):
-        pushid.fit(one).predict(one[0])
-    gc.collect()
-    assert pages() - before < 2000  # 8 MB
 
 
 @pytest.mark.skipif(not BIN, reason="PUSHID_BIN names no programs")
@@ -290,7 +257,18 @@ def test_stubs_name_everything():
     for name in pushid.__all__:
         assert f"class {name}" in stubs or f"def {name}" in stubs, name
         assert (getattr(pushid, name).__doc__ or "").strip(), name
+    for owner in (pushid.Result, pushid.OnlinePredictor, pushid.Restoration, pushid.Design, pushid.Formation):
+        for name, member in vars(owner).items():
+            if name.startswith("_"):
+                continue
+            assert f"def {name}(" in stubs or f"    {name}: " in stubs, f"{owner.__name__}.{name}"
+            assert (member.__doc__ or "").strip(), f"{owner.__name__}.{name}"
     compile(stubs, "__init__.pyi", "exec")
+
+
+def test_pip_installs_this_version():
+    with open(os.path.join(os.path.dirname(__file__), "../../apps/python/pyproject.toml"), encoding="utf-8") as file:
+        assert f'version = "{pushid.__version__}"' in file.read()
 
 
 if __name__ == "__main__":

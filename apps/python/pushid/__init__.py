@@ -10,9 +10,11 @@ World: z up, x forward (the push's direction), y left; m, s, N, rad. Arrays that
 """
 from ._pushid import DataError, FitError, UsageError
 from ._pushid import version as __version__
+from ._options import options
+from ._predictions import Formation, OnlinePredictor, Restoration, simulate_formation
 from ._recordings import Recording, Recordings, estimate_push, read, simulate
-from ._results import OnlinePredictor, Restoration, Result, crossvalidate, fit, load, options, simulate_formation
+from ._results import Design, Parameter, Result, Table, crossvalidate, fit, load
 
-__all__ = ["DataError", "FitError", "UsageError", "Recording", "Recordings", "Result", "OnlinePredictor",
-           "Restoration", "crossvalidate", "estimate_push", "fit", "load", "options", "read", "simulate",
-           "simulate_formation"]
+__all__ = ["DataError", "FitError", "UsageError", "Design", "Formation", "OnlinePredictor", "Parameter", "Recording",
+           "Recordings", "Restoration", "Result", "Table", "crossvalidate", "estimate_push", "fit", "load", "options",
+           "read", "simulate", "simulate_formation"]

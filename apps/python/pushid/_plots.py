@@ -48,6 +48,43 @@ def motion(result, recording, axes=None, **how):
     return axes
 
 
+def profile(result, name, axes=None):
+    """The cost along a parameter, in units of what bounds its 95 % interval."""
+    found = {row["name"]: row for row in result.profiles}
+    if name not in found:
+        raise KeyError(f"there is no profile of '{name}'; ask for it by result.profile('{name}')")
+    row = found[name]
+    axes = _axes(axes)
+    points = [(point["value"], (point["cost"] - row["cost"]) / row["threshold"]) for point in row["points"]]
+    axes.plot(*zip(*points), "o-")
+    axes.axhline(1.0, color="C3", linestyle="--")
+    axes.axvline(row["estimate"], color="C3", linewidth=1)
+    axes.set_ylim(-0.1, 2.0)
+    axes.set_xlabel(f"{name}, {row['unit']}")
+    axes.set_ylabel("rise of the cost over the threshold of 95 %")
+    return axes
+
+
+def wave(formation, axes=None):
+    """How a push goes through people: speed of the hips, onsets, and their bands where there are any."""
+    axes = _axes(axes)
+    speed = formation["speed"].T
+    people, frames = speed.shape
+    fastest = abs(speed).max() or 1.0
+    image = axes.imshow(speed, aspect="auto", cmap="PuOr_r", vmin=-fastest, vmax=fastest, interpolation="nearest",
+                        extent=(-0.5 / formation["fps"], (frames - 0.5) / formation["fps"], people - 0.5, -0.5))
+    axes.figure.colorbar(image, ax=axes, label="speed of the hip, m/s (negative: back)")
+    moved = [(onset, n) for n, onset in enumerate(formation["onset_s"]) if onset is not None]
+    if moved:
+        axes.plot(*zip(*moved), "o", color="white", markeredgecolor="black")
+    for n, band in enumerate(formation.get("onset_band90", [])):
+        if band is not None:
+            axes.plot(band, [n, n], color="black")
+    axes.set_xlabel("time, s")
+    axes.set_ylabel("person")
+    return axes
+
+
 def _bar(p):
     """The interval over the value, from 0 to 2, as a small picture."""
     if not p.interval or p.value == 0:

@@ -4,6 +4,7 @@ import os
 import numpy as np
 
 from . import _pushid
+from ._options import text_of
 
 
 class Recordings(list):
@@ -19,47 +20,53 @@ class Recordings(list):
 
 
 def _listed(names):
-    return [names] if isinstance(names, str) else list(names)
+    return [str(name) for name in ([names] if isinstance(names, (str, int)) else names)]
 
 
 def read(manifest, setting="all", *, ids=(), leave_out=(), all_joints=False, max_gap_s=0.1, lowpass_hz=0.0,
-         resample_fps=0.0, length_unit=""):
+         resample_fps=0.0, length_unit="", length_scale=0.0):
     """Recordings of a manifest, or of several (a list of paths).
 
     setting: settings of the manifest, comma-separated, "groups" or "all". ids, leave_out: only these, not these.
     all_joints: keep whole bodies, for restorations and the report's figure. max_gap_s (s), lowpass_hz (Hz, 0: none)
     and resample_fps (0: as recorded) prepare the motion; length_unit ("mm", "cm", "m") is the files', whatever
-    they say. Raises DataError with file and line.
+    they say; length_scale instead of it the metres in one of the files' lengths (0: a unit). Raises DataError with
+    file and line.
     """
     paths = [manifest] if isinstance(manifest, (str, os.PathLike)) else manifest
     found, told = _pushid.read(",".join(os.fspath(path) for path in paths), setting, _listed(ids),
-                               _listed(leave_out), all_joints, max_gap_s, lowpass_hz, resample_fps, length_unit)
+                               _listed(leave_out), all_joints, max_gap_s, lowpass_hz, resample_fps, length_unit,
+                               length_scale)
     return Recordings(found, told)
 
 
-def _positions(name, values):
-    array = np.asarray(values)
+def _positions(name, values, metres):
+    array = np.asanyarray(values)
     if array.dtype.kind not in "fiu":
-        raise _pushid.DataError(f"{name} holds {array.dtype}; it must hold numbers, in m")
-    return array.astype(float, copy=False)
+        raise _pushid.DataError(f"{name} holds {array.dtype}; it must hold numbers")
+    if isinstance(array, np.ma.MaskedArray):  # masked: not seen
+        array = array.astype(float).filled(np.nan)
+    return array * metres if metres != 1.0 else array.astype(float, copy=False)
 
 
 def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recording", subjects=(), pushed_person=0,
               push_start=0, push_height=1.0, push_kind="external", initial_velocity="zero", setting="single",
-              magnitude="unknown", condition=""):
+              magnitude="unknown", condition="", length_unit="m"):
     """A recording from arrays, with the checks of one from files.
 
-    hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in m, z up and x forward; NaN where unseen.
-    mass: kg, a number or one for each person. fps: frames per second.
+    hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in length_unit ("mm", "cm" or "m"), z up and x
+    forward; NaN or masked where unseen. mass: kg, a number or one for each person. fps: frames per second.
     push: from frame `push_start` on, on `pushed_person`: (rows,) forwards, (rows, 2) or (rows, 3) in N at the height
     `push_height` (a fraction of the way from the ankles to the hip), or (rows, 4): generalized forces in N and N m.
     push_kind: "external" (measured, the whole push), "net" or "net_without_friction". initial_velocity: "zero",
-    "estimated" or "free". setting, magnitude, condition: labels, by which results may differ. Raises DataError.
+    "estimated" or "free". subjects: who they are; what one person does errs together. setting, magnitude, condition:
+    labels, by which results may differ. Raises DataError.
     """
     rows = None if push is None else np.asarray(push, dtype=float)
-    return _pushid.from_arrays(_positions("hip", hip), _positions("left_ankle", left_ankle),
-                               _positions("right_ankle", right_ankle), [float(m) for m in np.atleast_1d(mass)],
-                               float(fps), rows, id, _listed(subjects), pushed_person, push_start, push_height,
+    metres = _pushid.metres_per(length_unit)
+    return _pushid.from_arrays(_positions("hip", hip, metres), _positions("left_ankle", left_ankle, metres),
+                               _positions("right_ankle", right_ankle, metres), [float(m) for m in np.atleast_1d(mass)],
+                               float(fps), rows, str(id), _listed(subjects), pushed_person, push_start, push_height,
                                push_kind, initial_velocity, setting, magnitude, condition)
 
 
@@ -69,10 +76,20 @@ def simulate(*, people=4, recordings_per_person=6, people_in_row=1, fps=60.0, fr
 
     set: {name: value} of the truth that differs from the default. joint_noise_m: m, one sigma.
     """
-    changed = ",".join(f"{name}={value!r}" for name, value in (set or {}).items())
+    changed = text_of("set", set or {})
     found, truth = _pushid.simulate(people, recordings_per_person, people_in_row, fps, frames, seed, push_kind,
                                     joint_noise_m, changed)
     return Recordings(found), truth
+
+
+def checked(recordings):
+    """One recording, or several, as a list."""
+    found = [recordings] if isinstance(recordings, _pushid.Recording) else list(recordings)
+    for one in found:
+        if not isinstance(one, _pushid.Recording):
+            raise _pushid.UsageError(f"a recording was asked for, and found {type(one).__name__}; make one by "
+                                     "pushid.Recording(hip, left_ankle, right_ankle, mass, fps, push) or pushid.read")
+    return found
 
 
 def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothing=9, initial_velocity="auto"):
@@ -81,7 +98,7 @@ def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothin
     first_frame, end_frame: the window; -1: found by itself. smoothing: Savitzky-Golay window in frames, odd; 0: none.
     It takes all that speeds the hip up for the push, often too much.
     """
-    return _pushid.estimate_push(recording, person, first_frame, end_frame, smoothing, initial_velocity)
+    return _pushid.estimate_push(*checked(recording), person, first_frame, end_frame, smoothing, initial_velocity)
 
 
 def _described(recording):

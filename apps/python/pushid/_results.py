@@ -7,39 +7,21 @@ from collections import namedtuple
 import numpy as np
 
 from . import _pushid
+from ._options import as_call, given, text_of
+from ._recordings import checked
 
 Parameter = namedtuple("Parameter", "name value standard_error interval unit status shares fixed")
 Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`; status
 ("identified", "weak", "prior-held", "fixed", ...); shares: what of it data, priors and settling decide."""
 
 
-def options():
-    """The options of a fit: {name: (what it means, default)}; None where the preset decides."""
-    return {name: (meaning, default) for name, meaning, default in _pushid.options()}
-
-
-def _text(name, value):
-    """A value as the command line spells it."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, dict):
-        if name == "prior":  # {name: (mean, sigma)}
-            return ",".join(f"{key}:{mean!r}:{sigma!r}" for key, (mean, sigma) in value.items())
-        return ",".join(key if item is None else f"{key}={item!r}" for key, item in value.items())
-    if isinstance(value, (list, tuple)):
-        return ",".join(str(item) for item in value)
-    return repr(value) if isinstance(value, float) else str(value)
-
-
-def _given(asked):
-    known = options()
-    for name in asked:
-        if name in known:
-            continue
-        near = difflib.get_close_matches(name, known, 1)
-        raise _pushid.UsageError(f"there is no option '{name}'" + (f"; is '{near[0]}' meant?" if near else
-                                                                   "; pushid.options() lists them"))
-    return [(name, _text(name, value)) for name, value in asked.items() if value is not None]
+def _numbers(found):
+    """With numbers in place of the texts that stand for those JSON does not know."""
+    if isinstance(found, dict):
+        return {name: _numbers(item) for name, item in found.items()}
+    if isinstance(found, list):
+        return [_numbers(item) for item in found]
+    return float(found) if found in ("infinity", "-infinity", "nan") else found
 
 
 class Table(list):
@@ -66,14 +48,16 @@ class Result:
 
     @property
     def table(self):
-        return Table(self.json["parameters"])
+        """Everything about each parameter, one dict each."""
+        return Table(_numbers(self.json["parameters"]))
 
     @property
     def names(self):
+        """Of all parameters, fitted or not."""
         return [row["name"] for row in self.json["parameters"]]
 
     def __getitem__(self, name):
-        for row in self.json["parameters"]:
+        for row in self.table:
             if row["name"] == name:
                 interval = row.get("interval_95")
                 return Parameter(name, row["value"], row.get("standard_error"), tuple(interval) if interval else None,
@@ -90,41 +74,97 @@ class Result:
 
     @property
     def converged(self):
+        """Whether the solver did; advice says what to try where it did not."""
         return self._model.converged
 
     @property
     def warnings(self):
+        """What to keep in mind: of the files, the fit and the person it found."""
         return self._model.warnings
 
     @property
     def advice(self):
-        """What to try next: [(sentence, command)]."""
-        return self._model.advice
+        """What to try next: [(sentence, call)]."""
+        return [(sentence, as_call(command)) for sentence, command in self._model.advice]
 
-    def profile(self, *names):
-        """The cost along each of these parameters, all others fitted anew: {name: profile}."""
-        self._model.profile(list(names))
+    def _part(self, name):
+        """A part of the json that was just made anew."""
         self._json = None
-        return {row["name"]: row for row in self.json.get("profiles", []) if row["name"] in names}
+        return _numbers(self.json[name])
 
-    def bootstrap(self, replicas=199, *, seed=1, num_threads=1):
-        """Refits of people (or recordings) drawn with replacement; the json's part `bootstrap`."""
-        self._model.bootstrap(replicas, seed, num_threads)
-        self._json = None
-        return self.json["bootstrap"]
+    def profile(self, *names, num_threads=1, progress=None):
+        """The cost along each of these parameters (none: all), all others fitted anew: {name: profile}.
+
+        A profile has "interval_95", "class" ("identifiable", ...) and "points", a dict of value, cost and the others
+        each. It takes the place of earlier ones. progress: called with (done, total), as by all that fit many times.
+        """
+        _pushid.profile(self._model, list(names), num_threads, progress)
+        return {row["name"]: row for row in self._part("profiles")}
+
+    @property
+    def profiles(self):
+        """What profile() found last, a dict each."""
+        return _numbers(self.json.get("profiles", []))
+
+    def bootstrap(self, replicas=199, *, seed=1, num_threads=1, file="", progress=None):
+        """Refits of people (or recordings) drawn with replacement; the json's part `bootstrap`.
+
+        file: keeps finished replicas, so that a run that was interrupted goes on from there.
+        """
+        _pushid.bootstrap(self._model, replicas, seed, num_threads, os.fspath(file), progress)
+        return self._part("bootstrap")
+
+    def prior_check(self):
+        """Refits with centres and widths of all priors halved, and doubled; the json's part `prior_check`."""
+        _pushid.prior_check(self._model)
+        return self._part("prior_check")
+
+    def push_check(self, *, noise=0.01, seed=1, num_threads=1, progress=None):
+        """Refits with pushes that might as well have been recorded; the json's part `push_check`.
+
+        noise: of a measured push's sensor, as a share of the push's peak.
+        """
+        _pushid.push_check(self._model, noise, seed, num_threads, progress)
+        return self._part("push_check")
+
+    def horizon_check(self, *, num_threads=1, progress=None):
+        """Refits of the first 8, 16, 32 and 64 frames; the json's part `horizon_check`."""
+        _pushid.horizon_check(self._model, num_threads, progress)
+        return self._part("horizon_check")
+
+    def design(self, parameter="all"):
+        """Which further push would lower the error of a parameter (or of all together) most; see Design."""
+        return Design(_pushid.design(self._model, parameter))
 
     def predict(self, recording, *, observed=0, frames=0, samples=0, seed=1, set=None):
         """What the model says will happen, from the first frame (or `observed` of them) and the push.
 
-        {"hip": (frames, people, 3), "states": (frames, people, 8), ...}; with `observed` also the 90 % bands
-        "lower90" and "upper90", with `samples` (models with process noise) "samples", (samples, frames, people, 3).
-        set: {name: value} asks "what if". Raises FitError where a rollout leaves the model's domain.
+        {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
+        90 % bands "lower90" and "upper90" of the frames to come. samples: so many futures drawn, "samples" of the
+        shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; else
+        from the process noise of a model that has one, or parameters from their covariance, with errors of the
+        fitted recordings. frames: how far (0: as far as the recording). set: {name: value} asks "what if". Raises
+        FitError where a rollout leaves the model's domain; warns of pushes unlike the fitted ones.
         """
-        return _pushid.predict(self._model, recording, observed, frames, samples, seed, _text("set", set or {}))
+        return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}))
+
+    def path_between(self, start, end, *, frames=90, fps=60.0, mass=85.0, rod=0.95):
+        """The most probable path of a person between two states under the model's process noise.
+
+        start, end: {"x": 0.4, "theta": 0.05, "xd": 0.3, ...}: x, y (m), theta, phi (rad) and their rates xd, yd,
+        thetad, phid; what is not named is 0, and the rates at the end are free where none is named. Returns "states"
+        (frames, 1, 8), "noise" (frames, 1, 4), the generalized force that drove it, and "action", -log of its
+        probability density up to a constant: of several ends the most probable one has the least.
+        """
+        return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
+
+    def smooth(self, recording):
+        """A recording smoothed, its gaps filled, under the model's process noise: as path_between, for everybody."""
+        return _pushid.smooth(self._model, *checked(recording))
 
     def evaluate(self, recordings, *, observed=0):
         """Errors of the predictions beside two baselines, as pushid-evaluate writes them."""
-        return self._model.evaluate(list(recordings), observed)
+        return self._model.evaluate(checked(recordings), observed)
 
     def report(self, path):
         """Writes the report as one page; returns its path."""
@@ -137,7 +177,7 @@ class Result:
 
     def attach(self, recordings):
         """Gives a loaded result the recordings it was fitted to, for profiles, bootstrap and the report's figure."""
-        self._model.attach(list(recordings))
+        self._model.attach(checked(recordings))
         return self
 
     def plot(self, **options):
@@ -149,6 +189,11 @@ class Result:
         """A recording's hips and the prediction's, with bands where there are any; returns the axes."""
         from . import _plots
         return _plots.motion(self, recording, **options)
+
+    def plot_profile(self, name, **options):
+        """The profile of a parameter that profile() was asked for; returns the axes."""
+        from . import _plots
+        return _plots.profile(self, name, **options)
 
     def __str__(self):
         return self._model.text()
@@ -176,7 +221,8 @@ def fit(recordings, *, progress=None, **asked):
     fix={"mu": 30} (or fix=["mu"]: held where they are), free={"Kp_x": 50}, prior={"mu": (30, 10)}, ...
     progress: called with (phase, iteration, cost). Ctrl-C ends a fit. Raises DataError, UsageError, FitError.
     """
-    return Result(_pushid.fit(_recordings(recordings), _given(asked), progress))
+    told = list(getattr(recordings, "warnings", ()))
+    return Result(_pushid.fit(checked(recordings), given(asked), progress, told))
 
 
 def load(path):
@@ -184,66 +230,32 @@ def load(path):
     return Result(_pushid.load(os.fspath(path)))
 
 
-def _recordings(recordings):
-    return [recordings] if isinstance(recordings, _pushid.Recording) else list(recordings)
-
-
 def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, repeats=1, seed=1, observed=0,
-                  baselines=True, num_threads=1, **asked):
+                  baselines=True, num_threads=1, progress=None, **asked):
     """Errors on recordings that were not fitted, for the options given and each of `candidates`.
 
     candidates: {name: {option: value}}, on top of the options given. A list of what pushid-crossvalidate writes
     for each predictor.
     """
-    all_of_them = [("model", _given(asked))]
+    all_of_them = [("model", given(asked))]
     for name, more in (candidates or {}).items():
-        all_of_them.append((name, _given({**asked, **more})))
-    return _pushid.crossvalidate(_recordings(recordings), all_of_them, scheme, folds, repeats, seed, observed,
-                                 baselines, num_threads)
+        all_of_them.append((name, given({**asked, **more})))
+    return _pushid.crossvalidate(checked(recordings), all_of_them, scheme, folds, repeats, seed, observed,
+                                 baselines, num_threads, progress)
 
 
-def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=80.0, push_duration=0.2,
-                       mass=85.0, rod=0.95, duration=4.0, fps=60.0, set=None):
-    """A fitted model on people who stand together: {"hip": ..., "states": ..., "onset_s": [...], "outcome": [...]}.
+class Design(dict):
+    """What one more recording, a force sensor and more people would bring; print() shows it as pushid-fit does.
 
-    shape: "line", "diamond" or "grid"; spacing in m, push in N s along +x at the hip of person `pushed`.
+    "pushes": a Table, best first: direction_deg (from forwards to the left), acceleration (peak force over mass, m/s^2),
+    height (of the rod), duration_s, mass_kg, error_ratio {name: standard error with it over the present one} and their
+    mean; "no_push" says why there are none. "sensor_ratio": {name: error with the whole push measured over that
+    without} or "no_sensor"; "sizes": studies of more people and pushes with the errors they would leave.
     """
-    return _pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration, mass, rod,
-                                      duration, fps, _text("set", set or {}))
 
+    def __init__(self, found):
+        super().__init__(found)
+        self["pushes"] = Table(self["pushes"])
 
-class OnlinePredictor:
-    """A prediction that learns from every frame it is shown; recording: people, pushes and frame 0."""
-
-    def __init__(self, result, recording, frames):
-        self._online = _pushid.Online(result._model, recording, frames)
-
-    def observe(self, hip, left_ankle, right_ankle):
-        """The next frame, frame 1 first: (people, 3) each, or (3,) of one person, in m."""
-        self._online.observe(*(np.atleast_2d(np.asarray(a, dtype=float)) for a in (hip, left_ankle, right_ankle)))
-
-    @property
-    def observed(self):
-        """How many frames were seen, frame 0 among them."""
-        return self._online.observed
-
-    def predict(self):
-        return self._online.predict()
-
-
-class Restoration:
-    """Networks that turn pendulums into bodies."""
-
-    def __init__(self, restoration):
-        self._restoration = restoration
-
-    @classmethod
-    def load(cls, folder):
-        """Of a folder that pushid-train-restoration wrote, or "rigid"."""
-        return cls(_pushid.load_restoration(os.fspath(folder)))
-
-    def apply(self, result, recording, *, observed=0):
-        """The predicted motion of whole bodies: (frames, people, 22, 3), in m. Read with all_joints=True."""
-        return self._restoration.apply(result._model, recording, observed)
-
-
+    def __str__(self):
+        return self["text"]

@@ -211,6 +211,32 @@ TEST_F(OnlinePredictorTest, QuantilesInvertTheDistribution) {
   EXPECT_GT(width(wide), 1.4 * width(hips));
 }
 
+// Frame by frame a fifth of the futures lies outside the central 80 %; what was seen is as it was.
+TEST_F(OnlinePredictorTest, DrawnFuturesAreSpreadAsTheDistribution) {
+  constexpr int kObserved = 10, kDraws = 2000;
+  const OnlinePredictor predictor = After(3, kObserved);
+  const Prediction prediction = predictor.Predict();
+  const HipDistribution hips = predictor.Distribution(prediction);
+  const auto futures = DrawFrom(model_, recordings_[3], kObserved, kDraws, 1).value();
+  ASSERT_EQ(futures.size(), static_cast<size_t>(kDraws));
+  for (int t : {0, 25}) {
+    for (int axis : {0, 1, 2}) {
+      const double low = hips.Quantile(0, t, axis, 0.1), high = hips.Quantile(0, t, axis, 0.9);
+      double below = 0.0, above = 0.0;
+      for (const HipPaths& future : futures) {
+        const double value = future[0][kObserved + t][axis];
+        below += value < low ? 1.0 / kDraws : 0.0;
+        above += value > high ? 1.0 / kDraws : 0.0;
+      }
+      EXPECT_NEAR(below, 0.1, 0.03) << t << " " << axis;
+      EXPECT_NEAR(above, 0.1, 0.03) << t << " " << axis;
+    }
+  }
+  EXPECT_EQ(futures[7][0].size(), prediction.hip[0].size());
+  EXPECT_EQ(futures[7][0][kObserved - 1], prediction.hip[0][kObserved - 1]);
+  EXPECT_EQ(futures, DrawFrom(model_, recordings_[3], kObserved, kDraws, 1).value());
+}
+
 TEST_F(OnlinePredictorTest, ModelsThatCannotLearnAreRefused) {
   model_.source = "old.json";
   model_.recording_effect.reset();

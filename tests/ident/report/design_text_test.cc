@@ -38,14 +38,14 @@ TEST(DesignTextTest, TheLeastUsefulOneStandsLast) {
 }
 
 TEST(DesignTextTest, SaysThePresentErrorWithItsUnit) {
-  const std::string text = DesignText(SmallDesign(), "mu_y", 2).value();
+  const std::string text = DesignText(SmallDesign(), "mu_y").value();
   EXPECT_TRUE(Contains(text, "error of mu_y")) << text;
   EXPECT_TRUE(Contains(text, "now: mu_y +- 8 N s/m\n")) << text;
-  EXPECT_FALSE(Contains(DesignText(SmallDesign(), "all", 2).value(), "now:"));
+  EXPECT_FALSE(Contains(DesignText(SmallDesign(), "all").value(), "now:"));
 }
 
 TEST(DesignTextTest, AnUnknownParameterIsToldWhatThereIs) {
-  const Result<std::string> wrong = DesignText(SmallDesign(), "nu", 5);
+  const Result<std::string> wrong = DesignText(SmallDesign(), "nu");
   ASSERT_FALSE(wrong.ok());
   EXPECT_TRUE(Contains(wrong.error().message, "all, mu, mu_y"));
 }

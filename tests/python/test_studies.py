@@ -1,0 +1,144 @@
+"""What is asked of a fit beyond its table: refits, designs, futures, paths, formations, pictures."""
+import numpy as np
+import pytest
+
+import pushid
+
+
+@pytest.fixture(scope="module")
+def noisy(made):
+    """A model that knows the noise of single steps."""
+    return pushid.fit(made[0], process_noise="diagonal")
+
+
+def test_profiles(result):
+    found = result.profile("mu", "Kp_theta")
+    assert list(found) == ["mu", "Kp_theta"]
+    low, high = found["mu"]["interval_95"]
+    assert low < result["mu"].value < high and found["mu"]["class"] == "identifiable"
+    assert {"value", "cost"} <= set(found["mu"]["points"][0])
+    with pytest.raises(pushid.UsageError, match="nu"):
+        result.profile("nu")
+
+
+def test_bootstrap_and_crossvalidation(made, result, tmp_path):
+    kept = tmp_path / "replicas"
+    assert result.bootstrap(9, file=kept)["replicas"] == 9 and kept.exists()
+    assert "bootstrap" in str(result)
+    scores = pushid.crossvalidate(made[0], {"pd": {"preset": "ldp"}}, folds=2)
+    assert [s["name"] for s in scores] == ["model", "pd", "static", "constant velocity"]
+    with pytest.raises(pushid.UsageError, match="scheme"):
+        pushid.crossvalidate(made[0], scheme="nonsense")
+
+
+def test_refits_under_other_circumstances(made, result):
+    priors = result.prior_check()
+    assert len(priors["refits"]) == 2 and priors["parameters"][0]["name"] == "mu"
+    assert result.push_check()["refits"]
+    assert {row["frames"] for row in result.horizon_check()["refits"]} >= {8, 16, 32, 64}
+    assert "prior_check" in result.json and "push_check" in result.json
+
+
+def test_designs(made, result):
+    design = result.design("mu")
+    ratios = [row["error_ratio"]["mu"] for row in design["pushes"]]
+    assert ratios == sorted(ratios) and ratios[0] < 1.0
+    assert design["standard_error"]["mu"] == pytest.approx(result["mu"].standard_error)
+    assert "error of mu" in str(design) and design["sizes"][0]["people"] == 3
+    with pytest.raises(pushid.UsageError, match="choose from all, mu"):
+        result.design("nu")
+    few = pushid.fit(made[0][:2]).design()
+    assert not few["pushes"] and "more recordings" in few["no_push"]
+
+
+def test_advice_is_in_python(made, result):
+    for sentence, call in result.advice:
+        assert sentence and "--" not in call and call.startswith(("result.", "pushid."))
+        compile(call, "advice", "eval")
+
+
+def test_futures(made, result, noisy):
+    recording = made[0][1]
+    for model, observed in ((result, 0), (result, 20), (noisy, 0)):
+        drawn = model.predict(recording, observed=observed, samples=50, seed=3)
+        samples = drawn["samples"]
+        assert samples.shape == (50, 90, 1, 3) and np.isfinite(samples).all()
+        assert 0.0 < samples[:, -1, 0, 0].std() < 1.0
+        again = model.predict(recording, observed=observed, samples=50, seed=3)["samples"]
+        assert np.array_equal(samples, again)
+        assert np.abs(np.median(samples[:, -1, 0, 0]) - drawn["hip"][-1, 0, 0]) < 0.2
+    seen = result.predict(recording, observed=20, samples=400)
+    assert np.array_equal(seen["samples"][5, :20], seen["hip"][:20])
+    inside = (seen["samples"][:, -1, 0, 0] > seen["lower90"][-1, 0, 0]) & (
+        seen["samples"][:, -1, 0, 0] < seen["upper90"][-1, 0, 0])
+    assert 0.8 < inside.mean() < 0.98
+    with pytest.raises(pushid.UsageError, match="frames=10"):
+        result.predict(recording, observed=20, frames=10)
+    with pytest.raises(pushid.UsageError, match="set"):
+        result.predict(recording, samples=5, set={"mu": 3})
+    assert result.predict(recording, frames=120, samples=5)["samples"].shape == (5, 120, 1, 3)
+
+
+def test_a_push_unlike_the_fitted_ones_is_warned_of(made, result):
+    hard = made[0][0]
+    hard = pushid.Recording(hard.hip, hard.left_ankle, hard.right_ankle, mass=hard.mass, fps=hard.fps,
+                            push=4.0 * hard.push[:, 0], push_kind=hard.push_kind)
+    with pytest.warns(UserWarning, match="fitted"):
+        try:
+            result.predict(hard)
+        except pushid.FitError:  # so hard a push may leave the model's domain
+            pass
+
+
+def test_most_probable_paths(made, result, noisy):
+    near, far = (noisy.path_between({"xd": 0.5}, {"x": x, "xd": 0}, frames=60) for x in (0.3, 3.0))
+    assert near["states"].shape == (60, 1, 8) and near["noise"].shape == (60, 1, 4)
+    assert near["action"] < far["action"] and near["states"][-1, 0, 0] == pytest.approx(0.3)
+    smooth = noisy.smooth(made[0][0])
+    assert np.abs(smooth["states"][:, 0, :2] - made[0][0].states[:, 0, :2]).max() < 0.05
+    with pytest.raises(pushid.UsageError, match="process noise"):
+        result.smooth(made[0][0])
+    with pytest.raises(pushid.UsageError, match="end"):
+        noisy.path_between({"xd": 0.5}, {"nowhere": 1})
+
+
+@pytest.mark.filterwarnings("ignore:the model was fitted without interaction")
+def test_formations(result):
+    line = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True)
+    assert line["hip"].shape[1:] == (4, 3) and line["speed"].shape == line["hip"].shape[:2]
+    assert len(line["onset_s"]) == 4 and line["onset_s"][0] is not None
+    low, high = line["onset_band90"][0]
+    assert low <= high and line["fps"] == 60.0
+    for wrong in (dict(shape="circle"), dict(people=0), dict(spacing=-1.0), dict(set={"nu": 1})):
+        with pytest.raises(pushid.UsageError):
+            pushid.simulate_formation(result, **{"shape": "line", "people": 4, **wrong})
+
+
+def test_people_who_do_not_touch_are_warned_of(result):
+    with pytest.warns(UserWarning, match="interaction"):
+        pushid.simulate_formation(result, "line", 2)
+
+
+def test_whole_bodies(made, result):
+    rigid = pushid.Restoration.load("rigid")
+    with pytest.raises(pushid.DataError, match="joints"):
+        rigid.apply(result, made[0][0])  # of hip and ankles alone
+    with pytest.raises(pushid.DataError):
+        pushid.Restoration.load("/no/such/folder")
+
+
+@pytest.mark.filterwarnings("ignore:the model was fitted without interaction")
+def test_pictures(made, result):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = result.plot()
+    assert any(label.get_text().startswith("mu ") for label in axes.get_yticklabels())
+    axes = result.plot_motion(made[0][0], observed=20)
+    assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
+    result.profile("mu")
+    axes = result.plot_profile("mu")
+    assert axes.lines[0].get_ydata().min() == pytest.approx(0.0, abs=0.01)
+    with pytest.raises(KeyError, match="profile"):
+        result.plot_profile("a_x")
+    axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
+    assert axes.images[0].get_array().shape == (4, 241)
