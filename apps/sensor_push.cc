@@ -132,6 +132,9 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     options.height_m = sensor.height_m ? sensor.height_m : record.height_m;
     options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
     options.idle_force = sensor.idle_force;
+    if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
+      result.how += "; contact at the hip's height (--height and --height_m say another)";
+    }
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
     if (const MaybeError cut = CutShort(record)) result.warnings.push_back(cut->ToString());

@@ -15,6 +15,8 @@ constexpr double kStandsOut = 3.0;                       // times the largest of
 constexpr double kShortRod = 0.6, kLongRod = 1.2;        // m
 constexpr double kSeen = 0.5;                            // s after the push began
 constexpr double kMoved = 0.05;                          // m; less has no direction
+constexpr double kMovedBefore = 0.1;                     // m; people sway by less
+constexpr double kFastest = 10.0;                        // m/s
 constexpr double kFacesElsewhere = 75.0 * M_PI / 180.0;  // rad; one foot may be ahead
 constexpr double kElsewhere = 60.0 * M_PI / 180.0;       // rad between push and way
 
@@ -69,7 +71,9 @@ void PlausibilityCheck::Look(const Recording& recording) {
       way_.cases.push_back(Case(recording.id, std::round(angle * 180.0 / M_PI), "degrees off"));
     }
   }
+  LookAtOnset(recording);
   for (const RecordedPerson& person : recording.people) {
+    LookAtSpeed(recording, person);
     const double facing = std::fabs(FacingAngle(person));
     if (facing > kFacesElsewhere) {
       facing_.cases.push_back(
@@ -83,9 +87,31 @@ void PlausibilityCheck::Look(const Recording& recording) {
   }
 }
 
+void PlausibilityCheck::LookAtOnset(const Recording& recording) {
+  if (recording.pushes.empty()) return;
+  const Push& first =
+      *std::min_element(recording.pushes.begin(), recording.pushes.end(),
+                        [](const Push& a, const Push& b) { return a.start_frame < b.start_frame; });
+  const std::vector<Eigen::Vector3d>& hip = recording.people[first.person].hip;
+  const double way = (hip[first.start_frame] - hip[0]).head<2>().norm();
+  if (way > kMovedBefore) early_.cases.push_back(Case(recording.id, way, "m"));
+}
+
+void PlausibilityCheck::LookAtSpeed(const Recording& recording, const RecordedPerson& person) {
+  double speed = 0.0;
+  int fastest = 0;
+  for (int t = 1; t < recording.num_frames(); ++t) {
+    const double now = (person.hip[t] - person.hip[t - 1]).norm() * recording.fps;
+    if (now > speed) speed = now, fastest = t;
+  }
+  if (speed <= kFastest) return;
+  jump_.cases.push_back(recording.id + ", frame " + std::to_string(fastest) + ", " +
+                        Case(person.subject_id, speed, "m/s"));
+}
+
 std::vector<std::string> PlausibilityCheck::Warnings() const {
   std::vector<std::string> warnings;
-  for (const Doubt* doubt : {&strong_, &first_, &way_, &facing_, &rod_}) {
+  for (const Doubt* doubt : {&strong_, &first_, &way_, &early_, &jump_, &facing_, &rod_}) {
     if (doubt->cases.empty()) continue;
     warnings.push_back(doubt->what + " in " + std::to_string(doubt->cases.size()) +
                        (doubt->cases.size() == 1 ? " case (" : " cases (") +

@@ -15,15 +15,19 @@ bool FirstRowStandsOut(const Push& push);
 // The kinds of doubt, and which recordings they are of.
 class PlausibilityCheck {
  public:
-  // Pushes above 1 kN, or whose first row stands out; a person who goes elsewhere than the push
-  // (wrong axes, or the wrong sign), or whose ankles say that they face elsewhere than forward; a
-  // rod (ankles' midpoint to hip, frame 0) unlike people's.
+  // Pushes above 1 kN, or whose first row stands out; a person who moves before the push, or faster
+  // than people do from one frame to the next (a marker that jumps); a person who goes elsewhere
+  // than the push (wrong axes, or the wrong sign), or whose ankles say that they face elsewhere
+  // than forward; a rod (ankles' midpoint to hip, frame 0) unlike people's.
   void Look(const Recording& recording);
 
   // One sentence a kind: "the push is above 1 kN in 2 recordings (a: 1650 N; b: 1219 N); ...".
   std::vector<std::string> Warnings() const;
 
  private:
+  void LookAtOnset(const Recording& recording);
+  void LookAtSpeed(const Recording& recording, const RecordedPerson& person);
+
   struct Doubt {
     std::string what, advice;
     std::vector<std::string> cases;
@@ -37,6 +41,12 @@ class PlausibilityCheck {
   Doubt way_{"the person goes elsewhere than pushed",
              "are `up` and `forward` right, and the push's sign?",
              {}};
+  Doubt early_{"the person moves before being pushed",
+               "is the push's start right, and the sensor's clock?",
+               {}};
+  Doubt jump_{"the hip is faster than people are",
+              "does a marker jump there, and are unit and fps right?",
+              {}};
   Doubt facing_{"by their ankles people face elsewhere than forward",
                 "are `up` and `forward` right, and the ankles not exchanged?",
                 {}};

@@ -113,7 +113,7 @@ std::string AgainstThePush(const PendulumRecording& r, const ScenePush& push) {
   const double along = farthest.dot(impulse.normalized());
   if (farthest.norm() < kSeenToMove || along >= kAlong * farthest.norm()) return "";
   return "recording " + r.id + ": pushed, the hip of person " + std::to_string(push.person) +
-         " goes " + DoubleText(std::round(100.0 * farthest.norm()) / 100.0) + " m, but " +
+         " goes " + Rounded(farthest.norm(), 2) + " m, but " +
          (along < 0.0 ? "against the push" : "not along the push") +
          "; are up, forward and the push's sign and start right?";
 }
@@ -126,7 +126,7 @@ std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& reco
     const auto warn = [&](double value, double lower, double upper, const std::string& what,
                           const std::string& hint) {
       if (value >= lower && value <= upper) return;
-      warnings.push_back("recording " + r.id + ": " + what + " is " + DoubleText(value) + "; " +
+      warnings.push_back("recording " + r.id + ": " + what + " is " + Rounded(value, 3) + "; " +
                          hint);
     };
     const double fps = 1.0 / r.scene.dt;
@@ -138,11 +138,14 @@ std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& reco
       warn(body.rod_length, kMinRod, kMaxRod, "the rod" + whose + " (ankles to hip) in m",
            "is length_unit right?");
       double speed = 0.0;
+      int fastest = 0;
       for (int t = 1; t < r.num_frames(); ++t) {
-        speed = std::max(speed, (r.hip[n][t] - r.hip[n][t - 1]).norm() * fps);
+        const double now = (r.hip[n][t] - r.hip[n][t - 1]).norm() * fps;
+        if (now > speed) speed = now, fastest = t;
       }
-      warn(speed, 0.0, kMaxSpeed, "the hip's speed" + whose + " in m/s",
-           "are length_unit and fps right?");
+      warn(speed, 0.0, kMaxSpeed,
+           "the hip's speed" + whose + " in m/s, at frame " + std::to_string(fastest) + ",",
+           "are length_unit and fps right, or does a marker jump there?");
     }
     for (const ScenePush& push : r.scene.pushes) {
       double peak = 0.0;

@@ -253,12 +253,16 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   json["recordings"][0]["push_csv"] = "push/strong.csv";
   json["recordings"][1]["forward"] = "-x";
   json["recordings"][2]["joints"]["hip"] = "LeftKnee";
+  json["recordings"][3]["pushes"] = {
+      {{"person", 0}, {"csv", json["recordings"][3]["push_csv"]}, {"start_frame", 30}}};
+  json["recordings"][3].erase("push_csv");
   WriteText("odd.json", json.dump(1));
   run = RunApp("pushid-inspect", {Path("odd.json")});
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
   EXPECT_TRUE(Contains(run.out, "goes elsewhere than pushed in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "moves before being pushed in 1 case (" + id(3)));
   EXPECT_TRUE(Contains(run.out, "face elsewhere than forward in 1 case (" + id(1)));
   EXPECT_TRUE(Contains(run.out, "no person's distance from the ankles in 1 case (" + id(2)));
 }
