@@ -3,6 +3,7 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <sstream>
@@ -22,8 +23,9 @@ DEFINE_string(
     "--model out on --people who stand together, or as they stand in the file's "
     "--formation_frame; its table judges everybody 2 s after the last push (or the onset, where "
     "that is later), never at the end");
-DEFINE_int32(formation_frame, 0,
-             "formation from a file: the frame in which people are placed, from 0 for its first");
+DEFINE_int32(
+    formation_frame, 0,
+    "formation from a file: the file's frame in which people are placed (default: its first)");
 DEFINE_double(spacing, 0.45, "formation: between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
               "formation: who is pushed, comma-separated; people count from 0, from the back "
@@ -49,7 +51,6 @@ namespace {
 constexpr double kMostPersonFrames = 2e6;  // half a gigabyte of forces
 constexpr double kWatchSeconds = 6.0;      // after the last push
 constexpr int kMostPeople = 10000;
-constexpr double kClosestSpacing = 0.05;  // m
 
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts;
@@ -78,18 +79,6 @@ struct Places {
   std::vector<std::string> names;  // of a file's people
 };
 
-MaybeError CheckApart(const Places& places) {
-  for (size_t i = 0; i < places.positions.size(); ++i) {
-    for (size_t k = 0; k < i; ++k) {
-      if ((places.positions[i] - places.positions[k]).norm() >= kClosestSpacing) continue;
-      return Error{"people " + places.names[k] + " and " + places.names[i] +
-                       " stand less than 5 cm apart; take another --formation_frame",
-                   FLAGS_formation};
-    }
-  }
-  return std::nullopt;
-}
-
 Result<Places> PlacesOfFile() {
   for (const char* flag : {"people", "spacing"}) {
     if (!Given(flag)) continue;
@@ -97,8 +86,11 @@ Result<Places> PlacesOfFile() {
                  " says who stands where"};
   }
   const Result<std::vector<CrowdPlace>> read =
-      ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame);
+      Given("formation_frame") ? ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame)
+                               : ReadCrowdPlaces(FLAGS_formation, std::nullopt);
   if (!read.ok()) return read.error();
+  const std::string odd = OddSpacing(read.value());
+  if (!odd.empty()) Warn(FLAGS_formation + ": " + odd);
   Places places;
   for (const CrowdPlace& place : read.value()) {
     places.positions.push_back(place.position);
@@ -107,7 +99,6 @@ Result<Places> PlacesOfFile() {
   if (places.names.size() > kMostPeople) {
     return Error{std::to_string(places.names.size()) + " people are too many", FLAGS_formation};
   }
-  if (MaybeError error = CheckApart(places)) return *error;
   return places;
 }
 
@@ -132,6 +123,11 @@ Result<std::vector<int>> PushedPeople(const Places& places) {
     }
     const int count = static_cast<int>(places.positions.size());
     if (person < 0 || person >= count) {
+      const auto named = std::find(places.names.begin(), places.names.end(), word);
+      if (named != places.names.end()) {
+        return Error{"--pushed counts people from the back; the file's id " + word + " is person " +
+                     std::to_string(named - places.names.begin())};
+      }
       return Error{"--pushed names person " + word + ", but " +
                    (FromFile() ? "the " + std::to_string(count) + " people of the file count"
                                : "--people=" + std::to_string(count) + " counts them") +
@@ -179,7 +175,7 @@ Result<std::vector<HipPush>> Pushes() {
 MaybeError CheckNumbers() {
   for (MaybeError error :
        {CheckRange("people", FLAGS_people, 1, kMostPeople), CheckRange("fps", FLAGS_fps, 10, 10000),
-        CheckRange("spacing", FLAGS_spacing, kClosestSpacing, 100),
+        CheckRange("spacing", FLAGS_spacing, 0.05, 100),
         CheckRange("push_duration", FLAGS_push_duration, 0.001, 60),
         CheckRange("mass", FLAGS_mass, 1, 400), CheckRange("rod_length", FLAGS_rod_length, 0.2, 2),
         CheckRange("duration", FLAGS_duration, 0, 3600)}) {
@@ -193,7 +189,8 @@ std::string PeopleText(int people) {
   std::ostringstream text;
   text << people << (people == 1 ? " person" : " people");
   if (FromFile()) {
-    text << " of " << FLAGS_formation << ", frame " << FLAGS_formation_frame;
+    text << " of " << FLAGS_formation;
+    if (Given("formation_frame")) text << ", frame " << FLAGS_formation_frame;
   } else if (people == 1) {
     text << ", alone";
   } else {

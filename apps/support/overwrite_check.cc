@@ -15,9 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kInputs[] = {
-    "recordings", "model",   "physics", "truth",   "self_from", "interaction_network",
-    "poses_from", "sensor",  "masses",  "sensors", "mapping",   "generator",
-    "plan",       "flagfile"};
+    "recordings", "model",    "physics",  "truth",   "self_from", "interaction_network",
+    "poses_from", "sensor",   "masses",   "sensors", "mapping",   "generator",
+    "plan",       "flagfile", "formation"};
 
 struct NamedPath {
   std::string name, path;
@@ -65,6 +65,8 @@ MaybeError CheckOutputs() {
     gflags::CommandLineFlagInfo flag;
     const bool known = gflags::GetCommandLineFlagInfo(input, &flag);
     if (!known || flag.is_default || flag.current_value.empty()) continue;
+    // A formation may be a word as well as a file.
+    if (flag.name == "formation" && !fs::is_regular_file(flag.current_value)) continue;
     for (const std::string& path : ManifestPaths(flag.current_value)) {
       if (MaybeError error = CheckNoOutput("--" + flag.name, path)) return error;
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +17,24 @@ struct CrowdPlace {
   Eigen::Vector2d position;  // m
 };
 
-// Everybody seen in the frame, counted from the file's first, in the order of formations: from the
-// smallest x forwards, and of one x from right to left. Errors: no such frame, nobody in it.
-Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion, int frame);
+// The file's own number of its first frame.
+std::int64_t FirstFrame(const PointMotion& motion);
 
-// Of a file of trajectories. Errors besides those of the readers: a file of another kind.
-Result<std::vector<CrowdPlace>> ReadCrowdPlaces(const std::string& path, int frame);
+// Everybody seen in the frame, as the file numbers them, in the order of formations: from the
+// smallest x forwards, and of one x from right to left. Errors: no such frame, nobody in it.
+Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion, std::int64_t frame);
+
+// m; of everybody's distance to the nearest other, the median; 0 of one person.
+double MedianSpacing(const std::vector<CrowdPlace>& places);
+
+// What is odd about the places: people nearly at one, or so far apart that the unit may be another;
+// empty: nothing.
+std::string OddSpacing(const std::vector<CrowdPlace>& places);
+inline constexpr double kClosestPeople = 0.05;  // m
+
+// Of a file of trajectories; without a frame those of its first. Errors besides those of the
+// readers: a file of another kind.
+Result<std::vector<CrowdPlace>> ReadCrowdPlaces(const std::string& path,
+                                                std::optional<std::int64_t> frame);
 
 }  // namespace pushid

@@ -29,7 +29,9 @@ bool Holds(std::string_view text, std::string_view word) {
 void ReadComment(std::string_view comment, PointMotion* motion) {
   if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
   for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
-    if (Holds(comment, "x/" + Name(unit)) || Holds(comment, "in " + Name(unit))) {
+    const std::string name = Name(unit);
+    if (Holds(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
+        Holds(comment, "x(" + name + ")") || Holds(comment, "in " + name)) {
       motion->unit = unit;
       return;
     }
@@ -83,8 +85,10 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   if (reader.error()) return *reader.error();
   const std::string problem = FrameRateProblem(motion.rate_hz);
   if (!problem.empty()) {
-    return Error{"no comment says the frames per second; add a line such as '# framerate: 16'",
-                 path};
+    return Error{
+        "no comment says the frames per second as a number; there must be a line such as '# "
+        "framerate: 16'",
+        path};
   }
   if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);
   motion.content_hash = reader.HashHex();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
@@ -208,6 +209,24 @@ bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording
   return !prediction.status.ok || AnybodyFalls(prediction);
 }
 
+namespace {
+
+// Who was pushed, for the rows of tables; people of one name and two masses are two.
+std::vector<std::string> NamesOfPushed(const std::vector<PendulumRecording>& recordings) {
+  std::map<std::string, std::set<std::string>> people;
+  for (const PendulumRecording& r : recordings) {
+    people[r.subject_ids[r.pushed_person]].insert(PersonKey(r, r.pushed_person));
+  }
+  std::vector<std::string> names;
+  for (const PendulumRecording& r : recordings) {
+    const std::string& name = r.subject_ids[r.pushed_person];
+    names.push_back(people[name].size() > 1 ? PersonKey(r, r.pushed_person) + " kg" : name);
+  }
+  return names;
+}
+
+}  // namespace
+
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed, bool bands) {
   ScoreSummary summary;
@@ -217,6 +236,7 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
   using Group = std::vector<const RecordingScore*>;
   Group all;
   std::map<std::string, Group> magnitude, subject, setting;
+  const std::vector<std::string> names = NamesOfPushed(recordings);
   for (size_t i = 0; i < recordings.size(); ++i) {
     RecordingScore& score = summary.recordings[i];
     const PendulumRecording& recording = recordings[i];
@@ -224,7 +244,7 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
     if (!score.failure.empty()) continue;
     all.push_back(&score);
     magnitude[recording.magnitude].push_back(&score);
-    subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
+    subject[names[i]].push_back(&score);
     setting[recording.setting].push_back(&score);
   }
   auto propagation = [](const Group& group) {

@@ -142,6 +142,8 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   EXPECT_TRUE(refused({"--formation_frame=7"}, "there is no frame 7"));
   EXPECT_TRUE(refused({"--people=3"}, "--people is for line, diamond and grid"));
   EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=3"}, "the 3 people of the file count"));
+  EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=44"}, "the file's id 44 is person 2"));
+  EXPECT_TRUE(refused({"--trajectories_out=" + crowd}, "both name"));
   EXPECT_TRUE(refused({"--trajectories_out=a.csv"}, "trajectories end in .txt"));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--formation_frame=1"}),
                       {"--formation_frame goes with a file"}));

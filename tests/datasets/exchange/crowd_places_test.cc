@@ -18,21 +18,28 @@ class CrowdPlacesTest : public TempDirTest {
 };
 
 TEST_F(CrowdPlacesTest, FromTheBackForwardsInMetres) {
-  const auto read = ReadCrowdPlaces(Crowd(), 0);
+  const auto read = ReadCrowdPlaces(Crowd(), std::nullopt);
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   ASSERT_EQ(read.value().size(), 3u);
   EXPECT_EQ(read.value()[0].name, "3");
   EXPECT_EQ(read.value()[1].name, "2");
   EXPECT_EQ(read.value()[2].name, "1");
   EXPECT_EQ(read.value()[0].position, Eigen::Vector2d(0.5, -0.3));
-  EXPECT_EQ(ReadCrowdPlaces(Crowd(), 1).value().size(), 1u);
+  EXPECT_EQ(ReadCrowdPlaces(Crowd(), 6).value().size(), 1u);
 }
 
 TEST_F(CrowdPlacesTest, Errors) {
   EXPECT_TRUE(Contains(ReadCrowdPlaces(Crowd(), 3).error().ToString(),
-                       "there is no frame 3; frames count from 0 to 2"));
+                       "there is no frame 3; the file has those from 5 to 7"));
   EXPECT_TRUE(Contains(ReadCrowdPlaces(Crowd(), -1).error().ToString(), "there is no frame -1"));
   EXPECT_TRUE(Contains(ReadCrowdPlaces("a.csv", 0).error().ToString(), ".txt or .sqlite"));
+}
+
+TEST_F(CrowdPlacesTest, OddSpacing) {
+  EXPECT_EQ(OddSpacing({{"1", {0, 0}}, {"2", {0.5, 0}}}), "");
+  EXPECT_EQ(OddSpacing({{"1", {0, 0}}}), "");
+  EXPECT_TRUE(Contains(OddSpacing({{"7", {0, 0}}, {"9", {0.05, 0}}}), "people 7 and 9"));
+  EXPECT_TRUE(Contains(OddSpacing({{"1", {0, 0}}, {"2", {45, 0}}}), "45 m away"));
 }
 
 }  // namespace

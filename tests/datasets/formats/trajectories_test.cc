@@ -50,6 +50,14 @@ TEST_F(TrajectoriesTest, Text) {
   EXPECT_EQ(one.value().positions[0].size(), 2u);
 }
 
+TEST_F(TrajectoriesTest, UnitsAsPeopleWriteThem) {
+  for (const char* unit : {"x/cm", "x[cm]", "x(cm)", "in cm"}) {
+    const std::string text = std::string("# framerate: 8\n# id frame ") + unit + "\n1 0 50 0\n";
+    EXPECT_EQ(ReadTrajectoryText(WriteText("a.txt", text)).value().unit, LengthUnit::kCentimetre)
+        << unit;
+  }
+}
+
 // Somebody may stand at the origin, and planes have no height.
 TEST_F(TrajectoriesTest, Planes) {
   const Result<PointMotion> read =
@@ -62,7 +70,8 @@ TEST_F(TrajectoriesTest, Planes) {
 
 TEST_F(TrajectoriesTest, BadText) {
   const std::string head = "# framerate: 10\n";
-  EXPECT_TRUE(Contains(TextMessage("1 0 0 0 0\n"), "add a line such as '# framerate: 16'"));
+  EXPECT_TRUE(Contains(TextMessage("1 0 0 0 0\n"), "a line such as '# framerate: 16'"));
+  EXPECT_TRUE(Contains(TextMessage("# framerate: fast\n1 0 0 0 0\n"), "as a number"));
   EXPECT_TRUE(Contains(TextMessage(head), "holds no positions"));
   EXPECT_TRUE(Contains(TextMessage(head + "1 0 0 0\n1 0 1 1\n"), ":3: person 1 was in frame 0"));
   EXPECT_TRUE(Contains(TextMessage(head + "1 0.5 0 0\n"), ":2: the frame must be a whole number"));
