@@ -11,8 +11,7 @@ FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumSt
                                  Eigen::Matrix<double, kFrameResiduals, kColumns>* jacobian) {
   const FrameVector<double> r = RawFrameResidual(body, state, measured, sigmas);
   const double l = body.rod_length;
-  const double s_th = std::sin(state.q[2]), c_th = std::cos(state.q[2]);
-  const double s_ph = std::sin(state.q[3]), c_ph = std::cos(state.q[3]);
+  const auto [s_th, c_th, s_ph, c_ph] = Angles<double>(state.q);
   Eigen::Matrix<double, kFrameResiduals, kColumns>& j = *jacobian;
   j.setZero();
   j(0, 0) = j(1, 1) = 1.0 / sigmas.hip;

@@ -10,11 +10,19 @@ BlockLayout::BlockLayout(const ParameterMap& map,
     : free_initial_velocity(free_velocity),
       num_shared(map.num_shared()),
       num_deviations(map.num_deviations),
-      num_weights(map.num_weights) {
+      num_weights(map.num_weights),
+      first_acting(1, 0),
+      of_deviation(map.num_deviations, 0) {
   for (const std::string& unit : unit_of_each_person) {
     const auto found = std::find(units.begin(), units.end(), unit);
     unit_of_person.push_back(static_cast<int>(found - units.begin()));
     if (found == units.end()) units.push_back(unit);
+  }
+  for (size_t i = 0; i < map.fitted.size(); ++i) {
+    const int deviation = num_deviations > 0 ? map.fitted[i].deviation : -1;
+    if (deviation >= 0) of_deviation[deviation] = static_cast<int>(i);
+    first_acting.push_back(first_acting.back() +
+                           (deviation >= 0 ? static_cast<int>(units.size()) : 1));
   }
 }
 
@@ -32,15 +40,40 @@ int BlockLayout::num_columns() const {
   return columns;
 }
 
-int BlockLayout::DeviationColumn(int person) const {
-  if (num_deviations == 0) return -1;
-  return num_shared + unit_of_person[person] * num_deviations;
+int BlockLayout::num_acting() const {
+  return first_acting.back() + (free_initial_velocity ? 4 * num_people() : 0) + num_weights;
 }
 
-int BlockLayout::VelocityColumn() const {
-  return free_initial_velocity ? num_columns() - num_weights - 4 * num_people() : -1;
+int BlockLayout::VelocityColumn() const { return free_initial_velocity ? first_acting.back() : -1; }
+
+int BlockLayout::WeightColumn() const { return num_weights > 0 ? num_acting() - num_weights : -1; }
+
+std::vector<ColumnEntry> BlockLayout::Entries(const ParameterMap& map,
+                                              const ParameterSet<double>& set, int person) const {
+  std::vector<ColumnEntry> entries = map.Entries(set, -1);
+  for (ColumnEntry& entry : entries) {
+    const size_t fitted = static_cast<size_t>(entry.column);
+    const bool by_unit = num_deviations > 0 && map.fitted[fitted].deviation >= 0;
+    entry.column = first_acting[fitted] + (by_unit ? unit_of_person[person] : 0);
+  }
+  return entries;
 }
 
-int BlockLayout::WeightColumn() const { return num_weights > 0 ? num_columns() - num_weights : -1; }
+std::vector<std::pair<int, int>> BlockLayout::ActingOfColumns() const {
+  std::vector<std::pair<int, int>> acting;
+  for (int i = 0; i < num_shared; ++i)
+    acting.emplace_back(first_acting[i], first_acting[i + 1] - 1);
+  if (num_deviations > 0) {
+    for (int unit = 0; unit < static_cast<int>(units.size()); ++unit) {
+      for (int fitted : of_deviation) {
+        acting.emplace_back(first_acting[fitted] + unit, first_acting[fitted] + unit);
+      }
+    }
+  }
+  for (int column = first_acting.back(); column < num_acting(); ++column) {
+    acting.emplace_back(column, column);
+  }
+  return acting;
+}
 
 }  // namespace pushid

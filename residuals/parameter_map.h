@@ -12,6 +12,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "models/enum_names.h"
@@ -69,8 +70,8 @@ struct ParameterMap {
     return set;
   }
 
-  // Entries of one person whose shared block starts at column 0 and whose unit's block starts at
-  // `deviation_column` (negative: none).
+  // Entries of one person alone whose shared block starts at column 0 and whose unit's block starts
+  // at `deviation_column` (negative: none).
   std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column) const {
     std::vector<ColumnEntry> entries;
     for (size_t i = 0; i < fitted.size(); ++i) {
@@ -86,6 +87,11 @@ struct ParameterMap {
 };
 
 // How one recording's people hang on its parameter blocks.
+//
+// Derivatives are carried by acting columns, the fewest of which every column of the blocks is one
+// or a sum: a parameter that units differ in has one for each unit, which is its deviation's, and
+// the sum of them is the shared value's; any other parameter has one. Where all people share a
+// unit, as in a pool by setting, that is half of the columns.
 struct BlockLayout {
   std::vector<std::string> units;  // distinct, in order of first appearance
   std::vector<int> unit_of_person;
@@ -93,6 +99,8 @@ struct BlockLayout {
   int num_shared = 0;
   int num_deviations = 0;
   int num_weights = 0;
+  std::vector<int> first_acting;  // of each fitted parameter, then the end of the last
+  std::vector<int> of_deviation;  // the fitted parameter of each
 
   BlockLayout() = default;
   BlockLayout(const ParameterMap& map, const std::vector<std::string>& unit_of_each_person,
@@ -100,11 +108,16 @@ struct BlockLayout {
 
   int num_people() const { return static_cast<int>(unit_of_person.size()); }
   std::vector<int> BlockSizes() const;
-  int num_columns() const;
-  // First column of a person's deviations; negative when there are none.
-  int DeviationColumn(int person) const;
-  int VelocityColumn() const;  // negative when the initial velocities are not fitted
-  int WeightColumn() const;    // negative when there is no network
+  int num_columns() const;  // of all blocks, side by side
+  int num_acting() const;   // parameters, then velocities, then weights
+  // First acting column of the initial velocities; negative when they are not fitted.
+  int VelocityColumn() const;
+  int WeightColumn() const;  // the same of what is learned
+  // Of one person, by acting column.
+  std::vector<ColumnEntry> Entries(const ParameterMap& map, const ParameterSet<double>& set,
+                                   int person) const;
+  // Of each column of the blocks: first and last of the acting columns whose sum it is.
+  std::vector<std::pair<int, int>> ActingOfColumns() const;
 
   // The parameters and initial velocities of every person, for any scalar.
   template <typename T>

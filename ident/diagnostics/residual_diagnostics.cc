@@ -79,9 +79,9 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
     const PendulumRecording& recording = problem.recordings()[g];
     RecordingDiagnostics d;
     d.id = recording.id;
-    for (const auto& [id, cluster] : built.blocks) {
-      if (cluster != g) continue;
-      built.problem->EvaluateResidualBlock(id, false, &d.cost, nullptr, nullptr);
+    for (const FitProblem::Built::Block& block : built.blocks) {
+      if (block.cluster != g) continue;
+      built.problem->EvaluateResidualBlock(block.id, false, &d.cost, nullptr, nullptr);
       d.cost -= built.OffsetOf(g);
     }
     const std::vector<double> raw = problem.RawResiduals(point, g);

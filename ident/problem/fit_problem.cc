@@ -99,10 +99,6 @@ LikelihoodProblem FitProblem::LikelihoodOf(int recording, double weight) const {
                                weight, options_.seed);
 }
 
-int FitProblem::RowsPerPerson() const {
-  return options_.likelihood == Likelihood::kTrajectory ? kFrameResiduals : kGaussianRows;
-}
-
 Deviance FitProblem::DevianceAt(const FitPoint& point) const {
   Deviance sum;
   FitPoint copy = point;

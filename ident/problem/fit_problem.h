@@ -64,9 +64,6 @@ class FitProblem {
   // where the likelihood needs no rollout.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
 
-  // How many rows of a recording a frame of one person has in what is built.
-  int RowsPerPerson() const;
-
   // Of all recordings, as they count, under the likelihood of the options, which is none of whole
   // rollouts.
   Deviance DevianceAt(const FitPoint& point) const;
@@ -89,10 +86,16 @@ class FitProblem {
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
   struct Built {
-    std::unique_ptr<ParallelEvaluation> evaluation;  // null: in the solver's own thread
+    std::unique_ptr<ParallelEvaluation> evaluation;
     std::unique_ptr<ceres::Problem> problem;
-    // Residual blocks by cluster: the recording they belong to, or one of the clusters below.
-    std::vector<std::pair<ceres::ResidualBlockId, int>> blocks;
+    // cluster: the recording that the block belongs to, or one of the clusters above; cost: what
+    // was added, which the problem may hold inside another (parallel_evaluation.h).
+    struct Block {
+      ceres::ResidualBlockId id;
+      int cluster;
+      const ceres::CostFunction* cost;
+    };
+    std::vector<Block> blocks;
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
     // By recording: its cost less this is its negative log likelihood, up to a constant that no
@@ -112,7 +115,7 @@ class FitProblem {
 
     void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
              int cluster);
-    // The same for one that costs a rollout: over threads, where there are any.
+    // The same for one that costs a rollout: once a point, and over threads where there are any.
     void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
                     int cluster);
   };

@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/equation_error_residual.h"
 #include "residuals/cost_functions/modal_stability_residual.h"
 #include "residuals/cost_functions/network_takeover.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
-#include "residuals/cost_functions/rollout_autodiff.h"
 
 namespace pushid {
 namespace {
@@ -19,23 +19,25 @@ constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the o
 
 void FitProblem::Built::Add(std::unique_ptr<ceres::CostFunction> cost,
                             const std::vector<double*>& on, int cluster) {
-  blocks.emplace_back(problem->AddResidualBlock(cost.release(), nullptr, on), cluster);
+  const ceres::CostFunction* const added = cost.get();
+  blocks.push_back({problem->AddResidualBlock(cost.release(), nullptr, on), cluster, added});
 }
 
 void FitProblem::Built::AddRollout(std::unique_ptr<ceres::CostFunction> cost,
                                    const std::vector<double*>& on, int cluster) {
-  if (evaluation != nullptr) cost = evaluation->Wrap(std::move(cost), on);
-  Add(std::move(cost), on, cluster);
+  const ceres::CostFunction* const inside = cost.get();
+  Add(evaluation->Wrap(std::move(cost), on), on, cluster);
+  blocks.back().cost = inside;
 }
 
+// Parameters with bounds make Ceres search along every step: it asks for the same point three
+// times, twice with derivatives. Rollouts are evaluated once and remembered, whatever the threads.
 void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const {
+  built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
   ceres::Problem::Options problem;
-  if (num_threads > 1) {
-    built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
-    problem.evaluation_callback = built->evaluation.get();
-  }
+  problem.evaluation_callback = built->evaluation.get();
   built->problem = std::make_unique<ceres::Problem>(problem);
-  if (built->evaluation != nullptr) built->evaluation->set_problem(built->problem.get());
+  built->evaluation->set_problem(built->problem.get());
   auto add = [built](std::vector<double>* values) {
     built->problem->AddParameterBlock(values->data(), static_cast<int>(values->size()));
     built->parameter_blocks.push_back(values->data());
@@ -181,7 +183,8 @@ void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
     if (frames == 1) continue;  // fails in its very first step: nothing left to compare
     const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
                                             Weight(i, horizon), frames);
-    built->AddRollout(MakeRolloutCost(rollout, options_.jacobian), RecordingBlocks(point, i), i);
+    built->AddRollout(std::make_unique<CondensedRollout>(rollout, options_.jacobian),
+                      RecordingBlocks(point, i), i);
   }
 }
 

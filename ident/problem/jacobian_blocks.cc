@@ -3,80 +3,128 @@
 
 #include <map>
 #include <set>
+#include <utility>
+
+#include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
+namespace {
 
-JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  std::map<const double*, int> column_of;
-  int columns = 0, rows = 0;
-  for (double* block : built.parameter_blocks) {
-    column_of[block] = columns;
-    columns += built.problem->ParameterBlockSize(block);
-  }
-  for (const auto& [id, cluster] : built.blocks) {
-    rows += built.problem->GetCostFunctionForResidualBlock(id)->num_residuals();
-  }
+using PersonRows = CondensedRollout::PersonRows;
 
-  JacobianBlocks score;
-  score.jacobian = Eigen::MatrixXd::Zero(rows, columns);
-  score.residuals.resize(rows);
-  std::set<int> present;
-  int row = 0;
-  for (const auto& [id, cluster] : built.blocks) {
-    const ceres::CostFunction* function = built.problem->GetCostFunctionForResidualBlock(id);
-    std::vector<double*> blocks;
-    built.problem->GetParameterBlocksForResidualBlock(id, &blocks);
-    const int n = function->num_residuals();
-    std::vector<RowMajor> jacobians;
-    std::vector<double*> pointers;
-    for (int size : function->parameter_block_sizes()) jacobians.emplace_back(n, size);
-    for (RowMajor& jacobian : jacobians) pointers.push_back(jacobian.data());
-    // A block that cannot be evaluated here was left out by Build; skip it all the same.
-    const std::vector<const double*> inputs(blocks.begin(), blocks.end());
-    if (!function->Evaluate(inputs.data(), score.residuals.data() + row, pointers.data())) continue;
-    for (size_t b = 0; b < blocks.size(); ++b) {
-      score.jacobian.block(row, column_of.at(blocks[b]), n, jacobians[b].cols()) = jacobians[b];
-    }
-    score.cluster_of_row.insert(score.cluster_of_row.end(), n, cluster);
-    for (int k = 0; k < n; ++k) score.row_in_block.push_back(k);
-    if (cluster >= 0) {
-      present.insert(cluster);
-      score.num_data_rows += n;
-    }
-    row += n;
+// A cost function's own rows.
+bool EvaluateRows(const ceres::CostFunction& cost, const std::vector<const double*>& at,
+                  PersonRows* rows) {
+  const int n = cost.num_residuals();
+  std::vector<RowMajorMatrix> by_block;
+  std::vector<double*> pointers;
+  int columns = 0;
+  for (int size : cost.parameter_block_sizes()) {
+    by_block.emplace_back(n, size);
+    columns += size;
   }
-  score.jacobian.conservativeResize(row, columns);
-  score.residuals.conservativeResize(row);
-  score.clusters.assign(present.begin(), present.end());
-  return score;
+  for (RowMajorMatrix& jacobian : by_block) pointers.push_back(jacobian.data());
+  rows->residuals.resize(n);
+  if (!cost.Evaluate(at.data(), rows->residuals.data(), pointers.data())) return false;
+  rows->jacobian.resize(n, columns);
+  int column = 0;
+  for (const RowMajorMatrix& jacobian : by_block) {
+    rows->jacobian.middleCols(column, jacobian.cols()) = jacobian;
+    column += static_cast<int>(jacobian.cols());
+  }
+  return true;
 }
 
-void CorrectRobustLoss(const FitProblem& problem, JacobianBlocks* score) {
-  score->robust_jacobian = score->jacobian;
-  if (problem.options().likelihood != Likelihood::kTrajectory) {  // has no robust loss
-    for (Eigen::Index row = 0; row < score->jacobian.rows(); ++row) {
-      if (score->cluster_of_row[static_cast<size_t>(row)] < 0) {
-        score->robust_jacobian.row(row).setZero();
+// Puts rows, and whose they are, under each other.
+class Gatherer {
+ public:
+  Gatherer(const FitProblem::Built& built, bool robust, JacobianBlocks* score)
+      : built_(built), robust_(robust), score_(*score) {
+    for (double* block : built.parameter_blocks) {
+      column_of_[block] = columns_;
+      columns_ += built.problem->ParameterBlockSize(block);
+    }
+  }
+
+  void Add(const FitProblem::Built::Block& block) {
+    std::vector<double*> on;
+    built_.problem->GetParameterBlocksForResidualBlock(block.id, &on);
+    const std::vector<const double*> at(on.begin(), on.end());
+    const auto* rollout = dynamic_cast<const CondensedRollout*>(block.cost);
+    std::vector<PersonRows> people(1);
+    // A block that cannot be evaluated here was left out by Build; skip it all the same.
+    if (!(rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
+                             : EvaluateRows(*block.cost, at, &people[0]))) {
+      return;
+    }
+    const bool data = block.cluster >= 0;
+    const auto* steps = dynamic_cast<const LikelihoodResidual*>(block.cost);
+    for (size_t n = 0; n < people.size(); ++n) {
+      const Eigen::Index count = people[n].residuals.size();
+      for (Eigen::Index row = 0; row < count; ++row) {
+        score_.cluster_of_row.push_back(block.cluster);
+        score_.person_of_row.push_back(rollout != nullptr ? static_cast<int>(n)
+                                       : steps != nullptr ? steps->PersonOfRow(row)
+                                                          : -1);
+      }
+      if (robust_ && rollout == nullptr) {  // a likelihood has no robust loss
+        people[n].robust_jacobian = people[n].jacobian;
+        if (!data) people[n].robust_jacobian.setZero();
       }
     }
-    return;
-  }
-  const double robust = problem.options().sigmas.robust;
-  for (Eigen::Index row = 0; row < score->jacobian.rows();) {
-    const int recording = score->cluster_of_row[static_cast<size_t>(row)];
-    if (recording < 0) {
-      score->robust_jacobian.row(row++).setZero();
-      continue;
+    if (data) {
+      present_.insert(block.cluster);
+      score_.num_data_rows +=
+          rollout != nullptr ? rollout->num_rows() : block.cost->num_residuals();
     }
-    const PendulumRecording& r = problem.recordings()[recording];
-    const int block = score->row_in_block[static_cast<size_t>(row)] / kFrameResiduals;
-    const int frame = 1 + block / r.num_people(), person = block % r.num_people();
-    CorrectForRobustLoss(score->residuals.segment<kFrameResiduals>(row),
-                         problem.Weight(recording, 0) * r.Weight(person, frame), robust,
-                         score->robust_jacobian.middleRows<kFrameResiduals>(row));
-    row += kFrameResiduals;
+    parts_.push_back({std::move(on), std::move(people)});
   }
+
+  void Finish() {
+    const Eigen::Index rows = static_cast<Eigen::Index>(score_.cluster_of_row.size());
+    score_.residuals.resize(rows);
+    score_.jacobian.setZero(rows, columns_);
+    if (robust_) score_.robust_jacobian.setZero(rows, columns_);
+    Eigen::Index row = 0;
+    for (const auto& [on, people] : parts_) {
+      for (const PersonRows& person : people) {
+        const Eigen::Index count = person.residuals.size();
+        score_.residuals.segment(row, count) = person.residuals;
+        Eigen::Index from = 0;
+        for (double* block : on) {
+          const int to = column_of_.at(block), size = built_.problem->ParameterBlockSize(block);
+          score_.jacobian.block(row, to, count, size) = person.jacobian.middleCols(from, size);
+          if (robust_) {
+            score_.robust_jacobian.block(row, to, count, size) =
+                person.robust_jacobian.middleCols(from, size);
+          }
+          from += size;
+        }
+        row += count;
+      }
+    }
+    score_.clusters.assign(present_.begin(), present_.end());
+  }
+
+ private:
+  const FitProblem::Built& built_;
+  const bool robust_;
+  JacobianBlocks& score_;
+  std::map<const double*, int> column_of_;
+  int columns_ = 0;
+  std::set<int> present_;
+  std::vector<std::pair<std::vector<double*>, std::vector<PersonRows>>> parts_;
+};
+
+}  // namespace
+
+JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust) {
+  JacobianBlocks score;
+  Gatherer gatherer(built, robust, &score);
+  for (const FitProblem::Built::Block& block : built.blocks) gatherer.Add(block);
+  gatherer.Finish();
+  return score;
 }
 
 std::vector<int> JacobianBlocks::RowsOf(int cluster) const {

@@ -8,15 +8,18 @@
 
 namespace pushid {
 
+// Rows of a recording that is rolled out are those of CondensedRollout, person by person: every sum
+// of squares and products over a person, a recording or all of them is that of the rows they stand
+// for. Other rows are as their cost function has them.
 struct JacobianBlocks {
-  Eigen::MatrixXd jacobian;  // all residuals x all fitted numbers
+  Eigen::MatrixXd jacobian;  // rows x all fitted numbers
   Eigen::VectorXd residuals;
   std::vector<int> cluster_of_row;  // recording, or a cluster of FitProblem
-  std::vector<int> row_in_block;    // place of a row among those of its residual block
+  std::vector<int> person_of_row;   // in the recording; -1 where rows belong to nobody
   std::vector<int> clusters;        // the recordings present, ascending
-  int num_data_rows = 0;
+  int num_data_rows = 0;            // before they were condensed
   // The Jacobian with the robust loss's own Hessian in its J'J (frame_residual.h), rows of
-  // recordings only, zeros elsewhere; empty until CorrectRobustLoss.
+  // recordings only, zeros elsewhere; empty where it was not asked for.
   Eigen::MatrixXd robust_jacobian;
   // What J'J leaves out of the Hessian: the sum over rows of r times its second derivatives. Empty
   // until AddCurvature.
@@ -25,9 +28,8 @@ struct JacobianBlocks {
   std::vector<int> RowsOf(int cluster) const;
 };
 
-JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built);
-
-void CorrectRobustLoss(const FitProblem& problem, JacobianBlocks* score);
+// robust: with robust_jacobian.
+JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust = false);
 
 // Central differences of the gradient J'r, one column at a time, `steps` to either side (0: a
 // column that does not move). Leaves the curvature empty where some residual cannot be evaluated

@@ -130,11 +130,11 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
   }
   FitPoint copy = best.to;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  for (const auto& [id, cluster] : built.blocks) {
-    if (cluster < 0) continue;
+  for (const FitProblem::Built::Block& block : built.blocks) {
+    if (block.cluster < 0) continue;
     double cost = 0.0;
-    built.problem->EvaluateResidualBlock(id, false, &cost, nullptr, nullptr);
-    fitted[cluster].cost = cost - built.OffsetOf(cluster);
+    built.problem->EvaluateResidualBlock(block.id, false, &cost, nullptr, nullptr);
+    fitted[block.cluster].cost = cost - built.OffsetOf(block.cluster);
   }
   return fitted;
 }

@@ -53,10 +53,7 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
       rows.first.of_row.push_back(-1);
       continue;
     }
-    // By frame, then person, then component (rollout_residual.h, likelihood_residual.h).
-    const std::vector<int>& people = clusters.of[recording];
-    const size_t person = score.row_in_block[row] / problem.RowsPerPerson() % people.size();
-    rows.first.of_row.push_back(people[person]);
+    rows.first.of_row.push_back(clusters.of[recording][score.person_of_row[row]]);
   }
   if (clusters.two_way) rows.second = ClusterByRecording(score);
   return rows;

@@ -225,8 +225,7 @@ double CurvatureStep(const FitProblem& problem) {
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateJacobianBlocks(built), Columns(problem, point), {}, {}, {}};
-  CorrectRobustLoss(problem, &e.score);
+  Evaluated e{EvaluateJacobianBlocks(built, true), Columns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), problem.options().cluster);
   e.clustering = ClusterRows(problem, e.clusters, e.score);

@@ -27,7 +27,7 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
   const Scene& scene = recording_.scene;
   const SensitivityInputs inputs = RolloutInputs(scene, map_, layout_, blocks);
   const std::vector<SelfForce> self = SelfForces(scene, options_);
-  const std::vector<int> sizes = layout_.BlockSizes();
+  const ActingColumns columns(layout_);
   RowMajorMatrix by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
   int row = 0;
@@ -53,7 +53,7 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
         by_column.col(entry.column) +=
             entry.derivative * scale.cwiseProduct(jacobian.by_parameter.col(entry.parameter));
       }
-      ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
+      columns.Scatter(by_column, row, num_residuals(), jacobians);
     }
   }
   return true;

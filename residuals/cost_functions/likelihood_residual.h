@@ -89,6 +89,9 @@ class LikelihoodResidual : public ceres::CostFunction {
   const RolloutStatus& status() const { return status_; }
   // Half the squared rows of weight 1 less this is the negative log likelihood.
   double offset() const { return offset_; }
+  int PersonOfRow(Eigen::Index row) const {
+    return static_cast<int>(row / kGaussianRows % problem_.layout.num_people());
+  }
 
  private:
   template <typename T>

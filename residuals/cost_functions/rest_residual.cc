@@ -81,7 +81,7 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
                             p.last_frame, &path, nullptr, inputs.network_weights);
   if (!status.ok) return false;
   const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
-  const std::vector<int> sizes = p.layout.BlockSizes();
+  const ActingColumns columns(p.layout);
   const double scale = p.Scale();
   RestRows by_state(rows_, 8);
   RowMajorMatrix by_column;
@@ -92,7 +92,7 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
       for (int k = 0; k < rows_; ++k) residuals[row + k] *= scale;
       if (jacobians == nullptr) continue;
       by_column = scale * by_state * sensitivities.At(t, n);
-      ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
+      columns.Scatter(by_column, row, num_residuals(), jacobians);
     }
   }
   return true;

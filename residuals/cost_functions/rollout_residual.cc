@@ -43,9 +43,9 @@ SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
     }
   }
   for (int n = 0; n < scene.num_people(); ++n) {
-    inputs.entries.push_back(map.Entries(inputs.parameters[n], layout.DeviationColumn(n)));
+    inputs.entries.push_back(layout.Entries(map, inputs.parameters[n], n));
   }
-  inputs.num_columns = layout.num_columns();
+  inputs.num_columns = NormalEquations::PaddedSize(layout.num_acting());
   inputs.velocity_column = layout.VelocityColumn();
   inputs.network_weights = layout.WeightBlock(blocks);
   inputs.weight_column = layout.WeightColumn();
@@ -63,45 +63,85 @@ void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
   }
 }
 
-RolloutResidual::RolloutResidual(std::shared_ptr<const RolloutProblem> problem)
-    : problem_(std::move(problem)) {
-  for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
-  set_num_residuals(problem_->num_residuals());
+RowMajorMatrix ActingColumns::Expand(const Eigen::Ref<const RowMajorMatrix>& by_acting) const {
+  RowMajorMatrix all(by_acting.rows(), of_column_.size());
+  for (Eigen::Index column = 0; column < all.cols(); ++column) {
+    const auto [first, last] = of_column_[static_cast<size_t>(column)];
+    all.col(column) = by_acting.col(first);
+    for (int k = first + 1; k <= last; ++k) all.col(column) += by_acting.col(k);
+  }
+  return all;
 }
 
-bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
-                               double** jacobians) const {
-  const RolloutProblem& p = *problem_;
+void ActingColumns::Scatter(const Eigen::Ref<const RowMajorMatrix>& by_acting, int first_row,
+                            int total_rows, double** jacobians) const {
+  const auto* column = of_column_.data();
+  for (size_t b = 0; b < block_sizes_.size(); column += block_sizes_[b++]) {
+    if (jacobians[b] == nullptr) continue;
+    const Eigen::Index size = block_sizes_[b];
+    Eigen::Map<RowMajorMatrix> block(jacobians[b], total_rows, size);
+    for (Eigen::Index row = 0; row < by_acting.rows(); ++row) {
+      const double* const from = by_acting.row(row).data();
+      double* const to = block.row(first_row + row).data();
+      for (Eigen::Index i = 0; i < size; ++i) {
+        to[i] = from[column[i].first];
+        for (int k = column[i].first + 1; k <= column[i].second; ++k) to[i] += from[k];
+      }
+    }
+  }
+}
+
+void ActingColumns::Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
+                           FrameRows* by_acting) const {
+  by_acting->setZero();
+  auto column = of_column_.begin();
+  for (const RowMajorMatrix& block : by_block) {
+    for (Eigen::Index i = 0; i < block.cols(); ++i, ++column) {
+      if (column->first != column->second) continue;  // a sum of what other columns hold alone
+      by_acting->col(column->first) = block.col(i).segment<kFrameResiduals>(first_row);
+    }
+  }
+}
+
+Derivatives WantedDerivatives(const RolloutProblem& problem, double** jacobians) {
+  if (jacobians == nullptr) return Derivatives::kNone;
+  const bool weights = jacobians[problem.layout.num_blocks() - 1] != nullptr;
+  return problem.map.num_weights == 0 || weights ? Derivatives::kAll : Derivatives::kHeldWeights;
+}
+
+RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
+                          Derivatives derivatives, const FrameVisitor& visit) {
   const Scene& scene = p.recording->scene;
-  const SensitivityInputs inputs = RolloutInputs(scene, p.map, p.layout, blocks);
-  RolloutPath<double> path;
-  RolloutSensitivities sensitivities;
+  SensitivityInputs inputs = RolloutInputs(scene, p.map, p.layout, blocks);
+  if (derivatives == Derivatives::kHeldWeights && inputs.weight_column >= 0) {
+    inputs.num_columns = NormalEquations::PaddedSize(inputs.weight_column);
+    inputs.weight_column = -1;
+  }
+  const bool with_rows = derivatives != Derivatives::kNone;
+  // A thread's own, used again: asking the system for it each time costs a tenth of a rollout.
+  thread_local RolloutPath<double> path;
+  thread_local RolloutSensitivities sensitivities;
   const RolloutStatus status =
-      jacobians != nullptr
+      with_rows
           ? RolloutWithSensitivities(scene, p.options, inputs, p.horizon, &path, &sensitivities)
           : Rollout<double>(scene, p.options, inputs.parameters, inputs.initial_velocity, p.horizon,
                             &path, nullptr, inputs.network_weights);
-  if (!status.ok) {
-    last_failure_ = status;
-    return false;
-  }
+  if (!status.ok) return status;
 
-  const std::vector<int> sizes = p.layout.BlockSizes();
   const bool rod_moves = RodMoves(p.options);
   Eigen::Matrix<double, kFrameResiduals, 8> by_state;
   Eigen::Matrix<double, kFrameResiduals, 10> by_rod;  // by_state, by the rod, by the cart's lift
-  Eigen::Matrix<double, kFrameResiduals, Eigen::Dynamic, Eigen::RowMajor> by_column(
-      kFrameResiduals, inputs.num_columns);
-  int row = 0;
+  FrameRows by_column(kFrameResiduals, with_rows ? inputs.num_columns : 0);
   for (int t = 1; t < p.horizon; ++t) {
-    for (int n = 0; n < scene.num_people(); ++n, row += kFrameResiduals) {
-      Eigen::Map<FrameVector<double>> r(residuals + row);
+    for (int n = 0; n < scene.num_people(); ++n) {
       const Body& body = scene.people[n].body;
       const PendulumState<double>& state = path.At(t, n);
       const double lift = inputs.parameters[n][kRodLift];
-      if (jacobians == nullptr) {
+      FrameVector<double> r;
+      if (!with_rows) {
         r = p.weight * FrameResidual<double>(BodyNow(body, state.rod, lift), state,
                                              p.Measured(t, n), p.sigmas);
+        visit(t, n, r, &by_column);
         continue;
       }
       if (rod_moves) {
@@ -121,10 +161,29 @@ bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
           by_column.col(entry.column) += (p.weight * entry.derivative) * by_rod.col(9);
         }
       }
-      ScatterJacobian(by_column, sizes, row, num_residuals(), jacobians);
+      visit(t, n, r, &by_column);
     }
   }
-  return true;
+  return status;
+}
+
+RolloutResidual::RolloutResidual(std::shared_ptr<const RolloutProblem> problem)
+    : problem_(std::move(problem)), columns_(problem_->layout) {
+  for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
+  set_num_residuals(problem_->num_residuals());
+}
+
+bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
+                               double** jacobians) const {
+  int row = 0;
+  last_failure_ = VisitFrames(*problem_, blocks, WantedDerivatives(*problem_, jacobians),
+                              [&](int, int, const FrameVector<double>& r, FrameRows* by_column) {
+                                Eigen::Map<FrameVector<double>>(residuals + row) = r;
+                                if (jacobians != nullptr)
+                                  columns_.Scatter(*by_column, row, num_residuals(), jacobians);
+                                row += kFrameResiduals;
+                              });
+  return last_failure_.ok;
 }
 
 }  // namespace pushid

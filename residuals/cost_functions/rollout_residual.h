@@ -9,11 +9,14 @@
 
 #include <ceres/cost_function.h>
 
+#include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
 #include "residuals/frame_residual.h"
+#include "residuals/normal_equations.h"
 #include "residuals/parameter_map.h"
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
@@ -21,8 +24,6 @@ namespace pushid {
 
 // The unit of each person, by which pooled parameters differ.
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by);
-
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Everything a rollout residual needs; shared by the analytic cost function and its oracle.
 struct RolloutProblem {
@@ -48,9 +49,49 @@ std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording
                                                          const ResidualSigmas& sigmas,
                                                          double weight, int horizon);
 
-// The inputs of a rollout at the given blocks, with or without columns.
+// The inputs of a rollout at the given blocks, with its acting columns (parameter_map.h). The
+// columns are NormalEquations::PaddedSize: what is beyond num_acting() is zero.
 SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
                                 const BlockLayout& layout, double const* const* blocks);
+
+// Rows of one frame of one person by acting column, padded as RolloutInputs says.
+using FrameRows = Eigen::Matrix<double, kFrameResiduals, Eigen::Dynamic, Eigen::RowMajor>;
+
+// From acting columns to those of the blocks, into the blocks that Ceres asks for.
+class ActingColumns {
+ public:
+  explicit ActingColumns(const BlockLayout& layout)
+      : block_sizes_(layout.BlockSizes()), of_column_(layout.ActingOfColumns()) {}
+
+  RowMajorMatrix Expand(const Eigen::Ref<const RowMajorMatrix>& by_acting) const;
+  // by_acting: at least the acting columns of the blocks that are asked for.
+  void Scatter(const Eigen::Ref<const RowMajorMatrix>& by_acting, int first_row, int total_rows,
+               double** jacobians) const;
+  // Back again: rows of the blocks' derivatives by acting column.
+  void Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
+              FrameRows* by_acting) const;
+
+ private:
+  std::vector<int> block_sizes_;
+  std::vector<std::pair<int, int>> of_column_;
+};
+
+enum class Derivatives {
+  kNone,
+  kHeldWeights,  // by all but the weights of what is learned
+  kAll
+};
+
+// What Ceres asks of the blocks of a recording.
+Derivatives WantedDerivatives(const RolloutProblem& problem, double** jacobians);
+
+using FrameVisitor = std::function<void(int frame, int person, const FrameVector<double>& residual,
+                                        FrameRows* by_column)>;
+
+// What is on hand of a rollout's residuals, frame by frame from frame 1 on, then person by person.
+// The visitor may change the rows, which are there only with derivatives.
+RolloutStatus VisitFrames(const RolloutProblem& problem, double const* const* blocks,
+                          Derivatives derivatives, const FrameVisitor& visit);
 
 class RolloutResidual : public ceres::CostFunction {
  public:
@@ -63,6 +104,7 @@ class RolloutResidual : public ceres::CostFunction {
 
  private:
   std::shared_ptr<const RolloutProblem> problem_;
+  ActingColumns columns_;
   // Ceres evaluates a block from one thread at a time.
   mutable RolloutStatus last_failure_;
 };

@@ -1,9 +1,5 @@
-// residuals: a few rows times many columns, which is how derivatives by a network's weights go from
-// step to step: c = a b or c += a b with a small and b, c by rows, so that vectors run along the
-// columns.
-//
-// Few columns are Eigen's: there is little to gain, and a fit without networks keeps the same bits
-// on every processor.
+// residuals: a few rows times many columns, which is how derivatives go from step to step: c = a b
+// or c += a b with a small and b, c by rows, so that vectors run along the columns.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,19 +8,9 @@
 
 namespace pushid {
 
-inline constexpr Eigen::Index kFewColumns = 48;
-
 template <typename A, typename B, typename C>
 void NarrowProduct(const A& a, const B& b, bool add, C&& c) {
   static_assert(B::IsRowMajor && std::decay_t<C>::IsRowMajor, "vectors run along the columns");
-  if (b.cols() < kFewColumns) {
-    if (add) {
-      c.noalias() += a * b;
-    } else {
-      c.noalias() = a * b;
-    }
-    return;
-  }
   const Eigen::Matrix<double, A::RowsAtCompileTime, A::ColsAtCompileTime, Eigen::RowMajor> rows = a;
   BestVectorKernels().narrow_product(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
                                      b.cols(), rows.data(), b.data(), b.outerStride(), c.data(),

@@ -1,6 +1,6 @@
-// residuals: the inner loops of networks in lockstep (network_lockstep.h) and of derivatives by
-// many weights (narrow_product.h), once for each width of vectors that processors have, and the
-// choice of the widest at run time.
+// residuals: the inner loops of networks in lockstep (network_lockstep.h), of derivatives carried
+// from step to step (narrow_product.h) and of normal equations (normal_equations.h), once for each
+// width of vectors that processors have, and the choice of the widest at run time.
 //
 // Releases are built for any x86-64, where Eigen's own products have 128-bit vectors and no fused
 // multiply-add, and its tanh of doubles no vectors at all. For 1024 x 290 times 290 x 32 on one
@@ -15,6 +15,8 @@
 
 namespace pushid {
 
+inline constexpr int kGramBlock = 8;  // columns: a whole number of vectors of every width
+
 struct VectorKernels {
   const char* name;
   int tile_rows, tile_columns;
@@ -27,6 +29,10 @@ struct VectorKernels {
   void (*narrow_product)(int rows, int depth, std::ptrdiff_t columns, const double* a,
                          const double* b, std::ptrdiff_t b_stride, double* c,
                          std::ptrdiff_t c_stride, bool add);
+  // g += a' a by rows, `stride` apart; columns: a multiple of kGramBlock. What lies left of a
+  // diagonal block is not touched.
+  void (*add_gram)(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a_stride,
+                   double* g, std::ptrdiff_t g_stride);
   // In place; to about two units in the last place, of tanh near zero too.
   void (*tanh)(double* values, std::ptrdiff_t count);
   void (*logistic)(double* values, std::ptrdiff_t count);

@@ -96,6 +96,29 @@ void NarrowProduct(int rows, int depth, std::ptrdiff_t columns, const double* a,
   if (rest > 0) NarrowStrip<false>(rows, depth, rest, a, b, b_stride, c, c_stride, add);
 }
 
+// kGramBlock rows of g, from its block on the diagonal to the right, a vector at a time.
+void AddGram(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a_stride, double* g,
+             std::ptrdiff_t g_stride) {
+  for (std::ptrdiff_t first = 0; first < columns; first += kGramBlock) {
+    for (std::ptrdiff_t at = first; at < columns; at += PUSHID_VECTOR_DOUBLES) {
+      double* const to = g + first * g_stride + at;
+      Vector sums[kGramBlock];
+#pragma GCC unroll 8
+      for (int r = 0; r < kGramBlock; ++r) sums[r] = Load(to + r * g_stride);
+      for (int k = 0; k < rows; ++k) {
+        const double* const row = a + k * a_stride;
+        const Vector right = Load(row + at);
+#pragma GCC unroll 8
+        for (int r = 0; r < kGramBlock; ++r) sums[r] += right * row[first + r];
+      }
+#pragma GCC unroll 8
+      for (int r = 0; r < kGramBlock; ++r) {
+        __builtin_memcpy(to + r * g_stride, &sums[r], sizeof(Vector));
+      }
+    }
+  }
+}
+
 // exp(x) - 1 = 2^n (1 + p) - 1 with p = exp(r) - 1 by its series, x = n ln 2 + r, |r| <= ln 2 / 2:
 // p starts with r, so that the result is exact to rounding near zero too. Vectors throughout, since
 // compilers leave the plain loop alone where bounds are to respect NaN.
@@ -150,8 +173,9 @@ void Each(double* values, std::ptrdiff_t count) {
   __builtin_memcpy(values + i, &result, (count - i) * sizeof(double));
 }
 
-constexpr VectorKernels kKernels = {PUSHID_VECTOR_NAME, kTileRows,    PUSHID_TILE_COLUMNS, AddTile,
-                                    NarrowProduct,      Each<TanhOf>, Each<LogisticOf>};
+constexpr VectorKernels kKernels = {
+    PUSHID_VECTOR_NAME, kTileRows, PUSHID_TILE_COLUMNS, AddTile,
+    NarrowProduct,      AddGram,   Each<TanhOf>,        Each<LogisticOf>};
 
 }  // namespace
 }  // namespace pushid

@@ -12,29 +12,6 @@
 
 namespace pushid {
 
-Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
-                                        const Vector4<double>& a) {
-  using Jet = ceres::Jet<double, 4>;
-  PendulumState<Jet> jets;
-  for (int i = 0; i < 4; ++i) {
-    jets.q[i] = i < 2 ? Jet(state.q[i]) : Jet(state.q[i], i - 2);
-    jets.qd[i] = i < 2 ? Jet(state.qd[i]) : Jet(state.qd[i], i);
-  }
-  const Vector4<Jet> value = InverseDynamics<Jet>(body, jets, a.cast<Jet>());
-  Matrix4<double> jacobian;
-  for (int row = 0; row < 4; ++row) jacobian.row(row) = value[row].v.transpose();
-  return jacobian;
-}
-
-Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
-                                     const Vector4<double>& a) {
-  using Jet = ceres::Jet<double, 1>;
-  const BodyOf<Jet> jets{body.mass, Jet(body.rod_length, 0), Jet(0.0)};
-  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
-  const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
-  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
-}
-
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,
                       const PendulumState<double>& state, const Vector4<double>& previous,
@@ -88,8 +65,9 @@ class ReceivedSensitivities {
           forces->Parameters(0), path.At(frame, n), path.At(frame, j));
       for (int side = 0; side < 2; ++side) {
         Columns& target = now_[side == 0 ? n : j];
-        target += jacobian.by_states.block<4, 8>(4 * side, 0) * sensitivities.At(frame, n);
-        target += jacobian.by_states.block<4, 8>(4 * side, 8) * sensitivities.At(frame, j);
+        const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
+        AddNarrowProduct(by_states.leftCols<8>(), sensitivities.At(frame, n), target);
+        AddNarrowProduct(by_states.rightCols<8>(), sensitivities.At(frame, j), target);
         for (const ColumnEntry& entry : inputs_.entries[0]) {
           if (!IsPairParameter(entry.parameter)) continue;
           target.col(entry.column) +=

@@ -43,7 +43,7 @@ class RolloutSensitivities {
     num_people_ = num_people;
     num_columns_ = num_columns;
     const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
-    storage_.resize(8 * all);
+    if (storage_.size() < 8 * all) storage_.resize(8 * all);
     rod_.resize(rod_moves ? all : 0);
     step_.resize(feet_step ? all : 0);
   }
@@ -74,7 +74,7 @@ class RolloutSensitivities {
     return (static_cast<Eigen::Index>(frame) * num_people_ + person) * num_columns_;
   }
   int num_people_ = 0, num_columns_ = 0;
-  Eigen::VectorXd storage_;  // the blocks, one after the other
+  Eigen::VectorXd storage_;  // the blocks, one after the other; never shrinks
   Eigen::RowVectorXd rod_, step_;
 };
 

@@ -12,6 +12,7 @@
 #include "ident/results/fit_setup.h"
 #include "ident/results/weighted_solve.h"
 #include "ident/solver/solver.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {
@@ -98,25 +99,38 @@ FitOptions PooledOptions() {
   return options;
 }
 
-void GroupJacobian(benchmark::State& state, SelfForceKind self_force, bool drive) {
-  const FitOptions options = GroupOptions(self_force, drive);
+// What Ceres asks for at a point: every recording's condensed rows and their derivatives.
+void GroupJacobian(benchmark::State& state, const FitOptions& options) {
   const FitProblem fit(Groups().recordings, options);
-  const FitPoint point = fit.NominalPoint();
-  std::vector<std::unique_ptr<RolloutResidual>> residuals;
-  std::vector<std::vector<double>> values, jacobians;
-  const int columns = fit.map().num_shared();
+  FitPoint point = fit.NominalPoint();
+  std::vector<std::unique_ptr<CondensedRollout>> residuals;
+  std::vector<std::vector<const double*>> blocks;
+  std::vector<std::vector<double>> values, storage;
+  std::vector<std::vector<double*>> jacobians;
+  int columns = 0;
   for (const PendulumRecording& recording : Groups().recordings) {
     const auto problem =
         MakeRolloutProblem(recording, options.model, fit.map(), options.sigmas, 1.0, 0);
-    residuals.push_back(std::make_unique<RolloutResidual>(problem));
-    values.emplace_back(problem->num_residuals());
-    jacobians.emplace_back(problem->num_residuals() * columns);
+    residuals.push_back(
+        std::make_unique<CondensedRollout>(problem, JacobianMethod::kSensitivities));
+    const int rows = residuals.back()->num_residuals();
+    columns = problem->layout.num_columns();
+    blocks.push_back({point.shared.data()});
+    for (const std::string& unit : problem->layout.units) {
+      if (fit.map().num_deviations > 0) blocks.back().push_back(point.unit[unit].data());
+    }
+    values.emplace_back(rows);
+    storage.emplace_back(rows * columns);
+    jacobians.emplace_back();
+    double* at = storage.back().data();
+    for (int size : residuals.back()->parameter_block_sizes()) {
+      jacobians.back().push_back(at);
+      at += rows * size;
+    }
   }
-  const double* blocks[] = {point.shared.data()};
   for (auto _ : state) {
     for (size_t i = 0; i < residuals.size(); ++i) {
-      double* jacobian[] = {jacobians[i].data()};
-      if (!residuals[i]->Evaluate(blocks, values[i].data(), jacobian)) {
+      if (!residuals[i]->Evaluate(blocks[i].data(), values[i].data(), jacobians[i].data())) {
         state.SkipWithError("a rollout fails");
       }
     }
@@ -126,12 +140,13 @@ void GroupJacobian(benchmark::State& state, SelfForceKind self_force, bool drive
                  std::to_string(Groups().recordings.size()) + " " + Groups().origin +
                  " recordings");
 }
-BENCHMARK_CAPTURE(GroupJacobian, contact, SelfForceKind::kNone, false)
+BENCHMARK_CAPTURE(GroupJacobian, contact, GroupOptions(SelfForceKind::kNone, false))
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, SelfForceKind::kLinear, false)
+BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, GroupOptions(SelfForceKind::kLinear, false))
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(GroupJacobian, linear_contact_drive, SelfForceKind::kLinear, true)
+BENCHMARK_CAPTURE(GroupJacobian, linear_contact_drive, GroupOptions(SelfForceKind::kLinear, true))
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(GroupJacobian, pooled, PooledOptions())->Unit(benchmark::kMillisecond);
 
 void GroupSolve(benchmark::State& state, const FitOptions& options) {
   const FitProblem problem(Groups().recordings, options);

@@ -89,11 +89,9 @@ TEST(BlockLayout, PeopleOfTheSameSubjectShareABlock) {
   EXPECT_EQ(layout.num_blocks(), 5);
   EXPECT_EQ(layout.num_columns(), kNumParameters + 9 + 16);
   EXPECT_EQ(layout.units, (std::vector<std::string>{"anna", "bert", "carl"}));
-  EXPECT_EQ(layout.DeviationColumn(0), kNumParameters);
-  EXPECT_EQ(layout.DeviationColumn(1), kNumParameters + 3);
-  EXPECT_EQ(layout.DeviationColumn(2), kNumParameters);
-  EXPECT_EQ(layout.DeviationColumn(3), kNumParameters + 6);
-  EXPECT_EQ(layout.VelocityColumn(), kNumParameters + 9);
+  // Three columns instead of one for each parameter that the three subjects differ in.
+  EXPECT_EQ(layout.VelocityColumn(), kNumParameters + 6);
+  EXPECT_EQ(layout.num_acting(), kNumParameters + 6 + 16);
 
   Random random(3);
   const ParameterBlocks blocks =
@@ -109,12 +107,32 @@ TEST(BlockLayout, PeopleOfTheSameSubjectShareABlock) {
   EXPECT_EQ(layout.VelocityBlock(pointers.data()), blocks[4].data());
 }
 
+// By hand: of a, b and c, units x and y differ in b. Acting are a, b of x, b of y and c.
+TEST(BlockLayout, ASharedColumnIsTheSumOfItsUnits) {
+  ParameterMap map;
+  map.fitted = {{kMu, Transform::kIdentity, -1},
+                {kAx, Transform::kIdentity, 0},
+                {kBx, Transform::kIdentity, -1}};
+  map.num_deviations = 1;
+  const BlockLayout layout(map, {"x", "y", "x"}, false);
+  using Range = std::pair<int, int>;
+  EXPECT_EQ(layout.num_acting(), 4);
+  EXPECT_EQ(layout.ActingOfColumns(), (std::vector<Range>{{0, 0}, {1, 2}, {3, 3}, {1, 1}, {2, 2}}));
+  const auto columns = [&](int person) {
+    std::vector<int> of;
+    for (const ColumnEntry& entry : layout.Entries(map, {}, person)) of.push_back(entry.column);
+    return of;
+  };
+  EXPECT_EQ(columns(0), (std::vector<int>{0, 1, 3}));
+  EXPECT_EQ(columns(1), (std::vector<int>{0, 2, 3}));
+}
+
 TEST(BlockLayout, BlocksThatAreNotThereHaveNoColumn) {
   const ParameterMap plain = EveryParameterMap({});
   const BlockLayout shared(plain, {"anna", "bert"}, false);
   EXPECT_EQ(shared.BlockSizes(), (std::vector<int>{kNumParameters}));
   EXPECT_EQ(shared.num_blocks(), 1);
-  EXPECT_LT(shared.DeviationColumn(1), 0);
+  EXPECT_EQ(shared.num_acting(), kNumParameters);
   EXPECT_LT(shared.VelocityColumn(), 0);
   const double* block = nullptr;
   EXPECT_EQ(shared.VelocityBlock(&block), nullptr);
@@ -125,7 +143,8 @@ TEST(BlockLayout, BlocksThatAreNotThereHaveNoColumn) {
 
   const BlockLayout pooled(EveryParameterMap({kMu}), {"anna"}, false);
   EXPECT_EQ(pooled.BlockSizes(), (std::vector<int>{kNumParameters, 1}));
-  EXPECT_EQ(pooled.DeviationColumn(0), kNumParameters);
+  EXPECT_EQ(pooled.num_acting(),
+            kNumParameters);  // one person's deviation moves as the shared value
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
 processes   tests/benchmarks/README.md; a minute
 batch       tests/benchmarks/README.md; a batch of 101 fits; a minute
+against     tests/benchmarks/README.md; this commit's fits and another's, whose folder of programs PUSHID_BIN_BEFORE
+            names; three minutes
 
 Times on one core, busy with nothing else if they are to be compared.
 """
@@ -11,6 +13,7 @@ import os
 import resource
 import statistics
 import subprocess
+import sys
 import tempfile
 
 import studies
@@ -61,16 +64,18 @@ def benchmarks():
     return studies.table(["what", "processor time"], rows)
 
 
+def processor_seconds_once(*command):
+    """Of a process and its children."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True,
+                   env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
 def processor_seconds(*command):
-    """Of a process and its children, median of three runs."""
-    seconds = []
-    for _ in range(3):
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True,
-                       env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
-    return statistics.median(seconds)
+    """Median of three runs."""
+    return statistics.median(processor_seconds_once(*command) for _ in range(3))
 
 
 def processes():
@@ -119,5 +124,34 @@ def batch():
             f"{jobs - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s of processor time.")
 
 
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as file:
+        lines = dict(line.split(":", 1) for line in file if ":" in line)
+    names = {name.strip(): value for name, value in lines.items()}
+    return f"{names['model name'].strip()}, {os.cpu_count()} cores"
+
+
+def against():
+    """In turns, so that what else the machine does hits both alike."""
+    folder = os.environ.get("PUSHID_BIN_BEFORE")
+    if not folder:
+        sys.exit("speed.py: against needs PUSHID_BIN_BEFORE, the folder of the other commit's programs")
+    rows = []
+    for title, runs, flags in [
+            ("the 32 recordings of single people, `--setting=single`", 9, ["--setting=single"]),
+            ("... `--bootstrap=99`", 3, ["--setting=single", "--bootstrap=99"]),
+            ("... `--profile`", 1, ["--setting=single", "--profile"]),
+            ("the 49 recordings of groups, `--setting=groups`", 3, ["--setting=groups"])]:
+        seconds = {folder: [], studies.BIN: []}
+        for _ in range(runs):
+            for programs, times in seconds.items():
+                command = [os.path.join(programs, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--quiet", *flags]
+                times.append(processor_seconds_once(*command))
+        before, now = (statistics.median(times) for times in seconds.values())
+        rows.append([title, f"{number(before, 2)} s", f"{number(now, 2)} s", f"{number(before / now, 2)}"])
+    text = studies.table(["a whole `pushid-fit`, one thread, medians of processor time", "before", "now", "ratio"], rows)
+    return f"{text}\n\nMeasured on {machine()}."
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch})
+    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch, "against": against})

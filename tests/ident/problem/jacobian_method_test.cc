@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/results/fit.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -44,11 +45,12 @@ TEST(JacobianMethod, ChoosesTheCostFunction) {
     FitPoint point = problem.NominalPoint();
     const FitProblem::Built built = problem.Build(&point, 0);
     int sensitivities = 0, recordings_seen = 0;
-    for (const auto& [id, cluster] : built.blocks) {
-      if (cluster < 0) continue;
+    for (const FitProblem::Built::Block& block : built.blocks) {
+      if (block.cluster < 0) continue;
       ++recordings_seen;
-      sensitivities += dynamic_cast<const RolloutResidual*>(
-                           built.problem->GetCostFunctionForResidualBlock(id)) != nullptr;
+      const auto* rollout = dynamic_cast<const CondensedRollout*>(block.cost);
+      ASSERT_NE(rollout, nullptr);
+      sensitivities += rollout->method() == JacobianMethod::kSensitivities;
     }
     EXPECT_EQ(recordings_seen, 6);
     EXPECT_EQ(sensitivities, method == JacobianMethod::kSensitivities ? 6 : 0) << name;

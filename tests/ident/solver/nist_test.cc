@@ -67,7 +67,7 @@ Score RunSet(const NistSet& set, const std::vector<double>& start) {
         new ceres::DynamicAutoDiffCostFunction<NistResidual, 4>(new NistResidual{&set.name, &row});
     cost->AddParameterBlock(static_cast<int>(b.size()));
     cost->SetNumResiduals(1);
-    built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, b.data()), 0});
+    built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, b.data()), 0, cost});
   }
   // The project's solver, told to go on until rounding errors end it.
   FitOptions options;

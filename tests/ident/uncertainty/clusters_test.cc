@@ -25,7 +25,7 @@ JacobianBlocks MeanOf(const std::vector<std::vector<double>>& clusters) {
     for (double value : clusters[g]) {
       score.residuals[row++] = value - sum / rows;
       score.cluster_of_row.push_back(static_cast<int>(g));
-      score.row_in_block.push_back(0);
+      score.person_of_row.push_back(0);
     }
   }
   score.num_data_rows = rows;
@@ -62,7 +62,7 @@ TEST(Clusters, FreedomIsSatterthwaites) {
     score.clusters.push_back(g);
     for (int k = 0; k < sizes[g]; ++k) {
       score.cluster_of_row.push_back(g);
-      score.row_in_block.push_back(k);
+      score.person_of_row.push_back(0);
     }
   }
   const int n = static_cast<int>(score.cluster_of_row.size());

@@ -144,10 +144,11 @@ TEST(Uncertainty, MovesAreCloseToRefitting) {
 TEST(Uncertainty, NaiveIsTheTextbookOne) {
   const auto s = SolveSmall(6, 0.0);
   const Eigen::MatrixXd& j = s->score.jacobian;
-  const double freedom = static_cast<double>(j.rows()) - 3.0;
-  const double variance = s->score.residuals.squaredNorm() / freedom;
+  int rows = 0;  // before they were condensed
+  for (const PendulumRecording& r : s->recordings) rows += (r.num_frames() - 1) * kFrameResiduals;
+  const double variance = s->score.residuals.squaredNorm() / (rows - 3.0);
   EXPECT_NEAR(s->uncertainty.sigma, std::sqrt(variance), 1e-12);
-  EXPECT_EQ(s->uncertainty.num_residuals, j.rows());
+  EXPECT_EQ(s->uncertainty.num_residuals, rows);
   const Eigen::MatrixXd expected = variance * (j.transpose() * j).inverse();
   const auto& fitted = s->problem->map().fitted;
   for (int i = 0; i < 3; ++i) {

@@ -67,6 +67,30 @@ TEST(NarrowProduct, EqualsEigens) {
   }
 }
 
+// Of rows of a wider matrix; left of the diagonal's blocks nothing may change.
+TEST(Gram, EqualsEigens) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Random random(75);
+  for (const VectorKernels* kernels : SupportedVectorKernels()) {
+    for (int rows : {1, 9, 40}) {
+      for (int columns : {8, 16, 40}) {
+        const Rows a = RandomMatrix(rows, columns + 3, &random);
+        const Rows before = RandomMatrix(columns, columns + 1, &random);
+        Rows g = before;
+        kernels->add_gram(rows, columns, a.data(), columns + 3, g.data(), columns + 1);
+        const Rows sum =
+            before.leftCols(columns) + a.leftCols(columns).transpose() * a.leftCols(columns);
+        for (int i = 0; i < columns; ++i) {
+          for (int j = 0; j < columns; ++j) {
+            const double expected = j / kGramBlock < i / kGramBlock ? before(i, j) : sum(i, j);
+            EXPECT_NEAR(g(i, j), expected, 1e-13) << kernels->name << ", " << i << ", " << j;
+          }
+        }
+      }
+    }
+  }
+}
+
 // A column of a product does not depend on who stands beside it.
 TEST(PackedMatrix, ColumnsKnowNothingOfEachOther) {
   Random random(72);

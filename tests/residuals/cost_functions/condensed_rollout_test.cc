@@ -1,0 +1,129 @@
+// A rollout in few rows: J'J, J'r and cost are those of all rows, by sensitivities and by Jets.
+#include "residuals/cost_functions/condensed_rollout.h"
+
+#include <Eigen/Dense>
+
+#include "tests/residuals/residual_samples.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kFrames = 30;
+
+// Two people of two subjects, who differ in two parameters.
+struct Sample {
+  PendulumRecording recording;
+  std::shared_ptr<const RolloutProblem> problem;
+  ParameterBlocks blocks;
+
+  explicit Sample(double robust) {
+    Random random(46);
+    Scene scene = SceneOfPeople(2, 0.1, &random);
+    scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, 150.0, &random),
+                    RandomPush(1, 2, 5, PushKind::kExternal, 100.0, &random)};
+    ModelOptions options;
+    options.interaction.spring = options.interaction.damping = true;
+    recording = RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kFrames);
+    AddNoise(0.05, &random, &recording);
+    recording.initial_velocity = InitialVelocity::kFree;
+    recording.subject_ids = {"anna", "bert"};
+    ParameterMap map = EveryParameterMap({kMu, kKpTheta});
+    ResidualSigmas sigmas;
+    sigmas.robust = robust;
+    problem = MakeRolloutProblem(recording, options, map, sigmas, 0.7, 0);
+    blocks = RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.1, &random);
+  }
+};
+
+// All blocks side by side.
+Eigen::MatrixXd SideBySide(const Evaluation& evaluation) {
+  Eigen::MatrixXd all(evaluation.residuals.size(), 0);
+  for (const auto& block : evaluation.jacobians) {
+    all.conservativeResize(Eigen::NoChange, all.cols() + block.cols());
+    all.rightCols(block.cols()) = block;
+  }
+  return all;
+}
+
+void ExpectClose(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b,
+                 const Eigen::VectorXd& row_scale, const Eigen::VectorXd& column_scale) {
+  ASSERT_EQ(a.rows(), b.rows());
+  ASSERT_EQ(a.cols(), b.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) {
+      EXPECT_NEAR(a(i, j), b(i, j), 1e-12 * row_scale[i] * column_scale[j]) << i << ", " << j;
+    }
+  }
+}
+
+void ExpectSameEquations(const Eigen::MatrixXd& j, const Eigen::VectorXd& r,
+                         const Eigen::MatrixXd& jc, const Eigen::VectorXd& rc) {
+  const Eigen::VectorXd length = j.colwise().norm().transpose();
+  ExpectClose(jc.transpose() * jc, j.transpose() * j, length, length);
+  const Eigen::VectorXd size = Eigen::VectorXd::Constant(1, r.norm());
+  ExpectClose(jc.transpose() * rc, j.transpose() * r, length, size);
+  EXPECT_NEAR(rc.norm(), r.norm(), 1e-12 * r.norm());
+}
+
+TEST(CondensedRollout, HasTheEquationsOfAllRows) {
+  for (double robust : {0.0, 0.5}) {
+    const Sample s(robust);
+    const std::vector<bool> all(s.blocks.size(), true);
+    const Evaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, all);
+    ASSERT_TRUE(rows.ok);
+    for (const auto& [name, method] : Names(JacobianMethod())) {
+      SCOPED_TRACE(name);
+      const CondensedRollout cost(s.problem, method);
+      const Evaluation condensed = EvaluateCost(cost, s.blocks, all);
+      ASSERT_TRUE(condensed.ok);
+      EXPECT_EQ(condensed.residuals.size(), s.problem->layout.num_acting() + 1);
+      ExpectSameEquations(SideBySide(rows), rows.residuals, SideBySide(condensed),
+                          condensed.residuals);
+    }
+  }
+}
+
+TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
+  const Sample s(0.5);
+  const Evaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, {});
+  const Evaluation condensed =
+      EvaluateCost(CondensedRollout(s.problem, JacobianMethod::kSensitivities), s.blocks, {});
+  ASSERT_TRUE(rows.ok && condensed.ok);
+  EXPECT_NEAR(condensed.residuals.norm(), rows.residuals.norm(), 1e-13 * rows.residuals.norm());
+}
+
+// The rows of each person, taken from all rows; those of the robust loss corrected frame by frame.
+TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
+  const Sample s(0.5);
+  const Evaluation rows =
+      EvaluateCost(RolloutResidual(s.problem), s.blocks, std::vector<bool>(s.blocks.size(), true));
+  const Eigen::MatrixXd jacobian = SideBySide(rows);
+  std::vector<const double*> blocks;
+  for (const auto& block : s.blocks) blocks.push_back(block.data());
+  const CondensedRollout cost(s.problem, JacobianMethod::kSensitivities);
+  std::vector<CondensedRollout::PersonRows> people;
+  ASSERT_TRUE(cost.EvaluatePeople(blocks.data(), true, &people));
+  ASSERT_EQ(people.size(), 2u);
+  EXPECT_EQ(cost.num_rows(), rows.residuals.size());
+  for (int n = 0; n < 2; ++n) {
+    const Eigen::Index own = (kFrames - 1) * kFrameResiduals;
+    Eigen::MatrixXd j(own, jacobian.cols()), corrected(own, jacobian.cols());
+    Eigen::VectorXd r(own);
+    for (int t = 0; t + 1 < kFrames; ++t) {
+      const Eigen::Index to = t * kFrameResiduals, from = (2 * t + n) * kFrameResiduals;
+      j.middleRows<kFrameResiduals>(to) = jacobian.middleRows<kFrameResiduals>(from);
+      r.segment<kFrameResiduals>(to) = rows.residuals.segment<kFrameResiduals>(from);
+      corrected.middleRows<kFrameResiduals>(to) = j.middleRows<kFrameResiduals>(to);
+      CorrectForRobustLoss(r.segment<kFrameResiduals>(to),
+                           s.problem->weight * s.recording.Weight(n, t + 1), 0.5,
+                           corrected.middleRows<kFrameResiduals>(to));
+    }
+    ExpectSameEquations(j, r, people[n].jacobian, people[n].residuals);
+    const Eigen::VectorXd length = j.colwise().norm().transpose();
+    ExpectClose(people[n].robust_jacobian.transpose() * people[n].robust_jacobian,
+                corrected.transpose() * corrected, length, length);
+  }
+}
+
+}  // namespace
+}  // namespace pushid
