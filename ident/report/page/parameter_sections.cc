@@ -211,6 +211,9 @@ ReportSection UnitSection(const FittedModel& model) {
   section.paragraphs = {
       "Partially pooled: each differs from the shared value (diamond) as far as "
       "its recordings insist."};
+  if (result.options.pool_by == PoolBy::kCondition) {
+    section.paragraphs.back() += " A recording that names no condition counts by its setting.";
+  }
   std::map<std::string, std::vector<ForestRow>> by_parameter;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {
     for (const auto& [name, e] : estimates) {
