@@ -27,10 +27,13 @@ def pushes():
     for setting in ("", "row_1"):
         for push in (30, 80, 157):
             text = simulate(f"--push={push}", *([f"--as_setting={setting}"] if setting else []))
-            moved, _, wave = text.rstrip().splitlines()[-1].partition("; ")
-            outcomes = [re.split(r"\s{2,}", line)[-1] for line in text.splitlines() if line[:7].strip().isdigit()]
+            lines = text.splitlines()
+            moved, _, wave = next(line for line in lines if "people moved by" in line).partition("; ")
+            header = next(line for line in lines if line.startswith("person "))
+            outcomes = [re.split(r"\s{2,}", line[header.index("outcome"):])[0] for line in lines
+                        if line[:7].strip().isdigit()]
             counts = [f"{outcomes.count(o)} {o}" for o in sorted(set(outcomes))]
-            rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), wave.split(": ")[-1]])
+            rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), wave.split(": ")[-1] or "none"])
     return studies.table(["parameters of", "push, N s", "people moved by 2 cm", "outcome", "speed of the onset"], rows)
 
 
