@@ -108,10 +108,15 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   }
   double largest = 0.0;
   for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());
-  const double resting = std::max(options.idle_force, kNoise * largest);
+  const bool by_noise = options.idle_force < kNoise * largest;
+  const double resting = by_noise ? kNoise * largest : options.idle_force;
   const auto idle = [resting](const Vector3<double>& row) { return !(row.norm() > resting); };
-  const auto first = std::find_if_not(rows.begin(), rows.end(), idle);
-  const auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
+  auto first = std::find_if_not(rows.begin(), rows.end(), idle);
+  auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
+  // A push may begin or end within a row, of which little is left.
+  const auto some = [](const Vector3<double>& row) { return row.norm() > 0.0; };
+  if (by_noise && first != rows.begin() && some(first[-1])) --first;
+  if (by_noise && last != rows.end() && some(*last)) ++last;
   if (MaybeError error = CheckPushInside(record, recording, options, first == rows.end())) {
     return *error;
   }

@@ -25,8 +25,8 @@ struct SensorPushOptions {
   double frame_zero_time_s = 0.0;  // on the sensor's clock
   double clock_error_s = 0.0;      // of that: so far outside the recording a force is not lost
   // Forces up to this size (N) before and after the push are the sensor's idling: rows whose mean
-  // is no greater, or below a hundredth of the largest row's, are cut off at both ends: a push that
-  // goes on in noise would have no end.
+  // is no greater, or (but one row) below a hundredth of the largest row's, are cut off at both
+  // ends: a push that goes on in noise would have no end.
   double idle_force = 0.0;
 };
 

@@ -53,7 +53,7 @@ TEST(StartDiagnostics, WrongUnitsAreSuspected) {
   const std::string all = std::accumulate(warnings.begin(), warnings.end(), std::string());
   EXPECT_TRUE(Contains(all, "is mass_kg in kg?"));
   EXPECT_TRUE(Contains(all, "is length_unit right?"));
-  EXPECT_TRUE(Contains(all, "are length_unit and fps right?"));
+  EXPECT_TRUE(Contains(all, "are length_unit and fps right, or does a marker jump there?"));
   EXPECT_TRUE(Contains(all, recordings[2].id));
 }
 

@@ -120,8 +120,8 @@ TEST(PushFromSensor, NoiseIsNoPush) {
   for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += 0.5 * std::sin(0.7 * i * i);
   const Result<Push> noisy = PushFromSensor(record, recording, {});
   ASSERT_TRUE(noisy.ok()) << noisy.error().ToString();
-  EXPECT_EQ(noisy.value().start_frame, clean.value().start_frame);
-  EXPECT_EQ(noisy.value().EndFrame(), clean.value().EndFrame());
+  EXPECT_NEAR(noisy.value().start_frame, clean.value().start_frame, 1);
+  EXPECT_NEAR(noisy.value().EndFrame(), clean.value().EndFrame(), 1);
 }
 
 TEST(PushFromSensor, UnsoundInputsAreErrors) {
