@@ -1,6 +1,5 @@
 // apps: pushid-export: recordings in the formats of other programs.
 #include <cstdio>
-#include <filesystem>
 #include <system_error>
 
 #include "apps/flags/command_line.h"
@@ -9,6 +8,7 @@
 #include "apps/flags/recording_flags.h"
 #include "datasets/exchange/bids_dataset.h"
 #include "datasets/exchange/hip_trajectories.h"
+#include "datasets/files/folders.h"
 
 namespace {
 
@@ -29,11 +29,8 @@ Result<std::vector<std::string>> TrajectoryFiles(const ExportFlags& flags,
 MaybeError ExportTrajectories(const ExportFlags& flags, const std::vector<Recording>& recordings) {
   const Result<std::vector<std::string>> files = TrajectoryFiles(flags, recordings);
   if (!files.ok()) return files.error();
-  std::error_code failed;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    std::filesystem::create_directories(std::filesystem::path(files.value()[i]).parent_path(),
-                                        failed);
-    if (failed) return Error{"cannot make its folder: " + failed.message(), files.value()[i]};
+    if (MaybeError error = MakeFolderOf(files.value()[i])) return error;
     if (MaybeError error = WriteTrajectories(files.value()[i], HipTrajectories(recordings[i]))) {
       return error;
     }

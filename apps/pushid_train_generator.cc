@@ -10,6 +10,7 @@
 #include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
@@ -26,13 +27,6 @@ namespace {
 
 using namespace pushid;
 using Json = nlohmann::ordered_json;
-
-MaybeError MakeFolder(const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
-  return std::nullopt;
-}
 
 std::string Inside(const std::string& folder, const char* name) {
   return (std::filesystem::path(folder) / name).string();

@@ -10,6 +10,7 @@
 #include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
@@ -61,9 +62,7 @@ nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
 
 int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
           RestorationRunOptions options) {
-  std::error_code failed;
-  std::filesystem::create_directories(flags.out, failed);
-  if (failed) return Fail(Error{"cannot make this folder: " + failed.message(), flags.out});
+  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
   const auto in_out = [&flags](const char* name) {
     return (std::filesystem::path(flags.out) / name).string();
   };

@@ -41,20 +41,19 @@ TimedForce AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
   return timed;
 }
 
-// A record that begins or ends while it measures a push has lost the rest of it.
-MaybeError CutShort(const SensorRecord& record) {
+// A warning for a record that begins or ends while it measures a push: the rest of it is lost.
+std::string CutShort(const SensorRecord& record) {
   double peak = 0.0;
   for (const Eigen::Vector3d& force : record.force) peak = std::max(peak, force.norm());
   for (const bool first : {true, false}) {
     const double force = (first ? record.force.front() : record.force.back()).norm();
     if (!(force > kCutShort * peak)) continue;
-    return Error{std::string("the record ") + (first ? "begins" : "ends") + " with " +
-                     Rounded(force, 3) + " N, of " + Rounded(peak, 3) +
-                     " N at most: part of the push is missing, or it reads a force at rest "
-                     "(--sensor_zero)",
-                 record.file};
+    return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
+           Rounded(force, 3) + " N, of " + Rounded(peak, 3) +
+           " N at most: part of the push is missing, or it reads a force at rest "
+           "(--sensor_zero)";
   }
-  return std::nullopt;
+  return "";
 }
 
 struct ReadSensors {
@@ -137,7 +136,8 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     }
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
-    if (const MaybeError cut = CutShort(record)) result.warnings.push_back(cut->ToString());
+    const std::string cut_short = CutShort(record);
+    if (!cut_short.empty()) result.warnings.push_back(cut_short);
     if (record.height_m && *record.height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
                                 " lies on the floor: what it measures is the ground's force on "

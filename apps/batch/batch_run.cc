@@ -13,6 +13,7 @@
 #include "apps/support/folder_lock.h"
 #include "apps/support/signal_reader.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -122,9 +123,7 @@ class Pool {
   }
 
   static Result<bool> TakeFolder(const std::string& folder, FolderLock* lock) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) return Error{"cannot be made: " + failed.message(), folder};
+    if (MaybeError error = MakeFolder(folder)) return *error;
     return lock->Take(folder);
   }
 

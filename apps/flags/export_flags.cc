@@ -3,10 +3,12 @@
 
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
+#include "datasets/files/json_file.h"
 
 DEFINE_string(out, "", "the folder to write");
 DEFINE_string(format, "bids",
@@ -23,17 +25,29 @@ Result<ExportFormat> Format() {
   return Error{"--format is '" + FLAGS_format + "'; it must be bids, txt or sqlite"};
 }
 
-// A folder with recordings of other origin stays as it is, whatever --overwrite says.
+// "GeneratedBy" of a data set of BIDS.
+bool WrittenByPushid(const std::string& description) {
+  const Result<nlohmann::json> about = ReadJson(description);
+  if (!about.ok() || !about.value().is_object()) return false;
+  const nlohmann::json programs = about.value().value("GeneratedBy", nlohmann::json::array());
+  return std::any_of(programs.begin(), programs.end(), [](const nlohmann::json& program) {
+    return program.is_object() && program.value("Name", nlohmann::json()) == "pushid";
+  });
+}
+
+// A folder with data of other origin stays as it is, whatever --overwrite says.
 MaybeError CheckFolder(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::path manifest = fs::path(folder) / "manifest.json";
-  const fs::path about = fs::path(folder) / "dataset_description.json";
-  if (fs::exists(manifest, ignored) && !fs::exists(about, ignored)) {
+  const std::string about = (fs::path(folder) / "dataset_description.json").string();
+  if (WrittenByPushid(about)) return CheckNew("out", about);
+  for (const char* name : {"dataset_description.json", "participants.tsv", "manifest.json"}) {
+    const fs::path file = fs::path(folder) / name;
+    if (!fs::exists(file, ignored)) continue;
     return Error{"is no output of pushid-export and would be overwritten; name another --out",
-                 manifest.string()};
+                 file.string()};
   }
-  return CheckNew("out", about.string());
+  return std::nullopt;
 }
 
 }  // namespace

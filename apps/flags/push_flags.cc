@@ -4,11 +4,11 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/folders.h"
 #include "datasets/manifest/merged_manifest.h"
 #include "datasets/manifest/recording_names.h"
 
@@ -45,15 +45,6 @@ std::string WithId(std::string path, const std::string& id) {
 }
 
 bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string::npos; }
-
-// The folder of a name that is made for every recording.
-MaybeError MakeFolderOf(const std::string& file) {
-  std::error_code failed;
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), folder.string()};
-  return std::nullopt;
-}
 
 // A flag of the other way would be taken and do nothing.
 MaybeError CheckInverseDynamics() {

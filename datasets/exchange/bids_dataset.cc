@@ -1,12 +1,12 @@
 // datasets: a data set of Motion-BIDS.
 #include "datasets/exchange/bids_dataset.h"
 
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_bids.h"
@@ -90,13 +90,6 @@ std::vector<TimedForce> PushesOn(const Recording& recording, int person) {
     if (push.person == person) pushes.push_back({push.start_frame, push.force});
   }
   return pushes;
-}
-
-MaybeError MakeFolder(const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
-  return std::nullopt;
 }
 
 // What is known besides the files, for the new manifest.

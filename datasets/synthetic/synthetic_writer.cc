@@ -1,8 +1,8 @@
 // datasets: synthetic recordings as files, through the writers that users have.
 #include <cmath>
-#include <filesystem>
 #include <system_error>
 
+#include "datasets/files/folders.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -61,12 +61,7 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
 MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOptions& options,
                                     const std::vector<SyntheticRecording>& recordings) {
   for (const char* sub : {"bvh", "push"}) {
-    std::error_code failed;
-    std::filesystem::create_directories(std::filesystem::path(folder) / sub, failed);
-    if (failed) {
-      return Error{"cannot make the folder '" + std::string(sub) + "': " + failed.message(),
-                   folder};
-    }
+    if (MaybeError failed = MakeFolder(folder + "/" + sub)) return failed;
   }
   Manifest manifest;
   manifest.length_unit = kUnit;

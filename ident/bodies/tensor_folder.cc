@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "datasets/files/content_hash.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/json_fields.h"
 #include "datasets/files/npy.h"
 
@@ -51,9 +52,7 @@ std::string JsonFileOf(const TensorFolderKind& kind, const std::string& folder) 
 
 MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& folder,
                              const TensorFolder& content) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
+  if (MaybeError failed = MakeFolder(folder)) return failed;
   std::vector<float> numbers;
   Json tensors = Json::array();
   for (const NamedTensor& tensor : content.tensors) {
@@ -61,7 +60,8 @@ MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& fo
     tensors.push_back({{"name", tensor.name}, {"rows", values.rows()}, {"columns", values.cols()}});
     numbers.insert(numbers.end(), values.data(), values.data() + values.size());
   }
-  std::filesystem::remove(JsonFileOf(kind, folder), failed);
+  std::error_code ignored;
+  std::filesystem::remove(JsonFileOf(kind, folder), ignored);
   const std::string weights = InFolder(folder, kWeightsFile);
   if (MaybeError error = WriteNpy(weights, numbers)) return error;
   const Result<std::string> hash = HashFile(weights);

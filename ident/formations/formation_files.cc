@@ -8,6 +8,7 @@
 
 #include "datasets/exchange/hip_trajectories.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/manifest.h"
@@ -55,13 +56,6 @@ BvhMotion PendulumMotion(const FormationRun& run, int person) {
     motion.values.insert(motion.values.end(), row.begin(), row.end());
   }
   return motion;
-}
-
-MaybeError MakeFolder(const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{"cannot make this folder: " + failed.message(), folder};
-  return std::nullopt;
 }
 
 ManifestRecording Entry(const FormationRun& run) {

@@ -107,6 +107,15 @@ TEST_F(ExchangeTest, ExportRefuses) {
   // The folder of the recordings themselves.
   EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + folder_.string()}),
                       {"manifest.json", "no output of pushid-export"}));
+  // Another one's data set, whatever --overwrite says.
+  const std::string theirs = Path("theirs");
+  std::filesystem::create_directories(theirs);
+  for (const char* file : {"participants.tsv", "dataset_description.json"}) {
+    WriteText(std::string("theirs/") + file, R"({"Name": "Gait", "BIDSVersion": "1.9.0"})");
+    EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + theirs, "--overwrite"}),
+                        {file, "no output of pushid-export"}));
+  }
+  EXPECT_TRUE(Contains(ReadText(theirs + "/dataset_description.json"), "Gait"));
   const std::string twins = ChangedManifest([](nlohmann::ordered_json& json) {
     json["recordings"][0]["id"] = "a_1";
     json["recordings"][1]["id"] = "a1";

@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/folders.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -92,9 +93,7 @@ std::string ToText(const Report& report) {
 }
 
 MaybeError WriteNumbers(const Report& report, const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return Error{"cannot make the folder " + folder + ": " + error.message()};
+  if (MaybeError failed = MakeFolder(folder)) return failed;
   const auto write = [&folder](const ReportFigure& figure) {
     return WriteFileAtomically((std::filesystem::path(folder) / FileName(figure.name)).string(),
                                CsvOf(figure.numbers));

@@ -60,7 +60,7 @@ TEST_F(ReportNumbers, StayInTheirFolderAndQuote) {
   WriteText("file", "");
   const MaybeError error = WriteNumbers(Sample(), Path("file/below"));
   ASSERT_TRUE(error);
-  EXPECT_TRUE(Contains(error->ToString(), "cannot make the folder"));
+  EXPECT_TRUE(Contains(error->ToString(), "cannot make this folder"));
 }
 
 // A lane takes its height from the plot: the axis stays, the line moves up.

@@ -1,0 +1,137 @@
+// Recordings whose motion is a file of points: units, gaps, rates, preparation.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "datasets/loading/load_recordings.h"
+#include "tests/datasets/points_folder.h"
+
+namespace pushid {
+namespace {
+
+const Eigen::Vector3d kHidden = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+using LoadPointSignalsTest = PointsFolderTest;
+
+TEST_F(LoadPointSignalsTest, UnitsOfTheFile) {
+  motion_.unit = LengthUnit::kMetre;
+  for (auto& track : motion_.positions) {
+    for (Eigen::Vector3d& p : track) p *= 1e-3;
+  }
+  Use("a.trc", MotionFormat::kTrc);
+  ExpectTheWalker();  // TRC says m
+  manifest_.length_unit = LengthUnit::kMillimetre;
+  EXPECT_TRUE(Contains(Message(), "looks like m, pass --length_unit=m"));
+  EXPECT_TRUE(Contains(warnings_[0], "says its lengths are m; they are read as mm"));
+}
+
+TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
+  const std::string trc = ReadText(Path("a.trc"));
+  const auto with_unit = [&](const std::string& unit) {
+    std::string text = trc;
+    WriteText("a.trc", text.replace(text.find("\tmm\t"), 4, "\t" + unit + "\t"));
+  };
+  for (const char* unit : {"MM", "millimeters", "Millimetre"}) {
+    with_unit(unit);
+    ExpectTheWalker();
+  }
+  EXPECT_EQ(LengthUnitFromName("CENTIMETERS"), LengthUnit::kCentimetre);
+  EXPECT_EQ(LengthUnitFromName("M"), LengthUnit::kMetre);
+  EXPECT_EQ(LengthUnitFromName("metres"), LengthUnit::kMetre);
+  with_unit("inch");
+  EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': says its lengths are in 'inch'"));
+  entry().length_unit = LengthUnit::kMillimetre;
+  ExpectTheWalker();
+}
+
+TEST_F(LoadPointSignalsTest, ShortGapsAreFilledLongOnesLeftOut) {
+  for (int t : {4, 5}) motion_.positions[0][t] = kHidden;
+  for (int t = 9; t < 17; ++t) motion_.positions[4][t] = kHidden;
+  Use("a.c3d", MotionFormat::kC3d);
+  const auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const RecordedPerson& person = loaded.value()[0].people[0];
+  ASSERT_EQ(person.weight.size(), 20u);
+  for (int t = 0; t < 20; ++t) EXPECT_EQ(person.weight[t], t >= 9 && t < 17 ? 0.0 : 1.0) << t;
+  EXPECT_LT((person.hip[5] - Eigen::Vector3d(0.05, 0.0, 0.95)).norm(), 1e-5);
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_TRUE(Contains(warnings_[0], "has 2 gaps in hip and ankles"));
+  EXPECT_TRUE(Contains(warnings_[0], "8 of 20 frames are left out"));
+  LoadOptions options;
+  options.preparation.max_gap_s = 0.2;
+  const auto patient = Load(options);
+  ASSERT_TRUE(patient.ok());
+  EXPECT_TRUE(patient.value()[0].people[0].weight.empty());
+}
+
+TEST_F(LoadPointSignalsTest, TheFirstFrameMustBeSeen) {
+  for (int t = 0; t < 3; ++t) motion_.positions[5][t] = kHidden;
+  Use("a.trc", MotionFormat::kTrc);
+  EXPECT_TRUE(Contains(Message(),
+                       "at frame 0, where the fit starts, hip or ankles are not seen; set "
+                       "first_frame to 3 or later"));
+  entry().first_frame = 3;
+  entry().end_frame = 18;
+  const auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].num_frames(), 15);
+  EXPECT_NEAR(loaded.value()[0].people[0].hip[0].x(), 0.03, 1e-9);
+  entry().end_frame = 21;
+  EXPECT_TRUE(
+      Contains(Message(), "the file has 20 frames, too few for first_frame 3 and end_frame 21"));
+  entry().end_frame.reset();
+  motion_.positions[5].assign(20, kHidden);
+  Use("a.trc", MotionFormat::kTrc);
+  EXPECT_TRUE(Contains(Message(), "S1:RANK is never seen"));
+}
+
+TEST_F(LoadPointSignalsTest, RatesThatDiffer) {
+  entry().fps = 50.0;
+  ASSERT_TRUE(Load().ok());
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_TRUE(Contains(warnings_[0], "(60 frames per second), the manifest says 50"));
+}
+
+// From TRC and C3D heads, a column of times, a mapping; without all of those there is none.
+TEST_F(LoadPointSignalsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
+  entry().fps = 0.0;
+  const auto rate = [this] {
+    const auto loaded = Load();
+    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
+    return loaded.ok() ? loaded.value()[0].fps : -1.0;
+  };
+  for (double fps : {60.0, 59.94}) {
+    motion_.rate_hz = fps;
+    Use("a.trc", MotionFormat::kTrc);
+    EXPECT_NEAR(rate(), fps, 1e-9);
+    Use("a.c3d", MotionFormat::kC3d);
+    EXPECT_NEAR(rate(), fps, 1e-5);  // C3D keeps 32 bits
+  }
+  UseTable("motion.csv", MotionFormat::kCsv);
+  EXPECT_EQ(rate(), 60.0);
+
+  std::string text = ReadText(Path("motion.csv"));
+  text.replace(text.find("time"), 4, "tick");
+  WriteText("motion.csv", text);
+  EXPECT_TRUE(Contains(Message(), Path("motion.csv") + ": recording 'a': neither the file nor the "
+                                                       "manifest says the frame rate; give fps"));
+  WriteText("map.json", "{\"frame_rate\": 60}");
+  entry().mapping = "map.json";
+  EXPECT_EQ(rate(), 60.0);
+}
+
+TEST_F(LoadPointSignalsTest, FilterAndResampling) {
+  LoadOptions options;
+  options.preparation.lowpass_hz = 10.0;
+  options.preparation.resample_fps = 30.0;
+  const auto loaded = Load(options);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].fps, 30.0);
+  EXPECT_EQ(loaded.value()[0].num_frames(), 10);
+  EXPECT_EQ(loaded.value()[0].pushes[0].force.size(), 3u);  // five rows at 60 are 2.5 at 30
+  options.preparation.lowpass_hz = 0.0;
+  EXPECT_TRUE(Contains(Message(options), "recording 'a': --resample_fps=30 is below its 60"));
+}
+
+}  // namespace
+}  // namespace pushid
