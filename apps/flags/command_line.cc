@@ -16,8 +16,9 @@
 #include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/meant_name.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/manifest_keys.h"
+#include "datasets/files/text_ends.h"
 
 DEFINE_bool(quiet, false, "no progress on stderr");
 
@@ -68,7 +69,12 @@ bool Asked(const char* flag) {
 Error NoSuchFlag(const std::string& name) {
   std::vector<std::string> known;
   for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) known.push_back(flag.name);
-  const std::string meant = MeantBy(name, known);
+  std::string meant = MeantBy(name, known);
+  // "out", where several things can be written.
+  for (const std::string& one : known) {
+    if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
+    if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
+  }
   return Error{"there is no flag --" + name +
                (meant.empty() ? "" : "; did you mean --" + meant + "?") + "; see " + ProgramName() +
                " --help"};

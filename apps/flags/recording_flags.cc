@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/support/grouped_warnings.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/merged_manifest.h"
 
 DEFINE_string(recordings, "", "manifest.json of the recordings, or several, comma-separated");
@@ -90,6 +91,11 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   std::vector<std::string> found;
   Result<std::vector<Recording>> recordings =
       LoadRecordings(FLAGS_recordings, options.value(), &found);
+  if (recordings.ok()) {
+    PlausibilityCheck ankles;
+    for (const Recording& recording : recordings.value()) ankles.LookAtFacing(recording);
+    for (const std::string& warning : ankles.Warnings()) found.push_back(warning);
+  }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) return recordings;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/files/text_ends.h"
 #include "datasets/manifest/merged_manifest.h"
 
 namespace pushid {
@@ -51,6 +52,26 @@ Error BothName(const std::string& a, const std::string& b, const std::string& pa
   return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
 }
 
+struct OutputKind {
+  const char *flag, *ending;
+};
+constexpr OutputKind kKinds[] = {
+    {"svg_out", ".svg"},   {"strip_out", ".svg"},  {"html_out", ".html"},  {"csv_out", ".csv"},
+    {"json_out", ".json"}, {"model_out", ".json"}, {"scores_out", ".json"}};
+
+// A page under the name of a picture, say.
+MaybeError CheckKind(const NamedPath& output) {
+  for (const OutputKind& kind : kKinds) {
+    if (!EndsWith(output.name, kind.flag) || EndsWith(output.path, kind.ending)) continue;
+    for (const OutputKind& other : kKinds) {
+      if (!EndsWith(output.path, other.ending)) continue;
+      return Error{output.name + " writes " + kind.ending + ", but " + output.path + " ends in " +
+                   other.ending};
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 MaybeError CheckOutputs() {
@@ -70,6 +91,9 @@ MaybeError CheckOutputs() {
     for (const std::string& path : ManifestPaths(flag.current_value)) {
       if (MaybeError error = CheckNoOutput("--" + flag.name, path)) return error;
     }
+  }
+  for (const NamedPath& output : outputs) {
+    if (MaybeError error = CheckKind(output)) return error;
   }
   return std::nullopt;
 }

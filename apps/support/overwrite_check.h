@@ -7,13 +7,14 @@
 #include <string>
 
 #include "datasets/files/error.h"
+#include "datasets/files/text_ends.h"
 
 namespace pushid {
 
 // Whether a flag of this name says where to write. Here, so that plans are read without flags.
 inline bool IsOutputFlag(const std::string& name) {
-  const bool ends = name.size() >= 4 && name.compare(name.size() - 4, 4, "_out") == 0;
-  return name == "out" || name == "bootstrap_file" || (ends && name != "leave_out");
+  return name == "out" || name == "bootstrap_file" ||
+         (EndsWith(name, "_out") && name != "leave_out");
 }
 
 // Between the flags, as they are given. RunApp asks for it before anything is done.

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "datasets/files/meant_name.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/bvh_header.h"
@@ -116,7 +117,9 @@ Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
   if (skeleton.joints.size() > kListed) {
     message += ", ... (" + std::to_string(skeleton.joints.size()) + " joints)";
   }
-  return {message, path, 0};
+  std::vector<std::string> names;
+  for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
+  return {message + MeantText(name, names), path, 0};
 }
 
 Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options) {

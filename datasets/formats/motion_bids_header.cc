@@ -10,6 +10,7 @@
 #include "datasets/files/list_of_names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/table_cells.h"
+#include "datasets/files/text_ends.h"
 #include "datasets/formats/frame_rate.h"
 #include "datasets/formats/motion_bids.h"
 
@@ -26,10 +27,6 @@ std::set<std::string> Entities(const std::string& stem) {
   std::istringstream stream(stem);
   for (std::string part; std::getline(stream, part, '_');) entities.insert(part);
   return entities;
-}
-
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 // The file of a folder whose name ends so and has the most of the motion's entities, and no others.

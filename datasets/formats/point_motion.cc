@@ -1,6 +1,7 @@
 // datasets: trajectories of named points.
 #include "datasets/formats/point_motion.h"
 
+#include "datasets/files/meant_name.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -13,7 +14,7 @@ Error UnknownPointError(const std::string& path, const std::vector<std::string>&
     message += (i > 0 ? ", " : "") + names[i];
   }
   if (names.size() > kListed) message += ", ... (" + std::to_string(names.size()) + " points)";
-  return {message, path};
+  return {message + MeantText(name, names), path};
 }
 
 }  // namespace pushid

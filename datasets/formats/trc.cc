@@ -122,14 +122,27 @@ class TrcReader {
                                  ", but here is one row more");
       }
       if (MaybeError failed = ReadRow(line)) return failed;
+      NoteMissing(line);
     }
     if (reader_.error()) return reader_.error();
+    if (rows < num_frames_ && missing_) return missing_;
     if (rows < num_frames_) {
       return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
                                ", but the file ends after " + std::to_string(rows) +
                                ": it is truncated, or the count is wrong");
     }
     return CheckRate(rows);
+  }
+
+  // Where Frame# first leaves numbers out.
+  void NoteMissing(std::string_view line) {
+    const long frame =
+        std::strtol(std::string(line.substr(0, line.find('\t'))).c_str(), nullptr, 10);
+    if (!missing_ && last_frame_ > 0 && frame > last_frame_ + 1) {
+      missing_ = reader_.ErrorHere("rows are missing before this one: Frame# goes from " +
+                                   std::to_string(last_frame_) + " to " + std::to_string(frame));
+    }
+    last_frame_ = frame;
   }
 
   // Times may be rounded to a millisecond.
@@ -212,6 +225,8 @@ class TrcReader {
   LineReader reader_;
   PointMotion motion_;
   std::int64_t num_frames_ = 0, num_markers_ = 0;
+  long last_frame_ = 0;
+  MaybeError missing_;
   double last_time_s_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> row_;  // x, y, z of every marker
 };

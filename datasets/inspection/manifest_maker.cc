@@ -6,13 +6,15 @@
 #include <set>
 
 #include "datasets/files/found_files.h"
+#include "datasets/files/list_of_names.h"
+#include "datasets/files/meant_name.h"
 #include "datasets/files/name_pattern.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/push_csv.h"
 #include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/manifest_keys.h"
 
 namespace pushid {
 namespace {
@@ -70,6 +72,7 @@ class Maker {
       return Error{"no mass is known of " + names +
                    "; list them in a file with the columns id,mass_kg"};
     }
+    WarnOfUnusedMasses();
     return std::move(made_);
   }
 
@@ -232,9 +235,32 @@ class Maker {
     std::error_code ignored;
     if (path && fs::is_regular_file(fs::path(options_.folder) / *path, ignored)) {
       recording->push_csv = FromManifest(*path);
+      CheckPush((fs::path(options_.folder) / *path).string());
     } else {
       made_.without_push.push_back(recording->id);
     }
+  }
+
+  // A sensor's own record, for one, is no push yet.
+  void CheckPush(const std::string& file) {
+    const auto push = ReadPushCsv(file);
+    if (push.ok()) return;
+    made_.warnings.push_back(push.error().ToString() +
+                             "; a sensor's record becomes a push by pushid-push --sensor");
+  }
+
+  void WarnOfUnusedMasses() {
+    std::set<std::string> used;
+    for (const ManifestRecording& recording : made_.manifest.recordings) {
+      for (const ManifestSubject& subject : recording.subjects) used.insert(subject.id);
+    }
+    std::vector<std::string> unused;
+    for (const auto& [id, mass] : options_.masses) {
+      if (used.count(id) == 0) unused.push_back(id);
+    }
+    if (unused.empty()) return;
+    made_.warnings.push_back("the masses name " + ListOfNames(unused) +
+                             ", whom no recording has: are the ids spelt as in the files' names?");
   }
 
   const ManifestOptions& options_;

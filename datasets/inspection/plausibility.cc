@@ -72,18 +72,23 @@ void PlausibilityCheck::Look(const Recording& recording) {
     }
   }
   LookAtOnset(recording);
+  LookAtFacing(recording);
   for (const RecordedPerson& person : recording.people) {
     LookAtSpeed(recording, person);
-    const double facing = std::fabs(FacingAngle(person));
-    if (facing > kFacesElsewhere) {
-      facing_.cases.push_back(
-          recording.id + ", " +
-          Case(person.subject_id, std::round(facing * 180.0 / M_PI), "degrees off"));
-    }
     const double rod =
         (person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0])).norm();
     if (rod >= kShortRod && rod <= kLongRod) continue;
     rod_.cases.push_back(recording.id + ", " + Case(person.subject_id, rod, "m"));
+  }
+}
+
+void PlausibilityCheck::LookAtFacing(const Recording& recording) {
+  for (const RecordedPerson& person : recording.people) {
+    const double facing = std::fabs(FacingAngle(person));
+    if (facing <= kFacesElsewhere) continue;
+    facing_.cases.push_back(
+        recording.id + ", " +
+        Case(person.subject_id, std::round(facing * 180.0 / M_PI), "degrees off"));
   }
 }
 

@@ -21,6 +21,9 @@ class PlausibilityCheck {
   // than forward; a rod (ankles' midpoint to hip, frame 0) unlike people's.
   void Look(const Recording& recording);
 
+  // The ankles alone: exchanged ones leave everything else plausible.
+  void LookAtFacing(const Recording& recording);
+
   // One sentence a kind: "the push is above 1 kN in 2 recordings (a: 1650 N; b: 1219 N); ...".
   std::vector<std::string> Warnings() const;
 

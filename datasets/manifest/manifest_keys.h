@@ -8,10 +8,6 @@
 
 namespace pushid {
 
-// The known word that another one is most likely a misspelling of; empty where it is known itself
-// or like none of them.
-std::string MeantBy(const std::string& word, const std::vector<std::string>& known);
-
 // Of a recording, known to this program.
 const std::vector<std::string>& ManifestKeys();
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "datasets/files/meant_name.h"
 #include "ident/parameters/parameter_table.h"
 
 namespace pushid {
@@ -25,8 +26,13 @@ bool ParseNumber(const std::string& text, double* value) {
 
 Error UnknownName(const std::string& name, const std::string& flag, const ParameterTable& table) {
   std::string known;
-  for (const ParameterSpec& spec : table.specs) known += (known.empty() ? "" : ", ") + spec.name;
-  return Error{flag + " names '" + name + "', which is no parameter; there are " + known};
+  std::vector<std::string> names;
+  for (const ParameterSpec& spec : table.specs) {
+    known += (known.empty() ? "" : ", ") + spec.name;
+    names.push_back(spec.name);
+  }
+  return Error{flag + " names '" + name + "', which is no parameter" + MeantText(name, names) +
+               "; there are " + known};
 }
 
 // "name" or "name=value": has_value says which.

@@ -78,6 +78,7 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
     }
     if (scheme == FoldScheme::kInterleaved) return InterleavedFolds(recordings, num_folds);
     if (repeats < 1) return Error{"--repeats must be at least 1"};
+    if (num_folds == total) repeats = 1;  // each repeat would leave out the same ones
     return StratifiedFolds(recordings, num_folds, repeats, seed);
   }
   // One fold per subject or setting; one fold of all strong pushes.

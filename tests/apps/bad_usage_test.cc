@@ -115,6 +115,24 @@ TEST_F(BadUsageTest, OutputsThatCannotBeWrittenAreRefusedBeforeTheFit) {
   }
 }
 
+TEST_F(BadUsageTest, OutputsAreWhatTheirNamesSay) {
+  const std::string model = "--model=" + FitModel();
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--push=40",
+                                                 "--svg_out=" + Path("wave.html")}),
+                      {"--svg_out writes .svg", "wave.html ends in .html"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--out=" + Path("m.json")}),
+                      {"there is no flag --out", "did you mean --", "--model_out"}));
+}
+
+TEST_F(BadUsageTest, ExchangedAnklesAreDoubted) {
+  const std::string exchanged = ChangedManifest([](nlohmann::ordered_json& json) {
+    json["recordings"][0]["joints"] = {
+        {"hip", "Hips"}, {"left_ankle", "RightAnkle"}, {"right_ankle", "LeftAnkle"}};
+  });
+  const AppRun run = RunApp("pushid-fit", {exchanged, "--quiet"});
+  EXPECT_TRUE(Contains(run.err, "face elsewhere than forward in 1 case"));
+}
+
 // The file that is read must still be there, byte for byte.
 TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   const std::string model = FitModel();
@@ -220,6 +238,7 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
   const std::string out = "--out=" + Path("out.csv");
   const std::vector<Case> cases = {
       {{"--set=mew=1"}, {"--set", "'mew'"}},
+      {{"--set=Kp_thta=1"}, {"--set", "'Kp_thta'", "is Kp_theta meant?"}},
       {{"--set=mu"}, {"--set", "mu"}},
       {{"--set=mu=fast"}, {"--set", "'mu=fast'"}},
       {{"--set=tail_time=0"}, {"--set", "tail_time = 0"}},

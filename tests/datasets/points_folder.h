@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "datasets/files/numeric_table.h"
@@ -11,6 +12,9 @@
 #include "tests/datasets/recording_folder.h"
 
 namespace pushid {
+
+inline const Eigen::Vector3d kHidden =
+    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 // The recording of the folder as markers instead of joints: the pelvis as four of them around the
 // hip, ankles as LANK and RANK; 20 frames, mm.

@@ -111,6 +111,17 @@ TEST_F(PointFilesTest, BadTrc) {
   EXPECT_TRUE(Contains(ReadTrc(WriteText("e.trc", "")).error().ToString(), "truncated"));
 }
 
+// Told where it is, not at the end of the file.
+TEST_F(PointFilesTest, ATrcWithoutOneOfItsRows) {
+  std::string text = kTrc;
+  const std::size_t second = text.find("\n2\t") + 1;
+  text.erase(second, text.find('\n', second) + 1 - second);
+  const Result<PointMotion> read = ReadTrc(WriteText("bad.trc", text));
+  ASSERT_FALSE(read.ok());
+  EXPECT_TRUE(Contains(read.error().ToString(),
+                       "bad.trc:7: rows are missing before this one: Frame# goes from 1 to 3"));
+}
+
 // Wherever a file is cut, the last row shows it, up to its last number.
 TEST_F(PointFilesTest, CutTrc) {
   const std::string text = kTrc;

@@ -136,9 +136,20 @@ TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
   options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
   const Result<MadeManifest> made = MakeManifest(options_);
   ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_EQ(made.value().warnings.size(), 1u);
+  ASSERT_EQ(made.value().warnings.size(), 2u) << "the masses are of nobody then";
   EXPECT_TRUE(Contains(made.value().warnings[0],
                        "{subjct}, which only tells recordings apart; is {subject}"));
+}
+
+TEST_F(ManifestMakerTest, PushesThatAreNoneAndMassesOfNobodyAreToldOf) {
+  WriteText("data/push/ben_1.csv", "time,force\n0,1\n0.1,90\n");
+  options_.masses["bem"] = 81.0;
+  const Result<MadeManifest> made = MakeManifest(options_);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_EQ(made.value().warnings.size(), 2u);
+  EXPECT_TRUE(Contains(made.value().warnings[0], "push/ben_1.csv:1"));
+  EXPECT_TRUE(Contains(made.value().warnings[0], "pushid-push --sensor"));
+  EXPECT_TRUE(Contains(made.value().warnings[1], "the masses name bem, whom no recording has"));
 }
 
 TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {

@@ -1,15 +1,11 @@
 // Recordings whose motion is a file of points: units, gaps, rates, preparation.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "datasets/loading/load_recordings.h"
 #include "tests/datasets/points_folder.h"
 
 namespace pushid {
 namespace {
-
-const Eigen::Vector3d kHidden = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 using LoadPointSignalsTest = PointsFolderTest;
 

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "datasets/loading/foot_support.h"
 #include "datasets/loading/load_recordings.h"
