@@ -37,7 +37,8 @@ DEFINE_bool(population, false,
             "and the effect of each");
 DEFINE_bool(push_check, false,
             "fit again with pushes that might as well have been recorded: other windows and "
-            "smoothing of inverse dynamics, sensor noise and a frame's shift of measured ones");
+            "smoothing of inverse dynamics, sensor noise, a frame's shift and 0.1 m of height of "
+            "measured ones");
 DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
               "noise of the push's sensor, as a share of the push's peak, for --push_check");
 DEFINE_bool(prior_check, false, "refit with centres and widths of all priors halved, and doubled");

@@ -11,8 +11,9 @@
 namespace pushid {
 namespace {
 
-constexpr int kLonger[] = {-2, 0, 2, 4};  // frames
-constexpr int kShifts[] = {-1, 1};        // frames
+constexpr int kLonger[] = {-2, 0, 2, 4};    // frames
+constexpr int kShifts[] = {-1, 1};          // frames
+constexpr double kHeights[] = {-0.1, 0.1};  // m
 
 bool IsMeasured(const ScenePush& push) { return push.kind == PushKind::kExternal; }
 
@@ -50,6 +51,19 @@ void Shift(int frames, ScenePush* push) {
   if (start < 0)
     rows.erase(rows.begin(), rows.begin() + std::min<long>(-start, static_cast<long>(rows.size())));
   *push = MakeScenePush(push->person, std::max(0, start), push->kind, rows);
+}
+
+// The force as it is, higher or lower on the person.
+void Raise(const PendulumRecording& recording, double metres, ScenePush* push) {
+  const Body& body = recording.scene.people[push->person].body;
+  std::vector<Vector4<double>> rows = push->force;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const Vector4<double>& q = recording.states[push->person][push->start_frame + i].q;
+    const Vector4<double> more =
+        GeneralizedForce<double>(body, q, {rows[i][0], rows[i][1], 0.0}, metres / body.rod_length);
+    rows[i].tail<2>() += more.tail<2>();
+  }
+  *push = MakeScenePush(push->person, push->start_frame, push->kind, rows);
 }
 
 using Change = std::function<MaybeError(const PendulumRecording&, ScenePush*)>;
@@ -90,21 +104,30 @@ MaybeError AddWindows(const std::vector<PendulumRecording>& recordings,
 MaybeError AddSensors(const std::vector<PendulumRecording>& recordings,
                       const PushVariantOptions& options, std::vector<PushVariant>* variants) {
   const auto add = [&](const std::string& source, const std::string& name,
-                       const std::function<void(ScenePush*)>& change) {
-    variants->push_back(
-        Changed(recordings, true, source, name, [&](const PendulumRecording&, ScenePush* push) {
-          change(push);
-          return MaybeError();
-        }).value());
+                       const std::function<void(const PendulumRecording&, ScenePush*)>& change) {
+    variants->push_back(Changed(recordings, true, source, name,
+                                [&](const PendulumRecording& recording, ScenePush* push) {
+                                  change(recording, push);
+                                  return MaybeError();
+                                })
+                            .value());
   };
   Random random(options.seed);
   for (int k = 0; k < options.draws; ++k) {
     add("sensor noise", "draw " + std::to_string(k + 1),
-        [&](ScenePush* push) { AddNoise(options.sensor_noise, &random, push); });
+        [&](const PendulumRecording&, ScenePush* push) {
+          AddNoise(options.sensor_noise, &random, push);
+        });
   }
   for (int frames : kShifts) {
     add("clock", frames < 0 ? "a frame earlier" : "a frame later",
-        [&](ScenePush* push) { Shift(frames, push); });
+        [&](const PendulumRecording&, ScenePush* push) { Shift(frames, push); });
+  }
+  for (double metres : kHeights) {
+    add("contact height", metres < 0.0 ? "0.1 m lower" : "0.1 m higher",
+        [&](const PendulumRecording& recording, ScenePush* push) {
+          Raise(recording, metres, push);
+        });
   }
   return std::nullopt;
 }

@@ -9,8 +9,8 @@
 // recipe itself is from the published push.
 //
 // A measured push (`external`) carries the noise of its sensor, white and as large as
-// `sensor_noise` times the push's peak in every row, and the clocks of sensor and cameras may be a
-// frame apart.
+// `sensor_noise` times the push's peak in every row; the clocks of sensor and cameras may be a
+// frame apart, and the hands 0.1 m higher or lower than was said.
 #pragma once
 
 #include <cstdint>

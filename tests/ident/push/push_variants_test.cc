@@ -79,7 +79,7 @@ TEST(PushVariants, AMeasuredPushHasItsSensorsNoiseAndClock) {
   options.sensor_noise = 0.02;
   options.draws = 40;
   const auto variants = PushVariants(recordings, options).value();
-  ASSERT_EQ(variants.size(), 42u);
+  ASSERT_EQ(variants.size(), 44u);
   const ScenePush& push = recordings[0].scene.pushes[0];
   double peak = 0.0, squares = 0.0;
   for (const Vector4<double>& row : push.force) peak = std::max(peak, std::abs(row[0]));
@@ -98,6 +98,15 @@ TEST(PushVariants, AMeasuredPushHasItsSensorsNoiseAndClock) {
   EXPECT_EQ(earlier.start_frame, 0);
   EXPECT_EQ(earlier.force.size(), push.force.size() - 1);
   EXPECT_EQ(earlier.force.front(), push.force[1]);
+  // Upright, 0.1 m of a lever; the force itself stays.
+  const ScenePush& higher = Named(variants, "0.1 m higher").recordings[0].scene.pushes[0];
+  ASSERT_EQ(higher.force.size(), push.force.size());
+  for (size_t t = 0; t < push.force.size(); ++t) {
+    const double lean = recordings[0].states[0][push.start_frame + t].q[2];
+    EXPECT_EQ(higher.force[t][0], push.force[t][0]);
+    EXPECT_NEAR(higher.force[t][2] - push.force[t][2], 0.1 * push.force[t][0] * std::cos(lean),
+                0.01 * std::abs(push.force[t][0]) + 1e-9);
+  }
 }
 
 TEST(PushVariants, RecordingsWithoutAPushAreNamed) {
