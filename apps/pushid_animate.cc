@@ -5,9 +5,11 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/what_if_flags.h"
+#include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/prediction.h"
 #include "models/self_network.h"
 
@@ -48,6 +50,7 @@ int Run() {
 
   const PendulumRecording pendulum =
       MakePendulumRecording(recordings.value().front(), model.mapping);
+  WarnGrouped(InputWarnings(model, {pendulum}));
   Animation animation;
   animation.title = pendulum.id;
   animation.dt = pendulum.scene.dt;

@@ -9,9 +9,11 @@
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/support/grouped_warnings.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/simlpe_files.h"
+#include "ident/prediction/input_warnings.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
@@ -66,7 +68,7 @@ int Run() {
   const Result<std::optional<BodyEvaluation>> bodies =
       Bodies(flags, model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
-  for (const std::string& warning : ExtrapolationWarnings(model.value(), pendulums)) Warn(warning);
+  WarnGrouped(InputWarnings(model.value(), pendulums));
   const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames());
   std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, flags.per_recording).c_str());

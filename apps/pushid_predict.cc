@@ -8,8 +8,10 @@
 #include "apps/flags/predict_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/predict_bodies.h"
+#include "apps/support/grouped_warnings.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/results/model_rollout.h"
@@ -47,9 +49,7 @@ int Run() {
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.value().mapping);
 
-  for (const std::string& warning : ExtrapolationWarnings(model.value(), {recording})) {
-    Warn(warning);
-  }
+  WarnGrouped(InputWarnings(model.value(), {recording}));
   if (MaybeError error = CheckObservedFlag({recording}, model.value())) return Fail(*error);
   if (!flags.whole_recording() && flags.frames <= ObservedFrames()) {
     return Fail("--frames=" + std::to_string(flags.frames) + " leaves none to predict after " +

@@ -10,6 +10,7 @@
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/simulate_formation_bodies.h"
+#include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/recording_warnings.h"
@@ -17,6 +18,8 @@
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_pictures.h"
 #include "ident/formations/formation_run.h"
+#include "ident/formations/wave_speed.h"
+#include "ident/prediction/input_warnings.h"
 #include "ident/results/result_json.h"
 #include "models/self_network.h"
 
@@ -92,31 +95,33 @@ std::string WhyNoSpeed(const Scene& scene) {
   return pushes > 1 ? "; no speed: there are several pushes" : "";
 }
 
-// How fast the onset went from the first person who moved to the foremost one who did.
-void PrintWave(const FormationRun& run) {
-  int first = -1, foremost = -1, moved = 0;
-  for (int n = 0; n < run.num_people(); ++n) {
-    const int onset = run.summaries[n].onset_frame;
-    if (onset < 0) continue;
-    ++moved;
-    if (first < 0 || onset < run.summaries[first].onset_frame) first = n;
-    foremost = n;  // people are numbered forwards
+// Beyond these the draws behind an interval take longer than the simulation should.
+constexpr int kMostPeopleForBands = 60;
+
+std::string SpeedText(const WaveSpeed& wave, const SpeedBand& band) {
+  std::string text = "; from person " + std::to_string(wave.from) + " to " +
+                     std::to_string(wave.to) + " the onset went " + Rounded(wave.metres, 3) +
+                     " m in " + Rounded(wave.seconds, 3) +
+                     " s: " + Rounded(wave.MetresPerSecond(), 3) + " m/s";
+  if (band.share > 0.0) {
+    text += " (90 % of what the parameters leave open: " + Rounded(band.from, 3) + " to " +
+            Rounded(band.to, 3) + ")";
   }
-  std::printf("%d of %d people moved by 2 cm or more", moved, run.num_people());
-  const std::string no_speed = moved > 1 ? WhyNoSpeed(run.recording.scene) : "";
-  std::printf("%s", no_speed.c_str());
-  if (moved > 1 && no_speed.empty()) {
-    const auto& people = run.recording.scene.people;
-    const double metres = people[foremost].start.q[0] - people[first].start.q[0];
-    const double seconds =
-        run.Seconds(run.summaries[foremost].onset_frame - run.summaries[first].onset_frame);
-    if (metres > 0.0 && seconds > 0.0) {
-      std::printf("; from person %d to %d the onset went %s m in %s s: %s m/s", first, foremost,
-                  Rounded(metres, 3).c_str(), Rounded(seconds, 3).c_str(),
-                  Rounded(metres / seconds, 3).c_str());
-    }
+  return text;
+}
+
+void PrintWave(const FormationRun& run, const WaveBands& bands, bool as_setting) {
+  const auto moved =
+      std::count_if(run.summaries.begin(), run.summaries.end(),
+                    [](const PersonSummary& person) { return person.onset_frame >= 0; });
+  std::string text = std::to_string(moved) + " of " + std::to_string(run.num_people()) +
+                     " people moved by 2 cm or more";
+  if (moved > 1) text += WhyNoSpeed(run.recording.scene);
+  if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands.speed);
+  std::printf("%s\n", text.c_str());
+  if (as_setting) {
+    std::printf("no intervals: a model does not hold how sure the values of one setting are\n");
   }
-  std::printf("\n");
 }
 
 // Steps much longer than those of the recordings make stiff contact unstable.
@@ -181,25 +186,19 @@ int SimulateFormation() {
   if (!bodies.ok()) return Fail(bodies.error());
   if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);
-  if (!model.value().options.interaction.Any() && scene.num_people() > 1) {
-    Warn(model.value().source +
-         " was fitted without interaction: people will not touch; fit one with "
-         "pushid-fit --setting=groups --interaction=contact");
-  }
   const FormationRun run =
       RunFormation(model.value(), scene, flags.value().frames, flags.value().names);
-  for (const std::string& warning : ExtrapolationWarnings(model.value(), {run.recording})) {
-    Warn(warning);
-  }
+  WarnGrouped(InputWarnings(model.value(), {run.recording}));
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
   const ModelFlags named = ModelFlagsFromCommandLine();
   const Result<FittedModel> fitted = ReadFittedModel(named.file);
   if (!fitted.ok()) return Fail(fitted.error());
   // What a setting's own parameters leave open is no part of a model.
-  const bool banded = !outputs.value().svg_out.empty() && flags.value().as_setting.empty();
-  const std::vector<OnsetBand> onsets =
-      banded ? OnsetBands(fitted.value(), named.set, run) : std::vector<OnsetBand>();
-  MaybeError error = WriteOutputs(outputs.value(), run, onsets, title);
+  const bool as_setting = !flags.value().as_setting.empty();
+  const bool banded = !as_setting && (!outputs.value().svg_out.empty() ||
+                                      scene.num_people() <= kMostPeopleForBands);
+  const WaveBands bands = banded ? BandsOfWave(fitted.value(), named.set, run) : WaveBands();
+  MaybeError error = WriteOutputs(outputs.value(), run, bands.onsets, title);
   if (!error && bodies.value()) {
     error = WriteFormationBodies(body_flags.value(), *bodies.value(), run, title);
   }
@@ -209,7 +208,7 @@ int SimulateFormation() {
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.value().names.empty());
-  PrintWave(run);
+  PrintWave(run, bands, as_setting);
   PrintFitWarnings(fitted.value());
   return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
 }

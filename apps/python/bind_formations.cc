@@ -3,7 +3,8 @@
 
 #include "apps/python/predicted.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/onset_bands.h"
+#include "ident/formations/wave_bands.h"
+#include "ident/formations/wave_speed.h"
 #include "ident/prediction/most_probable_path.h"
 #include "models/formation.h"
 
@@ -44,7 +45,7 @@ py::object SecondsOr(bool known, double seconds) {
 }
 
 // What the picture of a wave shows, and the table beside it.
-void AddSummaries(const FormationRun& run, const std::vector<OnsetBand>& bands, py::dict* dict) {
+void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
   Array speed({run.num_frames(), run.num_people()});
   auto cells = speed.mutable_unchecked<2>();
   py::list onset, displacement, outcome, onset_band;
@@ -54,17 +55,22 @@ void AddSummaries(const FormationRun& run, const std::vector<OnsetBand>& bands, 
     onset.append(SecondsOr(person.onset_frame >= 0, run.Seconds(person.onset_frame)));
     displacement.append(person.displacement);
     outcome.append(std::string(Name(person.outcome)));
-    if (bands.empty()) continue;
-    const bool moves = bands[n].moved > 0.0;
-    onset_band.append(moves ? py::object(py::make_tuple(bands[n].from, bands[n].to))
-                            : py::object(py::none()));
+    if (waves.onsets.empty()) continue;
+    const OnsetBand& band = waves.onsets[n];
+    onset_band.append(band.moved > 0.0 ? py::object(py::make_tuple(band.from, band.to))
+                                       : py::object(py::none()));
   }
   speed.attr("flags").attr("writeable") = false;
   (*dict)["speed"] = speed;
   (*dict)["onset_s"] = onset;
   (*dict)["displacement"] = displacement;
   (*dict)["outcome"] = outcome;
-  if (!bands.empty()) (*dict)["onset_band90"] = onset_band;
+  const std::optional<WaveSpeed> wave = SpeedOfWave(run);
+  (*dict)["wave_speed"] = wave ? py::object(py::float_(wave->MetresPerSecond())) : py::none();
+  if (!waves.onsets.empty()) (*dict)["onset_band90"] = onset_band;
+  if (waves.speed.share > 0.0) {
+    (*dict)["wave_speed_band90"] = py::make_tuple(waves.speed.from, waves.speed.to);
+  }
   (*dict)["fps"] = 1.0 / run.recording.scene.dt;
 }
 
@@ -74,22 +80,17 @@ py::dict OnFormation(const Model& model, const std::string& shape, int people, d
   const Scene scene =
       SceneOf({shape, people, pushed, spacing, push, push_duration, mass, rod, duration, fps});
   const IdentifiedModel identified = With(model, set);
-  if (!identified.options.interaction.Any() && people > 1) {
-    Warn(
-        "the model was fitted without interaction: people will not touch; fit recordings of "
-        "groups with interaction='contact'");
-  }
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   FormationRun run;
-  std::vector<OnsetBand> onsets;
+  WaveBands waves;
   {
     const py::gil_scoped_release no_gil;
     run = RunFormation(identified, scene, static_cast<int>(duration * fps) + 1);
-    if (bands && run.prediction.status.ok) onsets = OnsetBands(*fitted, set, run);
+    if (bands && run.prediction.status.ok) waves = BandsOfWave(*fitted, set, run);
   }
-  WarnOfExtrapolation(identified, run.recording);
+  WarnOfInputs(identified, run.recording);
   py::dict dict = DictOf(run.prediction, run.recording);
-  AddSummaries(run, onsets, &dict);
+  AddSummaries(run, waves, &dict);
   return dict;
 }
 

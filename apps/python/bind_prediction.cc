@@ -5,9 +5,9 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/prediction/futures.h"
+#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predictive_bands.h"
-#include "ident/results/push_range.h"
 
 namespace pushid {
 
@@ -44,8 +44,8 @@ IdentifiedModel With(const Model& model, const std::string& set) {
   return identified;
 }
 
-void WarnOfExtrapolation(const IdentifiedModel& model, const PendulumRecording& recording) {
-  for (const std::string& warning : ExtrapolationWarnings(model, {recording})) Warn(warning);
+void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording) {
+  for (const std::string& warning : InputWarnings(model, {recording})) Warn(warning);
 }
 
 namespace {
@@ -119,7 +119,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
     Raise(Fault::kUsage, Error{"samples draw the parameters, which set=... holds; give one of "
                                "them, or observed=... too"});
   }
-  WarnOfExtrapolation(identified, seen);
+  WarnOfInputs(identified, seen);
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames), Fault::kUsage), seen);
   if (samples > 0) {

@@ -16,6 +16,6 @@ py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording
 IdentifiedModel With(const Model& model, const std::string& set);
 
 // Warns of pushes beyond those that the model was fitted to.
-void WarnOfExtrapolation(const IdentifiedModel& model, const PendulumRecording& recording);
+void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording);
 
 }  // namespace pushid

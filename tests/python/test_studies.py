@@ -109,6 +109,7 @@ def test_formations(result):
     assert len(line["onset_s"]) == 4 and line["onset_s"][0] is not None
     low, high = line["onset_band90"][0]
     assert low <= high and line["fps"] == 60.0
+    assert line["wave_speed"] is None or line["wave_speed"] > 0.0
     for wrong in (dict(shape="circle"), dict(people=0), dict(spacing=-1.0), dict(set={"nu": 1})):
         with pytest.raises(pushid.UsageError):
             pushid.simulate_formation(result, **{"shape": "line", "people": 4, **wrong})

@@ -33,8 +33,10 @@ def pushes():
             outcomes = [re.split(r"\s{2,}", line[header.index("outcome"):])[0] for line in lines
                         if line[:7].strip().isdigit()]
             counts = [f"{outcomes.count(o)} {o}" for o in sorted(set(outcomes))]
-            rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), wave.split(": ")[-1] or "none"])
-    return studies.table(["parameters of", "push, N s", "people moved by 2 cm", "outcome", "speed of the onset"], rows)
+            speed = re.search(r"s: ([\d.]+ m/s)(?: \(.*: (.*)\))?", wave)
+            told = "none" if not speed else speed[1] + (f" ({speed[2]})" if speed[2] else "")
+            rows.append([setting or "shared", push, moved.split()[0], ", ".join(counts), told])
+    return studies.table(["parameters of", "push, N s", "people moved by 2 cm", "outcome", "speed of the onset (90 %)"], rows)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,8 @@ class Formation(dict):
     """People who stand together after a push; plot() draws the wave.
 
     "hip" (frames, people, 3), "states" (frames, people, 8), "speed" (frames, people), in m/s, negative backwards,
-    "onset_s" (None: never), "displacement" (m along x), "outcome", "fps", and "onset_band90" if asked for.
+    "onset_s" (None: never), "displacement" (m along x), "outcome", "fps", "wave_speed" (m/s, from the first who moves
+    to the foremost; None: there is none), and "onset_band90" and "wave_speed_band90" if asked for.
     """
 
     def plot(self, **options):

@@ -137,7 +137,7 @@ TEST(FormationPictures, ColoursSayWhenTheySaturate) {
 
 TEST(FormationPictures, OnsetsHaveBandsWhereTheModelKnowsItsErrors) {
   const FormationRun run = RunShape(FormationShape::kLine, 2, {0});
-  EXPECT_TRUE(OnsetBands(FittedModel(), "", run).empty()) << "no covariance, no bootstrap";
+  EXPECT_TRUE(BandsOfWave(FittedModel(), "", run).onsets.empty()) << "no covariance, no bootstrap";
   EXPECT_FALSE(Has(WaveSvg(run, "line"), "parameters leave open"));
   const std::string banded = WaveSvg(run, "line", {{0.1, 0.2, 1.0}, {0.0, 0.0, 0.0}});
   EXPECT_TRUE(Has(banded, "parameters leave open"));

@@ -1,0 +1,70 @@
+// ident: waves under drawn parameters.
+#include "ident/formations/wave_bands.h"
+
+#include "ident/formations/wave_speed.h"
+#include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/propagation.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kDraws = 60;
+constexpr double kLower = 0.05, kUpper = 0.95;
+
+// Onset frames of everybody, one list a draw whose rollout stays in the model's domain.
+std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
+                                          const FormationRun& run) {
+  const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
+  if (!replicas && model.fit.uncertainty.covariance.size() == 0) return {};
+  BandOptions options;
+  options.samples = kDraws;
+  if (replicas) options.bootstrap = &*model.bootstrap;
+  const auto draws = SampleParameters(model.fit, options);
+  if (!draws.ok()) return {};
+  IdentifiedModel drawn = ModelOf(model.fit);
+  drawn.by_unit.clear();  // no person of a formation is one of the fit
+  std::vector<std::vector<int>> onsets;
+  for (const ParameterSet<double>& draw : draws.value()) {
+    drawn.parameters = draw;
+    if (SetValues(set, &drawn)) return {};
+    const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
+    if (!prediction.status.ok) continue;
+    onsets.emplace_back();
+    for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
+  }
+  return onsets;
+}
+
+OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double dt) {
+  std::vector<double> seconds;
+  for (const std::vector<int>& onsets : draws) {
+    if (onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
+  }
+  if (seconds.empty()) return {};
+  return {Quantile(seconds, kLower), Quantile(seconds, kUpper),
+          static_cast<double>(seconds.size()) / static_cast<double>(draws.size())};
+}
+
+SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& scene) {
+  std::vector<double> speeds;
+  for (const std::vector<int>& onsets : draws) {
+    if (const auto wave = SpeedOfWave(scene, onsets)) speeds.push_back(wave->MetresPerSecond());
+  }
+  if (speeds.empty()) return {};
+  return {Quantile(speeds, kLower), Quantile(speeds, kUpper),
+          static_cast<double>(speeds.size()) / static_cast<double>(draws.size())};
+}
+
+}  // namespace
+
+WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
+  const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
+  WaveBands bands;
+  if (draws.empty()) return bands;
+  const Scene& scene = run.recording.scene;
+  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
+  bands.speed = BandOfSpeed(draws, scene);
+  return bands;
+}
+
+}  // namespace pushid

@@ -1,0 +1,36 @@
+// ident: how sure the wave of a formation is.
+//
+// The formation is rolled out with parameters drawn anew, from the bootstrap's replicas where the
+// model has them and else from its covariance (prediction/predictive_bands.h); bands are the
+// central 90 %. They hold what the parameters leave open, not how people with the same parameters
+// differ.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/formations/formation_run.h"
+#include "ident/results/fitted_model.h"
+
+namespace pushid {
+
+struct OnsetBand {
+  double from = 0.0, to = 0.0;  // s
+  double moved = 0.0;           // share of the draws in which this person moves; 0: no band
+};
+
+struct SpeedBand {
+  double from = 0.0, to = 0.0;  // m/s, of SpeedOfWave in each draw
+  double share = 0.0;           // of the draws that have a speed; 0: no band
+};
+
+struct WaveBands {
+  std::vector<OnsetBand> onsets;  // of each person; empty: the model says nothing of its errors
+  SpeedBand speed;
+};
+
+// Empty where the model has neither covariance nor bootstrap. set: what --set replaces in every
+// draw.
+WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run);
+
+}  // namespace pushid
