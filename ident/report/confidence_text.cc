@@ -62,9 +62,9 @@ std::string RecordingsText(const Diagnostics& d) {
   std::sort(worst.begin(), worst.end(),
             [](const auto* a, const auto* b) { return a->explained < b->explained; });
   if (worst.size() > kWorstRecordings) worst.resize(kWorstRecordings);
-  TextTable table(
-      {"explained least", "% of motion", "cost", "outlier frames", "without it moves (std errors)"},
-      {true, false, false, false, true});
+  TextTable table({"explained least", "% of motion", "cost", "frames that hardly count",
+                   "without it moves (std errors)"},
+                  {true, false, false, false, true});
   for (const RecordingDiagnostics* r : worst) {
     table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3),
                std::to_string(r->outliers.size()), LargestMove(d.leverage, r->id)});

@@ -25,11 +25,6 @@ std::string MeanText(const PropagationMean& mean) {
   return mean.error > 0.0 ? value + " +- " + Rounded(mean.error, 2) : value;
 }
 
-std::string SpeedText(const PropagationMean& slowness) {
-  const std::optional<PropagationMean> speed = Speed(slowness);
-  return speed ? MeanText(*speed) : (slowness.known() ? "undefined" : "-");
-}
-
 // The onset errors of those who move in both say little where most movers are missed: a model that
 // moves only the pushed person would look best.
 bool MostMissed(const PropagationSummary& s) { return s.missed_movers > 0.5 * s.movers; }
@@ -76,7 +71,12 @@ Json PeopleJson(const PropagationScore& score) {
   return json;
 }
 
-std::string PropagationText(const std::vector<PropagationColumn>& columns) {
+std::string SpeedText(const PropagationMean& slowness) {
+  const std::optional<PropagationMean> speed = Speed(slowness);
+  return speed ? MeanText(*speed) : (slowness.known() ? "undefined" : "-");
+}
+
+TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
   std::vector<std::string> header = {"propagation"};
   for (const PropagationColumn& column : columns) header.push_back(column.name);
   TextTable table(header, std::vector<bool>(header.size(), true));
@@ -100,7 +100,11 @@ std::string PropagationText(const std::vector<PropagationColumn>& columns) {
       row("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });
     }
   }
-  std::string text = table.ToString();
+  return table;
+}
+
+std::string PropagationText(const std::vector<PropagationColumn>& columns) {
+  const std::string text = PropagationTable(columns).ToString();
   for (const PropagationColumn& column : columns) {
     if (!MostMissed(*column.summary)) continue;
     return text + "onset error -: most movers are missed; see the row that counts them\n";

@@ -14,7 +14,10 @@ struct PropagationColumn {
   std::string name;
   const PropagationSummary* summary;
 };
+TextTable PropagationTable(const std::vector<PropagationColumn>& columns);
 std::string PropagationText(const std::vector<PropagationColumn>& columns);
+// "3.2 +- 0.3", "-" where nothing is known, "undefined" where all begin at once.
+std::string SpeedText(const PropagationMean& slowness);
 // Onset error, missed and false movers of one fold.
 std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary);
 // A line per recording of several people.

@@ -1,6 +1,7 @@
 // ident: Brier score, AUC and calibration for readers.
 #include "ident/validation/step_score_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
@@ -10,6 +11,8 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr int kFewForAuc = 3;
 
 std::string WithError(double value, double error) {
   return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
@@ -75,7 +78,11 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
   add("tracks with a step / tracks", [](const StepScore& s) {
     return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
   });
-  add("AUC", [](const StepScore& s) { return WithError(s.auc, s.auc_error); });
+  // Of one who steps, or one who does not, it says who stands where, no more.
+  add("AUC", [](const StepScore& s) {
+    return std::min(s.stepped, s.tracks - s.stepped) < kFewForAuc ? std::string("- (too few)")
+                                                                  : WithError(s.auc, s.auc_error);
+  });
   add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
   for (size_t i = 0; i < fifths; ++i) {
     const std::string title = "group " + std::to_string(i + 1) + " by P(step): mean -> share";

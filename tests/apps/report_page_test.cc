@@ -65,7 +65,7 @@ TEST_F(ReportPage, NumbersBehindEveryPlot) {
   const AppRun run = RunApp(
       "pushid-report", {"--model=" + model, Recordings(), "--text", "--csv_dir=" + Path("csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  for (const char* heading : {"Summary\n=======", "Profile likelihood", "What to record next",
+  for (const char* heading : {"What was fitted\n===============", "Profile likelihood", "What to record next",
                               "Measured and predicted motion"}) {
     EXPECT_TRUE(Contains(run.out, heading));
   }

@@ -47,7 +47,8 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
       model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);
-  report.sections = {LeadSection(model),
+  const PropagationSummary propagation = PropagationOf(result, views);
+  report.sections = {LeadSection(model, propagation),
                      SummarySection(model),
                      ParameterSection(model),
                      UnitSection(model),
@@ -60,7 +61,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
                      BehaviourSection(model),
                      PopulationSection(model),
                      StepSection(model, views),
-                     GroupSection(views),
+                     GroupSection(views, propagation),
                      FigureSection(views),
                      MotionSection(views),
                      VisualCheckSection(model, views),
@@ -69,6 +70,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
                      ResidualSection(model),
                      SolveSection(model),
                      DesignSection(DesignOf(result, views)),
+                     AdviceSection(model),
                      ProvenanceSection(model)};
   return report;
 }

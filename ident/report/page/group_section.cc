@@ -2,6 +2,7 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/report/page/sections.h"
+#include "ident/validation/scores_text.h"
 
 namespace pushid {
 namespace {
@@ -30,7 +31,8 @@ ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
 
 }  // namespace
 
-ReportSection GroupSection(const std::vector<RecordingView>& views) {
+ReportSection GroupSection(const std::vector<RecordingView>& views,
+                           const PropagationSummary& propagation) {
   ReportSection section{"groups", "What groups do", {}, {}, {}, {}, {}, ""};
   const ShownGroups groups = GroupsOf(views);
   const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
@@ -45,6 +47,9 @@ ReportSection GroupSection(const std::vector<RecordingView>& views) {
   section.tables.push_back(
       {"the recordings shown here; pushid-crossvalidate judges by what was not fitted",
        GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
+  section.tables.push_back(
+      {"how the push travels through them, +- a standard error over recordings",
+       PropagationTable({{"predicted and measured", &propagation}})});
   return section;
 }
 

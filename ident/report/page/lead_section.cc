@@ -6,14 +6,20 @@
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/page/sections.h"
 #include "ident/uncertainty/few_clusters.h"
+#include "ident/validation/scores_text.h"
 
 namespace pushid {
 namespace {
 
 constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
 
+// "mu = 31.3 N s/m (20 to 42)"; the interval where there is one.
 std::string ValueText(const Estimate& e) {
-  return e.name + " = " + Rounded(e.value, 4) + (e.unit == "1" ? "" : " " + e.unit);
+  std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
+  if (e.lower95 < e.upper95) {
+    text += " (" + Rounded(e.lower95, 3) + " to " + Rounded(e.upper95, 3) + ")";
+  }
+  return text;
 }
 
 std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
@@ -24,10 +30,10 @@ std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status
   return found;
 }
 
-std::string Names(const std::vector<const Estimate*>& estimates, bool values) {
+std::string Listed(const std::vector<const Estimate*>& estimates) {
   std::string text;
   for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
-    text += (i > 0 ? ", " : "") + (values ? ValueText(*estimates[i]) : estimates[i]->name);
+    text += (i > 0 ? ", " : "") + ValueText(*estimates[i]);
   }
   const size_t more = estimates.size() - std::min(kNamed, estimates.size());
   return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
@@ -38,7 +44,7 @@ std::string Known(const FitResult& result) {
   const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
   return "What is known: " +
          (known.empty() ? "no parameter is decided by these recordings alone"
-                        : "these recordings decide " + Names(known, true)) +
+                        : "these recordings decide " + Listed(known)) +
          "; " + VerdictSentence(verdict, result.behaviour) + ".";
 }
 
@@ -46,7 +52,7 @@ std::string NotKnown(const FitResult& result) {
   std::string text;
   const auto add = [&](EstimateStatus status, const std::string& words) {
     const std::vector<const Estimate*> found = With(result, status);
-    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Names(found, false);
+    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
   };
   add(EstimateStatus::kUnidentifiable, "not told by these recordings at all: ");
   add(EstimateStatus::kAtBound, "ended at a bound: ");
@@ -59,6 +65,23 @@ std::string NotKnown(const FitResult& result) {
             " every interval is a rough guess";
   }
   return "What is not: " + (text.empty() ? "nothing of what was asked" : text) + ".";
+}
+
+// Of groups: what was measured and what the model makes of it.
+std::string Travels(const PropagationSummary& p) {
+  if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
+  std::string text = "How the push travels: in " + std::to_string(p.recordings) +
+                     " recordings the onset of motion went through the people at " +
+                     SpeedText(p.figures[kSlownessMeasured]) +
+                     " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";
+  const PropagationMean &measured = p.figures[kMomentumMeasured],
+                        &predicted = p.figures[kMomentumPredicted];
+  if (measured.known() && predicted.known()) {
+    text += "; each person had " + Rounded(measured.value, 2) +
+            " of the momentum of the one before (predicted: " + Rounded(predicted.value, 2) + ")";
+  }
+  return text + "; of " + Rounded(p.movers, 4) + " who moved the model misses " +
+         Rounded(p.missed_movers, 4) + ".";
 }
 
 std::string Next(const FittedModel& model) {
@@ -79,9 +102,13 @@ TextTable Legend(const FitResult& result) {
 
 }  // namespace
 
-ReportSection LeadSection(const FittedModel& model) {
+ReportSection LeadSection(const FittedModel& model, const PropagationSummary& propagation) {
   ReportSection section{"short", "In short", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {Known(model.fit), NotKnown(model.fit), Next(model)};
+  section.paragraphs = {Known(model.fit) + " In brackets: 95 % intervals.", NotKnown(model.fit)};
+  if (const std::string travels = Travels(propagation); !travels.empty()) {
+    section.paragraphs.push_back(travels);
+  }
+  section.paragraphs.push_back(Next(model));
   section.tables.push_back({"the parameters that were fitted", Legend(model.fit)});
   return section;
 }

@@ -39,8 +39,8 @@ std::string FigureHtml(const ReportFigure& figure) {
 }
 
 bool IsEmpty(const ReportSection& s) {
-  return s.paragraphs.empty() && s.tables.empty() && s.figures.empty() && s.folds.empty() &&
-         s.widget.empty();
+  return s.paragraphs.empty() && s.advice.empty() && s.tables.empty() && s.figures.empty() &&
+         s.folds.empty() && s.widget.empty();
 }
 
 // Lines that belong together stay one paragraph.
@@ -60,7 +60,7 @@ std::string SectionHtml(const ReportSection& section) {
   std::string html = "<section id=\"" + section.id + "\">\n" + Element("h2", section.title);
   for (const std::string& text : section.paragraphs) html += Paragraph(text);
   for (const auto& [sentence, command] : section.advice) {
-    html += Paragraph("Advice: " + sentence);
+    html += Paragraph(sentence);
     if (!command.empty()) html += "<pre>" + EscapeXml(command) + "</pre>\n";
   }
   html += section.widget;

@@ -57,4 +57,18 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
   return views;
 }
 
+PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views) {
+  const IdentifiedModel model = ModelOf(result);
+  std::vector<PropagationScore> scores;
+  for (const RecordingView& view : views) {
+    const FormationRun& run = view.run;
+    if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
+    scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
+    AddContactFigures(model, run.recording, run.prediction, &scores.back());
+  }
+  std::vector<const PropagationScore*> all;
+  for (const PropagationScore& score : scores) all.push_back(&score);
+  return SummarizePropagation(all);
+}
+
 }  // namespace pushid

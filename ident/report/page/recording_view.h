@@ -8,6 +8,7 @@
 #include "datasets/manifest/recording.h"
 #include "ident/formations/formation_run.h"
 #include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/propagation.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -23,5 +24,8 @@ struct RecordingView {
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
                                           const std::vector<Recording>& recordings, int num_threads,
                                           const JobProgress& progress = nullptr);
+
+// Of those of several people that the model predicts.
+PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views);
 
 }  // namespace pushid

@@ -11,7 +11,7 @@
 
 namespace pushid {
 
-ReportSection LeadSection(const FittedModel& model);
+ReportSection LeadSection(const FittedModel& model, const PropagationSummary& propagation);
 ReportSection SummarySection(const FittedModel& model);
 ReportSection ParameterSection(const FittedModel& model);
 ReportSection UnitSection(const FittedModel& model);  // subjects or settings that differ
@@ -30,9 +30,11 @@ ReportSection ResidualSection(const FittedModel& model);
 ReportSection SolveSection(const FittedModel& model);
 ReportSection MotionSection(const std::vector<RecordingView>& views);
 ReportSection StepSection(const FittedModel& model, const std::vector<RecordingView>& views);
-ReportSection GroupSection(const std::vector<RecordingView>& views);
+ReportSection GroupSection(const std::vector<RecordingView>& views,
+                           const PropagationSummary& propagation);
 ReportSection FigureSection(const std::vector<RecordingView>& views);
 ReportSection DesignSection(const ExperimentDesign& design);
+ReportSection AdviceSection(const FittedModel& model);
 ReportSection ProvenanceSection(const FittedModel& model);
 
 }  // namespace pushid

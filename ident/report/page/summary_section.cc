@@ -32,7 +32,7 @@ double MeanExplained(const FitResult& result) {
 
 ReportSection SummarySection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"summary", "Summary", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"summary", "What was fitted", {}, {}, {}, {}, {}, ""};
   section.paragraphs.push_back(VerdictText(result));
   const FitOptions& o = result.options;
   TextTable facts({"what", "value"}, {true, true});
@@ -62,6 +62,11 @@ ReportSection SummarySection(const FittedModel& model) {
   for (const std::string& warning : GroupedWarnings(result.diagnostics.start.unit_warnings)) {
     section.paragraphs.push_back("Units? " + warning);
   }
+  return section;
+}
+
+ReportSection AdviceSection(const FittedModel& model) {
+  ReportSection section{"advice", "What to try next", {}, {}, {}, {}, {}, ""};
   for (const Advice& advice : model.advice) {
     section.advice.emplace_back(advice.sentence, advice.command);
   }

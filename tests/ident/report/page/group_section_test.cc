@@ -50,9 +50,9 @@ RecordingView Seen(const Recording& recording) {
 
 TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
   const Recording group = Walkers(3), alone = Walkers(1);
-  EXPECT_TRUE(GroupSection({Seen(alone)}).tables.empty());
-  const ReportSection section = GroupSection({Seen(alone), Seen(group)});
-  ASSERT_EQ(section.tables.size(), 1u);
+  EXPECT_TRUE(GroupSection({Seen(alone)}, {}).tables.empty());
+  const ReportSection section = GroupSection({Seen(alone), Seen(group)}, {});
+  ASSERT_EQ(section.tables.size(), 2u) << "what they do, how the push travels";
   const auto& rows = section.tables[0].table.rows();
   ASSERT_EQ(rows.size(), 3u);
   // SSCP, changes, NDMS, pushed named, order, error, false and missed movers.
@@ -67,8 +67,8 @@ TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
 TEST(GroupSectionTest, WithoutBodiesOnsetsAreLeft) {
   Recording group = Walkers(2);
   for (RecordedPerson& person : group.people) person.roles = {};
-  const ReportSection section = GroupSection({Seen(group)});
-  ASSERT_EQ(section.tables.size(), 1u);
+  const ReportSection section = GroupSection({Seen(group)}, {});
+  ASSERT_EQ(section.tables.size(), 2u) << "what they do, how the push travels";
   EXPECT_EQ(section.tables[0].table.rows()[1][1], "none");
   EXPECT_EQ(section.tables[0].table.rows()[1][4], "1 of 1");
   EXPECT_TRUE(Contains(section.paragraphs[0], "no whole bodies"));
@@ -79,7 +79,7 @@ TEST(GroupSectionTest, APredictionThatFailedIsLeftOut) {
   RecordingView failed = Seen(group);
   failed.run.prediction.status.ok = false;
   failed.run.prediction.hip.clear();
-  EXPECT_TRUE(GroupSection({failed}).tables.empty());
+  EXPECT_TRUE(GroupSection({failed}, {}).tables.empty());
 }
 
 }  // namespace

@@ -22,20 +22,36 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
                          EstimateOf("Kp_x", 0.0, EstimateStatus::kFixed),
                          EstimateOf("a_x", -10.0, EstimateStatus::kPriorHeld),
                          EstimateOf("a_y", -9.0, EstimateStatus::kWeak)};
+  model.fit.estimates[0].lower95 = 20.0;
+  model.fit.estimates[0].upper95 = 42.0;
   model.fit.behaviour.settles = true;
   model.fit.uncertainty.clustered = true;
   model.fit.uncertainty.num_clusters = 4;
   model.fit.uncertainty.clustered_by = ClusterBy::kSubject;
   model.advice = {{"Record more people.", "pushid-fit"}};
-  const ReportSection section = LeadSection(model);
+  const ReportSection section = LeadSection(model, {});
   ASSERT_EQ(section.paragraphs.size(), 3u);
-  EXPECT_TRUE(
-      Contains(section.paragraphs[0], "What is known: these recordings decide mu = 31.25 N s/m"));
+  EXPECT_TRUE(Contains(section.paragraphs[0],
+                       "What is known: these recordings decide mu = 31.2 N s/m (20 to 42)"));
   EXPECT_TRUE(Contains(section.paragraphs[0], "the fitted person settles within 2 s"));
   EXPECT_EQ(section.paragraphs[1],
-            "What is not: decided more by what was put in than by the recordings: a_x; with wide "
-            "intervals: a_y; with 4 people every interval is a rough guess.");
+            "What is not: decided more by what was put in than by the recordings: a_x = -10 N s/m; "
+            "with wide intervals: a_y = -9 N s/m; with 4 people every interval is a rough guess.");
   EXPECT_EQ(section.paragraphs[2], "What to do next: Record more people.");
+}
+
+TEST(LeadSection, SaysHowThePushTravels) {
+  PropagationSummary travels;
+  travels.recordings = 3;
+  travels.movers = 9.0;
+  travels.missed_movers = 2.0;
+  travels.figures[kSlownessMeasured] = {0.5, 0.1, 9.0};
+  travels.figures[kSlownessPredicted] = {0.25, 0.0, 9.0};
+  const ReportSection section = LeadSection(FittedModel(), travels);
+  ASSERT_EQ(section.paragraphs.size(), 4u);
+  EXPECT_EQ(section.paragraphs[2],
+            "How the push travels: in 3 recordings the onset of motion went through the people at "
+            "2 +- 0.4 m/s (predicted: 4); of 9 who moved the model misses 2.");
 }
 
 TEST(LeadSection, ManyNamesAreCounted) {
@@ -43,8 +59,9 @@ TEST(LeadSection, ManyNamesAreCounted) {
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
     model.fit.estimates.push_back(EstimateOf(name, 1.0, EstimateStatus::kWeak));
   }
-  EXPECT_TRUE(Contains(LeadSection(model).paragraphs[1], "wide intervals: a, b, c, d and 2 more"));
-  EXPECT_TRUE(Contains(LeadSection(model).paragraphs[0], "no parameter is decided"));
+  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[1],
+                       "a = 1 N s/m, b = 1 N s/m, c = 1 N s/m, d = 1 N s/m and 2 more"));
+  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[0], "no parameter is decided"));
 }
 
 }  // namespace
