@@ -63,8 +63,9 @@ inline constexpr const char* kAnimationColours[] = {"#2a78c8", "#009e73", "#cc79
                                                     "#a08000", "#56b4e9", "#7a5fd0"};
 inline constexpr char kAnimatedPushColour[] = "#d55e00";
 
-// `poses` moments from first to last frame, between which people move equally far, seen from the
-// side (x to the right, z up), recorded bodies grey behind predicted ones in colour.
+// `poses` moments from first to last frame, between which people move equally far, and the hardest
+// moment of a push among them, seen from the side (x to the right, z up), recorded bodies grey
+// behind predicted ones in colour.
 std::string PoseStripSvg(const Animation& animation, int poses);
 
 }  // namespace pushid

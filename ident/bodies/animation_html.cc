@@ -13,6 +13,8 @@
 namespace pushid {
 namespace {
 
+constexpr double kBrightest = 0.85;  // of the scale of colours, that is seen on paper
+
 constexpr char kScript[] =
     R"html(const parents=[-1,0,1,2,3,4,3,6,7,8,3,10,11,12,0,14,15,16,0,18,19,20];
 let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],span=[1,1];
@@ -49,6 +51,12 @@ function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=sty
  const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
  for(const s of [1,-1])line(hip,[hip[0]-110*u[0]-s*60*u[1],hip[1]-110*u[1]+s*60*u[0],hip[2]],c,30);
  const p=project(...tail);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
+// A name over its person, raised until it covers no other.
+function nameAt(name,x,y,labels){const d=devicePixelRatio||1,h=15*d;words('',0,0,style('--ink'));
+ const w=pen.measureText(name).width+6*d;y=Math.max(16*d,y);
+ const covers=l=>Math.abs(l.x-x)<(l.w+w)/2&&Math.abs(l.y-y)<h;
+ for(let i=0;i<12&&y>h+16*d&&labels.some(covers);i++)y-=h;
+ labels.push({x,y,w});words(name,x,y,style('--ink'));}
 function ring(p,r,colour){pen.strokeStyle=colour;pen.setLineDash([]);pen.lineWidth=2.5*(devicePixelRatio||1);pen.beginPath();pen.arc(p[0],p[1],r,0,7);pen.stroke();}
 function colourOf(p){return p.recorded?style('--recorded'):data.colours[(data.whats.length>1?p.what:names.indexOf(p.name))%data.colours.length];}
 const shown=p=>p.recorded?on('recorded'):on('predicted')&&on('what'+p.what);
@@ -61,18 +69,18 @@ function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio
   if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
- const hips=new Map();
+ const hips=new Map(),labels=[];
  for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
   if(!shown(p))continue;
   hips.set(p.name,hip(p,f));
   if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p.body[f],colour);pen.globalAlpha=1;}
-  const rod=data.whats.length>1?colour:'#d1495b';
+  const rod=data.whats.length>1||names.length>1?colour:'#d1495b';
   if(p.tip.length&&on('pendulums')){line(p.cart[f],p.tip[f],rod,12,[8,6]);dot(p.cart[f],35,rod);dot(p.tip[f],45,rod);}
   if(p.force.length&&on('forces')){const t=p.tip[f],F=p.force[f];if(Math.hypot(F[0],F[1])>=5){
    const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
  for(const [name,h] of hips){const p=project(...h);
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
-  if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));words(name,top[0],Math.max(16*d,top[1]-(6+15*(names.indexOf(name)%3))*d),style('--ink'));}}
+  if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));nameAt(name,top[0],top[1]-6*d,labels);}}
  for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
  inset();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
@@ -126,6 +134,22 @@ nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
   return json;
 }
 
+// Of people, or of what-ifs; more people than there are colours take them from a scale, so that
+// neighbours look alike and nobody twice the same.
+std::vector<std::string> ColoursOf(const Animation& animation,
+                                   const std::vector<std::string>& whats) {
+  std::set<std::string> names;
+  for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  std::vector<std::string> colours(std::begin(kAnimationColours), std::end(kAnimationColours));
+  if (whats.size() > 1 || names.size() <= colours.size()) return colours;
+  colours.clear();
+  for (size_t n = 0; n < names.size(); ++n) {
+    colours.push_back(
+        ColourOf(kBrightest * static_cast<double>(n) / static_cast<double>(names.size() - 1)));
+  }
+  return colours;
+}
+
 nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::string>& whats) {
   nlohmann::json body = nlohmann::json::array(), force = nlohmann::json::array();
   for (const Pose& pose : person.body) {
@@ -147,9 +171,12 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
 
 std::string AnimationHtml(const Animation& animation) {
   const std::vector<std::string> whats = WhatsOf(animation);
-  nlohmann::json data = {{"title", animation.title},         {"dt", animation.dt},
-                         {"frames", animation.num_frames()}, {"whats", whats},
-                         {"colours", kAnimationColours},     {"people", nlohmann::json::array()},
+  nlohmann::json data = {{"title", animation.title},
+                         {"dt", animation.dt},
+                         {"frames", animation.num_frames()},
+                         {"whats", whats},
+                         {"colours", ColoursOf(animation, whats)},
+                         {"people", nlohmann::json::array()},
                          {"pushes", nlohmann::json::array()}};
   for (const AnimatedPerson& person : animation.people) {
     data["people"].push_back(PersonJson(person, whats));

@@ -130,6 +130,27 @@ std::vector<int> FramesByMotion(const Animation& animation, int poses) {
   return frames;
 }
 
+// The same with the moment at which a push is hardest in the place of the one next to it: a short
+// push would fall between two.
+std::vector<int> FramesWithPush(const Animation& animation, int poses) {
+  std::vector<int> frames = FramesByMotion(animation, poses);
+  int hardest = -1;
+  double most = kLeastForce;
+  for (const AnimatedPush& push : animation.pushes) {
+    for (size_t i = 0; i < push.force.size(); ++i) {
+      const double size = push.force[i].head<2>().norm();
+      if (size > most) most = size, hardest = push.start + static_cast<int>(i);
+    }
+  }
+  if (hardest < 0 || hardest >= animation.num_frames() || poses < 3) return frames;
+  const auto nearest = std::min_element(
+      frames.begin() + 1, frames.end() - 1,
+      [hardest](int a, int b) { return std::abs(a - hardest) < std::abs(b - hardest); });
+  if (std::find(frames.begin(), frames.end(), hardest) == frames.end()) *nearest = hardest;
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
 // What the strip draws, and no more.
 std::vector<LegendEntry> LegendOf(const Animation& animation) {
   std::vector<LegendEntry> legend;
@@ -140,8 +161,10 @@ std::vector<LegendEntry> LegendOf(const Animation& animation) {
     legend.push_back({"recorded", kRecordedLook});
   }
   const std::vector<std::string> whats = WhatsOf(animation);
+  const bool bodies = any([](const AnimatedPerson& p) { return !p.recorded && !p.body.empty(); });
   for (size_t k = 0; k < whats.size(); ++k) {
     const bool alone = whats.size() == 1 && whats[0].empty();
+    if (alone && !bodies) continue;  // pendulums have an entry of their own
     legend.push_back({alone              ? "predicted, left limbs paler"
                       : whats[k].empty() ? kAsFitted
                                          : whats[k],
@@ -182,7 +205,7 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
   DrawLegend(legend, kSide, 38, &svg);
   svg.Line(0, floor, panel * poses + kSide, floor, "axis");
   const std::vector<std::string> whats = WhatsOf(animation);
-  const std::vector<int> frames = FramesByMotion(animation, poses);
+  const std::vector<int> frames = FramesWithPush(animation, poses);
   for (int i = 0; i < poses; ++i) {
     const int t = frames[i];
     const double left = kSide + panel * i;

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "ident/figures/svg.h"
 #include "ident/formations/formation_bodies.h"
 #include "models/formation.h"
 #include "tests/models/body_samples.h"
@@ -64,6 +65,28 @@ TEST(AnimationTest, PosesAreSpacedByMotion) {
   for (const char* time : {">0 s<", ">0.0333 s<", ">0.0667 s<"}) {
     EXPECT_TRUE(Contains(still, time));
   }
+}
+
+// The strip shows the push where it is hardest, though everybody moves later.
+TEST(AnimationTest, AShortPushIsAmongThePoses) {
+  std::vector<double> x(40, 0.0);
+  for (int t = 20; t < 40; ++t) x[t] = 0.05 * (t - 19);
+  Animation animation = Moving(x);
+  animation.pushes.push_back({"p", 3, {{50.0, 0, 0, 0}, {180.0, 0, 0, 0}, {60.0, 0, 0, 0}}});
+  EXPECT_TRUE(Contains(PoseStripSvg(animation, 5), ">180 N<"));
+}
+
+TEST(AnimationTest, ALongRowHasAColourForEverybody) {
+  Animation animation;
+  animation.title = "row";
+  for (int n = 0; n < 9; ++n) {
+    AnimatedPerson person = Moving({0.5 * n, 0.5 * n}).people[0];
+    person.name = "p" + std::to_string(n);
+    animation.people.push_back(person);
+  }
+  const std::string html = AnimationHtml(animation);
+  EXPECT_TRUE(Contains(html, ColourOf(0.0)));
+  EXPECT_FALSE(Contains(html, std::string("\"") + kAnimationColours[2] + "\""));
 }
 
 TEST(AnimationTest, NothingRecordedNothingCalledSo) {
