@@ -1,4 +1,5 @@
 // apps: pushid-animate: recorded and predicted people as a web page and as a strip of poses.
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/flags/animate_flags.h"
@@ -7,11 +8,12 @@
 #include "apps/flags/what_if_flags.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/list_of_names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/input_warnings.h"
 #include "ident/prediction/prediction.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace {
 
@@ -20,6 +22,26 @@ using namespace pushid;
 MaybeError Write(const std::string& file, const std::string& content) {
   if (MaybeError error = WriteFileAtomically(file, content)) return error;
   std::printf("%s\n", file.c_str());
+  return std::nullopt;
+}
+
+// Of the model as it was fitted.
+MaybeError Explain(const std::string& who, const PendulumRecording& recording,
+                   const Prediction& prediction, Animation* animation) {
+  ForceStory story;
+  if (who == "auto") {
+    story = RichestStory(recording, prediction);
+    if (story.person < 0) story = StoryOf(recording, prediction, recording.pushed_person);
+  } else {
+    const auto found = std::find(recording.subject_ids.begin(), recording.subject_ids.end(), who);
+    if (found == recording.subject_ids.end()) {
+      return Error{"--explain names '" + who + "', who is not in recording " + recording.id +
+                   "; there are " + ListOfNames(recording.subject_ids)};
+    }
+    story = StoryOf(recording, prediction, static_cast<int>(found - recording.subject_ids.begin()));
+  }
+  std::printf("%s\n", StoryText(recording, story).c_str());
+  animation->story = AnimatedStory{recording.subject_ids[story.person], std::move(story)};
   return std::nullopt;
 }
 
@@ -62,6 +84,10 @@ int Run() {
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);
     if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
+    if (!flags.explain.empty() && !animation.story) {
+      const MaybeError unknown = Explain(flags.explain, pendulum, prediction, &animation);
+      if (unknown) return Fail(*unknown);
+    }
     std::vector<BodyMotion> bodies;
     if (recording.ok()) {
       bodies = RestoreBodies(*restoration.value(), flags.restoration.postprocess,

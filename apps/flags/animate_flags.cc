@@ -9,6 +9,10 @@ DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
 DEFINE_string(strip_out, "", "a strip of poses (SVG)");
 DEFINE_int32(poses, pushid::AnimateFlags{}.poses, "poses of the strip");
+DEFINE_string(
+    explain, "",
+    "tell the forces on this person in words, and draw them beside the motion: an id of the "
+    "recording, or auto (the bystander with most to tell)");
 DEFINE_bool(recorded, pushid::AnimateFlags{}.recorded, "show the recorded bodies too");
 
 namespace pushid {
@@ -24,8 +28,8 @@ Result<AnimateFlags> AnimateFlagsFromCommandLine() {
   if (MaybeError error = CheckOutputFiles({FLAGS_out, FLAGS_strip_out})) return *error;
   const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine("rigid");
   if (!restoration.ok()) return restoration.error();
-  return AnimateFlags{FLAGS_id,    restoration.value(), FLAGS_out,           FLAGS_strip_out,
-                      FLAGS_poses, FLAGS_recorded,      Given("restoration")};
+  return AnimateFlags{FLAGS_id,    restoration.value(), FLAGS_out,      FLAGS_strip_out,
+                      FLAGS_poses, FLAGS_explain,       FLAGS_recorded, Given("restoration")};
 }
 
 }  // namespace pushid

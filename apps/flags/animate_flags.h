@@ -13,6 +13,7 @@ struct AnimateFlags {
   std::string out;               // page (HTML); empty: none
   std::string strip_out;         // strip of poses (SVG); empty: none
   int poses = 7;                 // of the strip
+  std::string explain;           // a person whose forces are told in words, or auto; empty: nobody
   bool recorded = true;          // beside the predicted bodies
   bool bodies_asked = false;     // by --restoration; otherwise only where the skeleton has them
 };

@@ -1,11 +1,12 @@
 // ident: moving people as pictures: one web page with a time slider, and a strip of poses.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "ident/bodies/body_files.h"
-#include "ident/prediction/prediction.h"
+#include "ident/prediction/force_story.h"
 
 namespace pushid {
 
@@ -27,11 +28,18 @@ struct AnimatedPush {
   std::vector<Vector4<double>> force;
 };
 
+// One person's forces in words (prediction/force_story.h), beside the motion.
+struct AnimatedStory {
+  std::string person;
+  ForceStory story;
+};
+
 struct Animation {
   std::string title;
   double dt = 1.0 / 60.0;  // s
   std::vector<AnimatedPerson> people;
   std::vector<AnimatedPush> pushes;
+  std::optional<AnimatedStory> story;
 
   int num_frames() const;
 };
@@ -54,7 +62,8 @@ void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMo
 
 // One self-contained page: no network, no library. Play, time slider, orbit by mouse or touch,
 // zoom by wheel, and what is shown by check boxes. The ground has marks in metres from where the
-// pushed person starts; a group is seen from above as well.
+// pushed person starts; a group is seen from above as well; a story stands beside with its forces,
+// and its moments lead to their frames.
 std::string AnimationHtml(const Animation& animation);
 
 // Colours that the colour-blind tell apart, on light and on dark paper: of people, or of what-ifs

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "datasets/files/number_text.h"
 #include "ident/bodies/animation.h"
 #include "ident/figures/moving_page.h"
 #include "ident/figures/svg.h"
@@ -67,6 +68,18 @@ function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio
  words('from above',x0+42*d,y0+16*d,style('--ink'));
  for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,frameOf(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
   if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
+// The forces on one person along the push, and where in its story we are.
+const looks=['#d55e00','#9333ea','#009e73'];
+function storyPanel(){if(!data.story)return;const d=devicePixelRatio||1,w=Math.min(330*d,view.width*0.5),h=120*d,x0=8*d,y0=view.height-h-8*d,F=data.story.forces;
+ pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
+ const most=Math.max(20,...F.flat().map(Math.abs)),X=t=>x0+w*t/Math.max(1,F.length-1),Y=f=>y0+h/2-f/most*(h/2-20*d);
+ pen.beginPath();pen.moveTo(x0,Y(0));pen.lineTo(x0+w,Y(0));pen.stroke();
+ for(let k=3;k>=0;k--){pen.strokeStyle=k===3?style('--ink'):looks[k];pen.lineWidth=(k===3?3:1.6)*d;pen.beginPath();F.forEach((f,t)=>t?pen.lineTo(X(t),Y(f[k])):pen.moveTo(X(t),Y(f[k])));pen.stroke();}
+ const t=Math.min(frame,F.length-1);pen.strokeStyle=style('--push');pen.lineWidth=d;pen.beginPath();pen.moveTo(X(t),y0);pen.lineTo(X(t),y0+h);pen.stroke();
+ pen.font=12*d+'px system-ui,sans-serif';pen.textAlign='left';pen.fillStyle=style('--ink');pen.fillText(Math.round(most)+' N along the push, '+data.story.person,x0+6*d,y0+14*d);
+ ['net (thick)','push','others','own answer'].forEach((text,k)=>{pen.fillStyle=k?looks[k-1]:style('--ink');pen.fillText(text,x0+(6+80*k)*d,y0+h-6*d);});
+ data.story.moments.forEach((m,i)=>{const b=$('moment'+i);b.setAttribute('aria-current',frame>=m[0]&&frame<m[1]?'true':'false');});}
+if(data.story)data.story.moments.forEach((m,i)=>{$('moment'+i).onclick=()=>{play(false);frame=m[0];draw();};});
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
  const hips=new Map(),labels=[];
@@ -82,7 +95,7 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
   if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));nameAt(name,top[0],top[1]-6*d,labels);}}
  for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
- inset();
+ inset();storyPanel();
  $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
 )html";
 
@@ -122,6 +135,18 @@ std::string Choices(const Animation& animation, const std::vector<std::string>& 
             "\"></span> pushed, and the push</span>\n";
   }
   return html;
+}
+
+std::string StoryHtml(const Animation& animation) {
+  if (!animation.story) return "";
+  const ForceStory& story = animation.story->story;
+  std::string html = "<div style=\"flex-basis:100%\">" + EscapeXml(animation.story->person) + ": ";
+  for (size_t i = 0; i < story.moments.size(); ++i) {
+    html += "<button class=\"moment\" id=\"moment" + std::to_string(i) + "\">" +
+            Rounded(story.moments[i].from * animation.dt, 3) + " s " +
+            EscapeXml(story.moments[i].text) + "</button>\n";
+  }
+  return html + "</div>\n";
 }
 
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
@@ -187,10 +212,21 @@ std::string AnimationHtml(const Animation& animation) {
     data["pushes"].push_back(
         {{"person", push.person}, {"start", push.start}, {"force", std::move(force)}});
   }
+  if (animation.story) {
+    const ForceStory& story = animation.story->story;
+    nlohmann::json moments = nlohmann::json::array(), forces = nlohmann::json::array();
+    for (const StoryMoment& moment : story.moments) moments.push_back({moment.from, moment.to});
+    for (const std::array<double, 4>& f : story.forces) {
+      forces.push_back({Whole(f[0]), Whole(f[1]), Whole(f[2]), Whole(f[3])});
+    }
+    data["story"] = {{"person", animation.story->person},
+                     {"moments", std::move(moments)},
+                     {"forces", std::move(forces)}};
+  }
   const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
   return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
-                 push + "--grid:#3a3f46;--recorded:#a0a0a0", Choices(animation, whats),
-                 std::move(data), kScript});
+                 push + "--grid:#3a3f46;--recorded:#a0a0a0",
+                 Choices(animation, whats) + StoryHtml(animation), std::move(data), kScript});
 }
 
 }  // namespace pushid

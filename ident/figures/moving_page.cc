@@ -14,6 +14,7 @@ constexpr char kStyle[] =
     R"html(body{margin:0;background:var(--paper);color:var(--ink);font:14px system-ui,sans-serif;display:flex;flex-direction:column;min-height:100vh;height:100vh}
 header,footer{padding:8px 14px;display:flex;gap:14px;align-items:center;flex-wrap:wrap}
 h1{font-size:15px;margin:0 auto 0 0}canvas{flex:1;min-height:0;width:100%;touch-action:none;cursor:grab}
+.moment{min-width:0;margin:2px 0}.moment[aria-current=true]{outline:3px solid var(--push,#d55e00)}
 input[type=range]{flex:1;min-width:160px}button{font:inherit;padding:4px 12px;min-width:70px}
 .chip{display:inline-block;width:1.1em;height:.6em;margin:0 .2em}
 @media print{footer{display:none}body{display:block;height:auto;min-height:0}canvas{height:auto}}

@@ -118,5 +118,26 @@ TEST_F(LayoutTest, TheMovingFigureMoves) {
   EXPECT_EQ(WhatItSaid(seen), "moves; 0.05 s, frame 3");
 }
 
+// Its moments stand in words, and lead to their frames.
+TEST_F(LayoutTest, ForcesAreToldBesideTheMotion) {
+  const std::vector<std::string> flags = {"--model=" + FitModel(), Recordings(), "--id=" + id_,
+                                          "--out=" + Path("a.html")};
+  std::vector<std::string> told = flags, wrong = flags;
+  told.push_back("--explain=auto");
+  wrong.push_back("--explain=nobody");
+  const AppRun run = RunApp("pushid-animate", told);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, ": 0 s pushed, up to "));
+  const std::string page = ReadText(Path("a.html"));
+  ExpectGoodLayout(page, false);
+  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, R"js(
+  document.getElementById('moment1').click();
+  said.push(+document.getElementById('time').value > 0 ? 'led on' : 'stayed');
+  said.push(document.getElementById('moment1').getAttribute('aria-current'));
+)js")));
+  EXPECT_EQ(WhatItSaid(seen), "led on; true") << seen.err;
+  EXPECT_TRUE(Refused(RunApp("pushid-animate", wrong), {"--explain", "'nobody'", "there are"}));
+}
+
 }  // namespace
 }  // namespace pushid

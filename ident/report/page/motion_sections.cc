@@ -7,6 +7,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_pictures.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/force_story.h"
 #include "ident/report/page/sections.h"
 
 namespace pushid {
@@ -268,7 +269,8 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
     const std::string& id = view.run.recording.id;
     fold.figures.push_back({"motion_" + id, "", PathPicture(view), PathNumbers(view)});
     if (view.run.prediction.status.ok) {
-      fold.figures.push_back({"forces_" + id, "",
+      const ForceStory story = RichestStory(view.run.recording, view.run.prediction);
+      fold.figures.push_back({"forces_" + id, StoryText(view.run.recording, story),
                               ForcesPictureOf(view.run, "forces on each person").ToInline(),
                               ForceNumbers(view.run)});
     }

@@ -1,0 +1,165 @@
+// ident: frames to causes, causes to moments, moments to words.
+#include "ident/prediction/force_story.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "datasets/files/number_text.h"
+#include "ident/results/push_range.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kQuiet = 10.0;    // N
+constexpr double kShortest = 0.1;  // s
+constexpr double kStill = 0.05;    // m/s
+
+enum Series : int { kPushed, kOthers, kAnswer, kNet };
+
+std::array<double, 4> ForcesAlong(const NetForce<double>& force, const Eigen::Vector2d& u) {
+  const auto along = [&](ForcePart part) { return force[part].head<2>().dot(u); };
+  const double push = along(ForcePart::kPush) + along(ForcePart::kTail);
+  const double others = along(ForcePart::kInteraction), net = force.Total().head<2>().dot(u);
+  return {push, others, net - push - others, net};
+}
+
+Cause CauseOf(const std::array<double, 4>& forces) {
+  int largest = kPushed;
+  for (int i : {kOthers, kAnswer}) {
+    if (std::abs(forces[i]) > std::abs(forces[largest])) largest = i;
+  }
+  if (std::abs(forces[largest]) < kQuiet) return Cause::kNothing;
+  if (largest == kPushed) return Cause::kPush;
+  if (largest == kAnswer) return Cause::kOwn;
+  return forces[kOthers] > 0.0 ? Cause::kBehind : Cause::kInFront;
+}
+
+// Neighbouring frames of one cause; short ones go to what was before.
+std::vector<StoryMoment> Moments(const ForceStory& story, double dt) {
+  std::vector<StoryMoment> moments;
+  const int frames = static_cast<int>(story.forces.size());
+  for (int t = 0; t < frames; ++t) {
+    const Cause cause = CauseOf(story.forces[t]);
+    if (moments.empty() || moments.back().cause != cause)
+      moments.push_back({t, t, cause, 0, 0, ""});
+    moments.back().to = t + 1;
+  }
+  std::vector<StoryMoment> kept;
+  for (const StoryMoment& moment : moments) {
+    const bool too_short = (moment.to - moment.from) * dt < kShortest;
+    if (!kept.empty() && (too_short || kept.back().cause == moment.cause)) {
+      kept.back().to = moment.to;
+    } else {
+      kept.push_back(moment);
+    }
+  }
+  return kept;
+}
+
+// The nearest person behind (side -1) or in front (side 1) at a frame; empty where nobody stands.
+std::string Neighbour(const PendulumRecording& recording, const Prediction& prediction, int person,
+                      int frame, const Eigen::Vector2d& u, double side) {
+  std::string name;
+  double nearest = 0.0;
+  const auto place = [&](int n) {
+    return Eigen::Vector2d(prediction.path.At(frame, n).q.head<2>());
+  };
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    const Eigen::Vector2d way = place(n) - place(person);
+    if (n == person || side * way.dot(u) <= 0.0) continue;
+    if (!name.empty() && way.norm() >= nearest) continue;
+    name = recording.subject_ids[n];
+    nearest = way.norm();
+  }
+  return name;
+}
+
+std::string Forces(const StoryMoment& moment) {
+  return ", up to " + Rounded(moment.peak, 2) + " N (" + Rounded(moment.impulse, 2) + " N s)";
+}
+
+std::string Words(const PendulumRecording& recording, const Prediction& prediction, int person,
+                  const StoryMoment& moment, const Eigen::Vector2d& u) {
+  const auto by = [&](double side) {
+    const std::string name = Neighbour(recording, prediction, person, moment.from, u, side);
+    return name.empty() ? "" : " by " + name;
+  };
+  const Eigen::Vector2d velocity = prediction.path.At(moment.from, person).qd.head<2>();
+  switch (moment.cause) {
+    case Cause::kNothing:
+      return velocity.norm() < kStill ? "still" : "moves on without force";
+    case Cause::kPush:
+      return "pushed" + Forces(moment);
+    case Cause::kBehind:
+      return "pushed from behind" + by(-1.0) + Forces(moment);
+    case Cause::kInFront:
+      return "held up from in front" + by(1.0) + Forces(moment);
+    case Cause::kOwn:
+      return (moment.impulse * velocity.dot(u) < 0.0 ? "brakes" : "steps on") + Forces(moment);
+  }
+  return "";
+}
+
+void Measure(const ForceStory& story, double dt, StoryMoment* moment) {
+  const int series = moment->cause == Cause::kPush  ? kPushed
+                     : moment->cause == Cause::kOwn ? kAnswer
+                                                    : kOthers;
+  for (int t = moment->from; t < moment->to; ++t) {
+    moment->peak = std::max(moment->peak, std::abs(story.forces[t][series]));
+    moment->impulse += dt * story.forces[t][series];
+  }
+}
+
+}  // namespace
+
+ForceStory StoryOf(const PendulumRecording& recording, const Prediction& prediction, int person) {
+  const Eigen::Vector2d u = PushDirection(recording);
+  ForceStory story{person, {}, {}};
+  for (int t = 0; t < prediction.path.num_frames(); ++t) {
+    story.forces.push_back(ForcesAlong(prediction.forces.At(t, person), u));
+  }
+  const double dt = recording.scene.dt;
+  story.moments = Moments(story, dt);
+  for (StoryMoment& moment : story.moments) {
+    Measure(story, dt, &moment);
+    moment.text = Words(recording, prediction, person, moment, u);
+  }
+  return story;
+}
+
+ForceStory RichestStory(const PendulumRecording& recording, const Prediction& prediction) {
+  ForceStory richest;
+  std::pair<size_t, double> most{0, 0.0};  // kinds of cause, then what others did
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    const auto& pushes = recording.scene.pushes;
+    const bool pushed = std::any_of(pushes.begin(), pushes.end(),
+                                    [n](const ScenePush& push) { return push.person == n; });
+    if (pushed) continue;
+    ForceStory story = StoryOf(recording, prediction, n);
+    std::set<Cause> causes;
+    double by_others = 0.0;
+    for (const StoryMoment& moment : story.moments) {
+      causes.insert(moment.cause);
+      const bool others = moment.cause == Cause::kBehind || moment.cause == Cause::kInFront;
+      if (others) by_others += std::abs(moment.impulse);
+    }
+    const std::pair<size_t, double> has{causes.size(), by_others};
+    if (richest.person >= 0 && has <= most) continue;
+    most = has;
+    richest = std::move(story);
+  }
+  return richest;
+}
+
+std::string StoryText(const PendulumRecording& recording, const ForceStory& story) {
+  if (story.person < 0) return "";
+  std::string text = recording.subject_ids[story.person] + ":";
+  for (size_t i = 0; i < story.moments.size(); ++i) {
+    text += (i > 0 ? "; " : " ") + Rounded(story.moments[i].from * recording.scene.dt, 3) + " s " +
+            story.moments[i].text;
+  }
+  return text;
+}
+
+}  // namespace pushid
