@@ -10,15 +10,27 @@
 // recording, which is one residual block. The frame's weight multiplies w r. Rejected: hip
 // positions alone, which let velocities run wild between frames; one scalar per frame, which stalls
 // Gauss-Newton.
+//
+// FrameLoss::kLdp, for comparison, is LDP's (Yue et al., CVPR 2024, Eq. 6): the absolute errors of
+// all states and velocities, and phi' itself. Its rows are
+//   [x, y - measured; phi'; xd, yd - measured; theta, phi - measured; thd, phd - measured]
+// each with a w of its own, so that the cost is d |r| beyond d: absolute values that can be
+// differentiated.
 #pragma once
 
 #include <cmath>
 
+#include "models/enum_names.h"
 #include "models/ipm.h"
 
 namespace pushid {
 
 inline constexpr int kFrameResiduals = 9;
+
+enum class FrameLoss { kHip, kLdp };
+constexpr EnumNames<FrameLoss, 2> Names(FrameLoss) {
+  return {{{"hip", FrameLoss::kHip}, {"ldp", FrameLoss::kLdp}}};
+}
 
 struct ResidualSigmas {
   double hip = 0.10;      // m; raise it when the marker of the hip is poor
@@ -26,7 +38,14 @@ struct ResidualSigmas {
   double angle = 1.0;     // rad
   double rate = 3.0;      // rad/s
   double robust = 0.5;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
+  FrameLoss loss = FrameLoss::kHip;
+
+  // d of whole frames; 0 where each row has its own.
+  double OfFrames() const { return loss == FrameLoss::kHip ? robust : 0.0; }
 };
+
+// Those under which FrameLoss::kLdp weighs metres, radians and their rates alike, as LDP does.
+inline constexpr ResidualSigmas kLdpSigmas = {0.1, 0.1, 0.1, 0.1, 0.01, FrameLoss::kLdp};
 
 struct MeasuredFrame {
   Vector3<double> hip;          // m
@@ -43,7 +62,12 @@ template <typename T, typename L>
 FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                                 const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
   FrameVector<T> r;
-  r.template head<3>() = (HipPosition(body, state.q) - measured.hip) / T(sigmas.hip);
+  if (sigmas.loss == FrameLoss::kLdp) {
+    for (int i = 0; i < 2; ++i) r[i] = (state.q[i] - measured.state.q[i]) / sigmas.hip;
+    r[2] = state.qd[3] / sigmas.rate;
+  } else {
+    r.template head<3>() = (HipPosition(body, state.q) - measured.hip) / T(sigmas.hip);
+  }
   for (int i = 0; i < 2; ++i) {
     r[3 + i] = (state.qd[i] - measured.state.qd[i]) / sigmas.velocity;
     r[5 + i] = (state.q[2 + i] - measured.state.q[2 + i]) / sigmas.angle;
@@ -81,7 +105,11 @@ void CorrectForRobustLoss(const FrameVector<double>& residual, double weight, do
 template <typename T, typename L>
 FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                              const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
-  const FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
+  FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
+  if (sigmas.loss == FrameLoss::kLdp) {
+    for (T& one : r) one *= measured.weight * RobustWeight<T>(one * one, sigmas.robust);
+    return r;
+  }
   return T(measured.weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
 

@@ -61,7 +61,7 @@ void AddFrames(const PendulumRecording& recording, const std::vector<double>& ra
       const Eigen::Map<const FrameVector<double>> r(raw.data() + row);
       error += (sigmas.hip * r.head<2>()).squaredNorm();
       motion += (recording.hip[n][t] - recording.hip[n][0]).head<2>().squaredNorm();
-      const double w = RobustWeight<double>(r.squaredNorm(), sigmas.robust);
+      const double w = RobustWeight<double>(r.squaredNorm(), sigmas.OfFrames());
       if (w * w < kOutlierWeight) d->outliers.push_back({t, n, r.norm(), w * w});
     }
   }

@@ -51,6 +51,24 @@ Row HorizonsRow() {
   return row;
 }
 
+Row LossRow() {
+  Row row = NameRow<FrameLoss>(
+      "loss", "/sigmas/loss", [](FitOptions & o) -> auto& { return o.sigmas.loss; },
+      "what is made small: hip (positions of the hip, velocities, angles and rates, robust by "
+      "frame), or ldp (absolute errors of all states and velocities, and phi' itself, for "
+      "comparison)");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    FrameLoss loss;
+    if (MaybeError error = ParseName("--loss", text, &loss)) return error;
+    if (loss == o->sigmas.loss) return std::nullopt;
+    o->sigmas = loss == FrameLoss::kLdp ? kLdpSigmas : ResidualSigmas();
+    // Estimated, they would no longer be those of LDP.
+    o->sigma_source = loss == FrameLoss::kLdp ? SigmaSource::kFixed : FitOptions().sigma_source;
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
 Row SeedRow() {
   Row row = WordsRow("seed", OptionStage::kModel, "seed of everything random",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
@@ -113,6 +131,7 @@ Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
 std::vector<Row> WeightRows() {
   using O = FitOptions;
   return {
+      LossRow(),
       NumberRow(
           "sigma_hip", "/sigmas/hip_m", [](O & o) -> auto& { return o.sigmas.hip; }, kPositive,
           "standard deviation of the hip's position, m"),

@@ -57,7 +57,7 @@ bool CondensedRollout::EvaluatePeople(double const* const* blocks, bool robust,
               plain[person].Add(kFrameResiduals, by_column->data());
               if (!robust) return;
               CorrectForRobustLoss(r, problem_->weight * problem_->recording->Weight(person, frame),
-                                   problem_->sigmas.robust, by_column->leftCols(acting));
+                                   problem_->sigmas.OfFrames(), by_column->leftCols(acting));
               corrected[person].Add(kFrameResiduals, by_column->data());
             });
   if (!status.ok) return false;

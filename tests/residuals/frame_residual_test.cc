@@ -68,6 +68,32 @@ TEST_P(FrameTwins, AgreeInThreeRegimes) {
   }
 }
 
+TEST_P(FrameTwins, OfLdpsLossAgreeToo) {
+  Random random(22);
+  ResidualSigmas sigmas = kLdpSigmas;
+  sigmas.robust = GetParam();
+  for (double magnitude : {0.0, 1e-8, 1.2}) {
+    SCOPED_TRACE(magnitude);
+    for (int i = 0; i < 20; ++i) {
+      MeasuredFrame measured = Measure(RandomState(magnitude, &random));
+      measured.weight = random.Uniform(0.0, 1.0);
+      ExpectTwins(RandomState(magnitude, &random), measured, sigmas);
+    }
+  }
+}
+
+// The sum of absolute errors, and of the rate of phi, by hand.
+TEST(FrameResidual, LdpsLossIsTheSumOfAbsoluteErrors) {
+  PendulumState<double> state;
+  const MeasuredFrame measured = Measure(state);
+  state.q << 0.3, -0.2, 0.4, -0.5;
+  state.qd << 1.0, -2.0, 0.5, -0.7;
+  const double sum = 0.3 + 0.2 + 0.4 + 0.5 + 1.0 + 2.0 + 0.5 + 0.7 + 0.7;
+  const double cost = 0.5 * FrameResidual(kBody, state, measured, kLdpSigmas).squaredNorm();
+  // Beyond the kink: d |r| - d^2 for each of the nine.
+  EXPECT_NEAR(cost, 0.01 * sum / 0.1 - 9 * 1e-4, 1e-4);
+}
+
 INSTANTIATE_TEST_SUITE_P(PlainAndRobust, FrameTwins, testing::Values(0.0, 0.3, 1.0, 10.0));
 
 TEST(FrameResidual, IsInSigmasAndInOrder) {
