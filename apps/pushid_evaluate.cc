@@ -18,7 +18,7 @@
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 #include "ident/validation/steps_report.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace {
 

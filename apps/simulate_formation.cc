@@ -21,7 +21,7 @@
 #include "ident/formations/wave_speed.h"
 #include "ident/prediction/input_warnings.h"
 #include "ident/results/result_json.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {

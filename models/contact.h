@@ -66,18 +66,51 @@ T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
 template <typename T>
 using Vector2 = Eigen::Matrix<T, 2, 1>;
 
+// The load x, m, of two points at the distance d that stood at r0 from each other; not positive
+// without any.
+template <typename T>
+T ContactLoad(const ParameterSet<T>& p, const T& d, const Vector2<T>& r0) {
+  using std::sqrt;
+  const T d0 = ContactDistance(r0, p[kContactKappa]);
+  const T gap = p[kContactDistance] - d0;
+  const T free =
+      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
+  return free - d;
+}
+
+// From j's contact point to n's.
+template <typename T>
+Vector2<T> BetweenContactPoints(const Pair& pair, const Vector4<T>& q_n, const Vector4<T>& q_j,
+                                const T& height) {
+  return ContactPoint<T>(pair.body_n, q_n, height) - ContactPoint<T>(pair.body_j, q_j, height);
+}
+
+// At frame 0.
+template <typename T>
+Vector2<T> BetweenFirstContactPoints(const Pair& pair, const T& height) {
+  return BetweenContactPoints<T>(pair, pair.q0_n.template cast<T>(), pair.q0_j.template cast<T>(),
+                                 height);
+}
+
+// The load of two people.
+template <typename T>
+T LoadBetween(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
+              const Vector4<T>& q_j) {
+  const T& height = p[kContactHeight];
+  const T d = ContactDistance<T>(BetweenContactPoints(pair, q_n, q_j, height), p[kContactKappa]);
+  // Free distances are never larger than the contact distance.
+  if (RealPart(d) >= RealPart(p[kContactDistance])) return T(0.0);
+  return ContactLoad<T>(p, d, BetweenFirstContactPoints(pair, height));
+}
+
 // The horizontal force on n's point. r, v: n's point and its velocity, seen from j's; r0: at
 // frame 0. Zero without load.
 template <bool kSpring, bool kDamping, typename T>
 Vector2<T> ContactForce(const ParameterSet<T>& p, const Vector2<T>& r, const Vector2<T>& v,
                         const Vector2<T>& r0) {
-  using std::sqrt;
   const T& kappa = p[kContactKappa];
-  const T d = ContactDistance(r, kappa), d0 = ContactDistance(r0, kappa);
-  const T gap = p[kContactDistance] - d0;
-  const T free =
-      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
-  const T x = free - d;
+  const T d = ContactDistance(r, kappa);
+  const T x = ContactLoad(p, d, r0);
   if (!(RealPart(x) > 0.0)) return Vector2<T>::Zero();
   const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
   T f = T(0.0);
@@ -93,14 +126,12 @@ struct ContactTerm {
   static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
                   const PendulumState<T>& j, PairForce<T>* force) {
     const T& height = p[kContactHeight];
-    const Vector2<T> r =
-        ContactPoint<T>(pair.body_n, n.q, height) - ContactPoint<T>(pair.body_j, j.q, height);
-    // d* is never larger than the contact distance.
+    const Vector2<T> r = BetweenContactPoints(pair, n.q, j.q, height);
+    // Free distances are never larger than the contact distance.
     if (RealPart(ContactDistance(r, p[kContactKappa])) >= RealPart(p[kContactDistance])) return;
     const Vector2<T> v =
         ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
-    const Vector2<T> r0 = ContactPoint<T>(pair.body_n, pair.q0_n.template cast<T>(), height) -
-                          ContactPoint<T>(pair.body_j, pair.q0_j.template cast<T>(), height);
+    const Vector2<T> r0 = BetweenFirstContactPoints(pair, height);
     const Vector2<T> f = ContactForce<kSpring, kDamping, T>(p, r, v, r0);
     if (RealPart(f[0]) == 0.0 && RealPart(f[1]) == 0.0) return;
     force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.q, height, f[0], f[1]);

@@ -71,7 +71,7 @@ constexpr EnumNames<CartDerivative, 2> Names(CartDerivative) {
 
 class ForceLaw;
 struct InteractionNetwork;
-struct SelfNetwork;
+struct LearnedTerms;
 
 struct ModelOptions {
   Posture posture = Posture::kInitial;
@@ -83,8 +83,8 @@ struct ModelOptions {
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
   std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term
-  // A learned self force, a learned rod, or both (self_network.h); null: none.
-  std::shared_ptr<const SelfNetwork> self_network;
+  // What is learned (learned_terms.h); null: nothing.
+  std::shared_ptr<const LearnedTerms> learned;
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
   // this order. AddForceLaw (ident/parameters/own_laws.h) adds one with its rows.
   std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};

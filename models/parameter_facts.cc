@@ -2,7 +2,7 @@
 #include "models/parameter_facts.h"
 
 #include "models/force_law.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {

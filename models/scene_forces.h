@@ -13,13 +13,13 @@
 
 #include "models/drive.h"
 #include "models/interaction.h"
+#include "models/learned_terms.h"
 #include "models/neighbours.h"
 #include "models/options.h"
 #include "models/parameters.h"
 #include "models/rod_law.h"
 #include "models/scene.h"
 #include "models/self_force.h"
-#include "models/self_network.h"
 #include "models/stance.h"
 
 namespace pushid {
@@ -157,7 +157,7 @@ class SceneForces {
  public:
   // parameters: one entry per person, or a single one for everybody. What two people share (the
   // pair parameters) is taken from the first. All arguments must outlive the object.
-  // network_weights: of options.self_network, all of them, instead of its own.
+  // network_weights: of options.learned, all of them, instead of its own.
   SceneForces(const Scene& scene, const ModelOptions& options,
               const std::vector<ParameterSet<T>>& parameters, const T* network_weights = nullptr)
       : scene_(&scene),
@@ -166,7 +166,7 @@ class SceneForces {
         self_(SelfForces(scene, options)),
         finder_(scene, options.interaction),
         received_(scene.people.size()) {
-    if (options.self_network != nullptr) StartNetworks(network_weights);
+    if (options.learned != nullptr) StartNetworks(network_weights);
   }
 
   // states: of everybody at the next frame, the first one at the first call.
@@ -201,13 +201,21 @@ class SceneForces {
     const SelfForce& self = self_[person];
     SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
                         state.rod, &networks_[person].state);
-    networks_[person].force = StepNetwork(options_->self_network->shape, network_weights_,
+    networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
                                           self.body.mass, &networks_[person].state);
   }
 
   PairForces<T> Between(int n, int j) const {
-    return PairForcesBetween(options_->interaction, options_->interaction_network.get(),
-                             PairOf(*scene_, n, j), Parameters(0), states_[n], states_[j]);
+    const Pair pair = PairOf(*scene_, n, j);
+    PairForces<T> forces =
+        PairForcesBetween(options_->interaction, options_->interaction_network.get(), pair,
+                          Parameters(0), states_[n], states_[j]);
+    if (options_->interaction.learned) {
+      const LearnedTerms& learned = *options_->learned;
+      AddLearnedPair(learned.pair, network_weights_ + learned.pair_at(), pair, Parameters(0),
+                     states_[n], states_[j], &forces.part[0]);
+    }
+    return forces;
   }
 
   // The parts of the net force; qd_previous: the velocity one frame earlier.
@@ -257,7 +265,7 @@ class SceneForces {
   };
 
   void StartNetworks(const T* weights) {
-    const SelfNetwork& network = *options_->self_network;
+    const LearnedTerms& network = *options_->learned;
     if (weights == nullptr) {
       for (double weight : network.weights) own_weights_.push_back(T(weight));
     }
@@ -274,7 +282,7 @@ class SceneForces {
   T RodVelocityOf(int person, const Vector4<T>& qd_previous) {
     const SelfForce& self = self_[person];
     const PendulumState<T>& state = states_[person];
-    const SelfNetwork& network = *options_->self_network;
+    const LearnedTerms& network = *options_->learned;
     Vector4<T> force = self.Total(Parameters(person), state, qd_previous);
     if (!networks_.empty()) force += networks_[person].force;
     for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];

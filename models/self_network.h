@@ -33,8 +33,6 @@
 #include <vector>
 
 #include "models/network_inputs.h"
-#include "models/options.h"
-#include "models/rod_law.h"
 
 namespace pushid {
 
@@ -63,21 +61,6 @@ struct NetworkShape {
 
 // "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
 std::string NetworkName(const NetworkShape& shape);
-
-// What a model has learned about a person: a self force, a rod law (rod_law.h), or both.
-struct SelfNetwork {
-  NetworkShape shape;           // of the self force
-  std::vector<double> weights;  // of the self force, then of the rod's law
-  RodShape rod = {};            // of the rod's law
-
-  int num_weights() const { return shape.num_weights() + rod.num_weights(); }
-  int rod_at() const { return shape.num_weights(); }  // the first weight of the rod's law
-};
-
-// Whether the rod moves.
-inline bool RodMoves(const ModelOptions& options) {
-  return options.self_network != nullptr && options.self_network->rod.moves();
-}
 
 // The matrices in a flat array.
 template <typename T>

@@ -14,11 +14,15 @@ struct InteractionTerms {
   bool potential = false;     // LDP's repulsive potential, smoothed
   bool lean = false;          // LDP's torques against leaning on each other, smoothed
   bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
-  bool network = false;       // a learned force (network_interaction.h)
+  bool network = false;       // a learned force, given (network_interaction.h)
+  bool learned = false;       // a learned force beside contact, fitted (learned_pair.h)
   bool drive = false;         // a person pushed by others steps on for a while (drive.h)
 
-  bool Contact() const { return spring || damping; }
+  // Those that ask how far the points of contact are apart.
+  bool Contact() const { return spring || damping || learned; }
   bool Any() const { return Contact() || AtCarts(); }
+  // What one gets the other gives: contact alone.
+  bool Mutual() const { return Any() && !learned && !AtCarts(); }
   // Those that ask how far the carts are apart.
   bool AtCarts() const { return potential || lean || ldp_discrete || network; }
 };
@@ -27,6 +31,8 @@ struct InteractionTermName {
   std::string_view name;
   bool InteractionTerms::*member;
 };
+// Those that a name alone describes: a learned one has a size
+// (ident/parameters/learned_terms_io.h).
 inline constexpr InteractionTermName kInteractionTerms[] = {
     {"spring", &InteractionTerms::spring},
     {"damping", &InteractionTerms::damping},

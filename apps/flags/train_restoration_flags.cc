@@ -8,7 +8,7 @@
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/scheme_flags.h"
 #include "ident/results/result_json.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
 DEFINE_string(

@@ -55,7 +55,7 @@ std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estim
   std::vector<Parameter> terms;
   const FitOptions options = WithTerms(problem.options(), &terms);
   const Clusters clusters = MakeClusters(problem.recordings(), options.cluster);
-  const bool skip = options.model.self_network != nullptr || terms.empty() ||
+  const bool skip = options.model.learned != nullptr || terms.empty() ||
                     estimate.Flat().size() > kMostColumns || clusters.count() < 3;
   if (skip) return {};
   const FitProblem large(problem.recordings(), options, problem.counts());

@@ -1,16 +1,16 @@
 // ident: whether options can be used.
 #include "ident/parameters/fit_options.h"
 
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
-#include "ident/parameters/self_network_io.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
 
 // What options of networks ask for that there is not; empty: nothing.
 std::string MissingNetwork(const FitOptions& o) {
-  const auto& network = o.model.self_network;
+  const auto& network = o.model.learned;
   const char* asks = o.ensemble > 1            ? "--ensemble"
                      : o.takeover_weight > 0.0 ? "--takeover_weight"
                      : o.early_stopping > 0.0  ? "--early_stopping"
@@ -20,7 +20,8 @@ std::string MissingNetwork(const FitOptions& o) {
            " acts on networks, but there is none; add one, as in --self_force=mlp:4";
   }
   if (network != nullptr && !network->shape.any() && o.takeover_weight > 0.0) {
-    return "--takeover_weight acts on a network's force, but only the rod has a network";
+    return "--takeover_weight acts on a self force's network, but there is none; add one, as in "
+           "--self_force=mlp:4";
   }
   if (network != nullptr && network->shape.rod_input &&
       !(network->shape.any() && network->rod.moves())) {
@@ -35,7 +36,7 @@ std::string MissingNetwork(const FitOptions& o) {
 
 // What a network cannot do together with the rest; empty: nothing.
 std::string NetworkViolation(const FitOptions& o) {
-  const auto& network = o.model.self_network;
+  const auto& network = o.model.learned;
   if (network == nullptr) return "";
   const bool large = NeedsGradientTraining(o), pooled = AnyPooled(o.table);
   if (large && o.takeover_weight > 0.0) {
@@ -89,7 +90,7 @@ bool FitOptions::IsValid(std::string* error) const {
 }
 
 bool NeedsGradientTraining(const FitOptions& options) {
-  const auto& network = options.model.self_network;
+  const auto& network = options.model.learned;
   return !options.hold_network && network != nullptr &&
          static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
 }

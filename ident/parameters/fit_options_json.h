@@ -19,7 +19,7 @@ void AddLawNames(const ModelOptions& model, nlohmann::ordered_json* json);
 nlohmann::ordered_json SettingsJson(const FitOptions& options);
 
 // Throw what nlohmann's JSON throws for what is missing or of another type, and std::runtime_error
-// for unknown names. What was learned is not in them (self_network_io.h).
+// for unknown names. What was learned is not in them (learned_terms_io.h).
 FitOptions OptionsFrom(const nlohmann::ordered_json& json);
 // known: every parameter there is; those that the JSON does not name stay.
 ParameterTable TableFrom(const nlohmann::ordered_json& json, const ParameterTable& known);

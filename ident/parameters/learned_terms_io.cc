@@ -1,5 +1,5 @@
-// ident: learned self forces and rod laws by name, by seed and by file.
-#include "ident/parameters/self_network_io.h"
+// ident: what is learned by name, by seed and by file.
+#include "ident/parameters/learned_terms_io.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "datasets/files/random.h"
+#include "ident/parameters/option_names.h"
 
 namespace pushid {
 namespace {
@@ -16,9 +17,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kDefaultHidden = 4;
 constexpr int kLargestSize = 4096;
-constexpr size_t kMostRodLayers = 8;
+constexpr size_t kMostLayers = 8;
 constexpr double kOpenForgetGate = 1.0;
-constexpr uint64_t kRodSeed = 7919;  // so that a rod's law does not repeat the self force's weights
+// So that none repeats the weights of another.
+constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
+
+constexpr char kNetworkTerm[] = "network:";  // before the sizes
 
 const char* const kKinds[] = {"none", "mlp", "gru", "lstm"};
 const char* const kRodKinds[] = {"constant", "linear", "mlp"};
@@ -46,6 +50,15 @@ std::vector<std::string> Split(const std::string& text, char separator) {
   std::stringstream list(text);
   for (std::string part; std::getline(list, part, separator);) parts.push_back(part);
   return parts;
+}
+
+// "256-128-256"; empty where it is no list of sizes.
+std::vector<int> HiddenSizes(const std::string& text) {
+  std::vector<int> hidden;
+  for (const std::string& size : Split(text, '-')) hidden.push_back(Size(size));
+  const bool sound = !hidden.empty() && hidden.size() <= kMostLayers && text.back() != '-' &&
+                     *std::min_element(hidden.begin(), hidden.end()) > 0;
+  return sound ? hidden : std::vector<int>();
 }
 
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
@@ -82,7 +95,7 @@ Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::strin
   return choice;
 }
 
-std::string SelfForceText(SelfForceKind kind, const SelfNetwork* network) {
+std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network) {
   const bool linear = kind == SelfForceKind::kLinear;
   if (network == nullptr || !network->shape.any()) return linear ? "linear" : "none";
   return (linear ? "linear," : "") + NetworkName(network->shape);
@@ -94,22 +107,55 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   const size_t colon = text.find(':');
   const std::string sizes =
       colon == std::string::npos ? std::to_string(kDefaultHidden) : text.substr(colon + 1);
-  RodShape shape{RodKind::kMlp, {}};
-  for (const std::string& size : Split(sizes, '-')) shape.hidden.push_back(Size(size));
-  const bool sound = !shape.hidden.empty() && shape.hidden.size() <= kMostRodLayers &&
-                     sizes.back() != '-' &&
-                     *std::min_element(shape.hidden.begin(), shape.hidden.end()) > 0;
-  if (text.substr(0, colon) == "mlp" && sound) return shape;
+  const RodShape shape{RodKind::kMlp, HiddenSizes(sizes)};
+  if (text.substr(0, colon) == "mlp" && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
                "'; it must be constant, linear, mlp:4 or mlp:256-128-256 (hidden sizes of 1 to " +
-               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostRodLayers) +
+               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
                " layers)"};
 }
 
-std::string LearnedName(const SelfNetwork& network) {
-  const std::string rod = network.rod.moves() ? "rod " + RodName(network.rod) : "";
-  if (!network.shape.any()) return rod;
-  return NetworkName(network.shape) + (rod.empty() ? "" : " and " + rod);
+Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {
+  InteractionChoice choice;
+  std::string others;
+  for (const std::string& part : Split(text, ',')) {
+    if (part.rfind(kNetworkTerm, 0) != 0) {
+      others += (others.empty() ? "" : ",") + part;
+      continue;
+    }
+    if (choice.pair.any()) return Error{flag + " names more than one network"};
+    choice.pair.hidden = HiddenSizes(part.substr(sizeof kNetworkTerm - 1));
+    if (choice.pair.any()) continue;
+    return Error{flag + " names '" + part +
+                 "'; a network is network:4 or network:8-8 (hidden sizes of 1 to " +
+                 std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
+                 " layers)"};
+  }
+  if (others == "none" && choice.pair.any()) {
+    return Error{flag + ": none stands alone; leave it or the others out"};
+  }
+  if (!others.empty() || !choice.pair.any()) {
+    if (MaybeError error = ParseName(flag, others, &choice.terms)) return *error;
+  }
+  choice.terms.learned = choice.pair.any();
+  return choice;
+}
+
+std::string InteractionText(const ModelOptions& options) {
+  const std::string others = NameOf(options.interaction);
+  if (!options.interaction.learned || options.learned == nullptr) return others;
+  return (others == "none" ? "" : others + ",") + PairName(options.learned->pair);
+}
+
+std::string LearnedName(const LearnedTerms& learned) {
+  std::string name = NetworkName(learned.shape);
+  if (!learned.shape.any()) name.clear();
+  const auto add = [&name](const std::string& more) {
+    name += (name.empty() ? "" : " and ") + more;
+  };
+  if (learned.rod.moves()) add("rod " + RodName(learned.rod));
+  if (learned.pair.any()) add("interaction " + PairName(learned.pair));
+  return name;
 }
 
 std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
@@ -129,22 +175,42 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   return weights;
 }
 
-std::shared_ptr<const SelfNetwork> InitialNetwork(const NetworkShape& shape, uint64_t seed,
-                                                  const RodShape& rod) {
-  SelfNetwork network{shape, InitialWeights(shape, seed), rod};
-  Random random(seed + kRodSeed);
-  int width = RodShape::kInputs + 1;
-  for (int hidden : rod.hidden) {
-    for (int i = 0; i < hidden * width; ++i) {
-      network.weights.push_back(random.Normal() / std::sqrt(width));
+namespace {
+
+// Rows [W b] of hidden layers.
+void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
+                      std::vector<double>* weights) {
+  Random random(seed);
+  int width = inputs + 1;
+  for (int size : hidden) {
+    for (int i = 0; i < size * width; ++i) {
+      weights->push_back(random.Normal() / std::sqrt(width));
     }
-    width = hidden + 1;
+    width = size + 1;
   }
+}
+
+}  // namespace
+
+std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
+                                                   const RodShape& rod, const PairShape& pair) {
+  LearnedTerms network{shape, InitialWeights(shape, seed), rod, pair};
+  AddHiddenWeights(rod.hidden, RodShape::kInputs, seed + kRodSeed, &network.weights);
+  network.weights.resize(network.pair_at(), 0.0);
+  AddHiddenWeights(pair.hidden, PairShape::kInputs, seed + kPairSeed, &network.weights);
   network.weights.resize(network.num_weights(), 0.0);
-  return std::make_shared<const SelfNetwork>(std::move(network));
+  return std::make_shared<const LearnedTerms>(std::move(network));
 }
 
 namespace {
+
+void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
+  for (int size : hidden) {
+    if (size >= 1 && size <= kLargestSize) continue;
+    throw std::runtime_error(what + ": sizes must lie between 1 and " +
+                             std::to_string(kLargestSize));
+  }
+}
 
 RodShape RodFromJson(const Json& json) {
   const std::string kind = json.at("kind");
@@ -156,22 +222,27 @@ RodShape RodFromJson(const Json& json) {
   rod.kind = static_cast<RodKind>(known - kRodKinds);
   rod.hidden = json.at("hidden").get<std::vector<int>>();
   const bool layers_fit = rod.kind == RodKind::kMlp
-                              ? !rod.hidden.empty() && rod.hidden.size() <= kMostRodLayers
+                              ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers
                               : rod.hidden.empty();
   if (!layers_fit) throw std::runtime_error("rod: no " + kind + " has so many layers");
-  for (int size : rod.hidden) {
-    if (size < 1 || size > kLargestSize) {
-      throw std::runtime_error("rod: sizes must lie between 1 and " + std::to_string(kLargestSize));
-    }
-  }
+  CheckSizes("rod", rod.hidden);
   return rod;
+}
+
+PairShape PairFromJson(const Json& json) {
+  PairShape pair{json.at("hidden").get<std::vector<int>>()};
+  if (!pair.any() || pair.hidden.size() > kMostLayers) {
+    throw std::runtime_error("interaction: no network has so many layers");
+  }
+  CheckSizes("interaction", pair.hidden);
+  return pair;
 }
 
 }  // namespace
 
-Json ToJson(const SelfNetwork& network) {
+Json ToJson(const LearnedTerms& network) {
   const NetworkShape& s = network.shape;
-  return {
+  Json json = {
       {"kind", kKinds[static_cast<int>(s.kind)]},
       {"hidden", s.hidden},
       {"embedding", s.embedding},
@@ -179,10 +250,12 @@ Json ToJson(const SelfNetwork& network) {
       {"rod",
        {{"kind", kRodKinds[static_cast<int>(network.rod.kind)]}, {"hidden", network.rod.hidden}}},
       {"weights", network.weights}};
+  if (network.pair.any()) json["interaction"] = {{"hidden", network.pair.hidden}};
+  return json;
 }
 
-std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
-  SelfNetwork network;
+std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
+  LearnedTerms network;
   NetworkShape& s = network.shape;
   const std::string kind = json.at("kind");
   s.kind = KindOf(kind);
@@ -190,7 +263,8 @@ std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
     throw std::runtime_error("network: '" + kind + "' is no kind (none, mlp, gru, lstm)");
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
-  if (!s.any() && !network.rod.moves()) throw std::runtime_error("network: nothing is learned");
+  if (json.contains("interaction")) network.pair = PairFromJson(json.at("interaction"));
+  if (!network.any()) throw std::runtime_error("network: nothing is learned");
   for (const char* size : {"hidden", "embedding"}) {
     if (!json.at(size).is_number_integer()) {
       throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
@@ -216,7 +290,7 @@ std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const Json& json) {
   for (double weight : network.weights) {
     if (!std::isfinite(weight)) throw std::runtime_error("network: a weight is not finite");
   }
-  return std::make_shared<const SelfNetwork>(std::move(network));
+  return std::make_shared<const LearnedTerms>(std::move(network));
 }
 
 }  // namespace pushid

@@ -1,12 +1,15 @@
-// ident: what a model learns of a person (a self force, a law of the rod) as words of a command
+// ident: what a model learns (a self force, a law of the rod, an interaction) as words of a command
 // line, as first weights, and as JSON.
 //
 //   mlp:4, gru:8, lstm:16           kind and hidden size (4 where it is left out)
 //   lstm:256:32                     with an embedding of 32 before it
 //   constant, linear, mlp:4, mlp:256-128-256                     a law of the rod
+//   network:4, network:8-8, among the terms of an interaction    hidden sizes
 // JSON: {"kind": "gru", "hidden": 8, "embedding": 0, "rod_input": false,
-//        "rod": {"kind": "mlp", "hidden": [4]}, "weights": [...]}, the flat array of
-// models/self_network.h, without loss; kind none where only the rod's law is learned.
+//        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4]},
+//        "weights": [...]}, the flat array of models/learned_terms.h, without loss; kind none and
+//        no
+// interaction where those are not learned.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +19,7 @@
 
 #include "datasets/files/error.h"
 #include "ident/parameters/parameter_table.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 
@@ -26,23 +29,32 @@ struct SelfForceChoice {
   NetworkShape network;
 };
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text);
-std::string SelfForceText(SelfForceKind kind, const SelfNetwork* network);
+std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network);
 
 // The value of --rod.
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text);
 
-// "gru:4", "rod linear", "gru:4 and rod mlp:4".
-std::string LearnedName(const SelfNetwork& network);
+// The value of --interaction: terms by name (option_names.h) and at most one network.
+struct InteractionChoice {
+  InteractionTerms terms;
+  PairShape pair;
+};
+Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text);
+std::string InteractionText(const ModelOptions& options);
+
+// "gru:4", "rod linear", "gru:4 and rod mlp:4", "interaction network:4".
+std::string LearnedName(const LearnedTerms& network);
 
 // Random hidden weights (variance 1 / inputs of the unit) and no output: no force and a rod that
 // stays, but gradients to leave that by. The forget gates of an LSTM start open.
 std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed);
-std::shared_ptr<const SelfNetwork> InitialNetwork(const NetworkShape& shape, uint64_t seed,
-                                                  const RodShape& rod = {});
+std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
+                                                   const RodShape& rod = {},
+                                                   const PairShape& pair = {});
 
-nlohmann::ordered_json ToJson(const SelfNetwork& network);
+nlohmann::ordered_json ToJson(const LearnedTerms& network);
 // Throws std::runtime_error that says what is wrong: an unknown kind, nothing that is learned, a
 // number of weights that does not follow from the sizes, weights that are not finite.
-std::shared_ptr<const SelfNetwork> SelfNetworkFromJson(const nlohmann::ordered_json& json);
+std::shared_ptr<const LearnedTerms> LearnedFromJson(const nlohmann::ordered_json& json);
 
 }  // namespace pushid

@@ -1,10 +1,10 @@
 // ident: rows of the options that say what the model is.
 #include <memory>
 
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_row_makers.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 
 namespace pushid {
 namespace {
@@ -16,8 +16,10 @@ Row PresetRow() {
   Row row = WordsRow(
       "preset", OptionStage::kPreset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
-      "tail, posture-relative recovery), ldp (plain PD and friction from upright), or group (tail "
-      "with linear self forces and contact, pooled by setting)",
+      "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
+      "by "
+      "setting), ldp (plain PD and friction from upright), or ldp_groups (that with LDP's "
+      "potential and torques between people, and a network beside them)",
       nullptr);
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
   row.json = "/preset";
@@ -27,12 +29,12 @@ Row PresetRow() {
 }
 
 // What is learned so far; its weights are drawn once all of it is known (fit_setup.h).
-SelfNetwork Learned(const FitOptions& o) {
-  return o.model.self_network != nullptr ? *o.model.self_network : SelfNetwork{};
+LearnedTerms Learned(const FitOptions& o) {
+  return o.model.learned != nullptr ? *o.model.learned : LearnedTerms{};
 }
-void SetLearned(const SelfNetwork& network, FitOptions* o) {
-  const bool any = network.shape.any() || network.shape.rod_input || network.rod.moves();
-  o->model.self_network = any ? std::make_shared<const SelfNetwork>(network) : nullptr;
+void SetLearned(const LearnedTerms& network, FitOptions* o) {
+  const bool any = network.any() || network.shape.rod_input;
+  o->model.learned = any ? std::make_shared<const LearnedTerms>(network) : nullptr;
 }
 
 Row StanceRow() {
@@ -75,14 +77,14 @@ Row SelfForceRow() {
         const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", text);
         if (!choice.ok()) return choice.error();
         SetSelfForce(choice.value().kind, o);
-        SelfNetwork network = Learned(*o);
+        LearnedTerms network = Learned(*o);
         network.shape = choice.value().network;
         SetLearned(network, o);
         return std::nullopt;
       }));
   row.json = "/self_force";
   row.write = [](const FitOptions& o) {
-    return Json(SelfForceText(o.self_force, o.model.self_network.get()));
+    return Json(SelfForceText(o.self_force, o.model.learned.get()));
   };
   row.read = [](const Json& json, FitOptions* o) {
     const auto self = ParseSelfForce("self_force", json.get<std::string>());
@@ -99,7 +101,7 @@ Row RodRow() {
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();
-                       SelfNetwork network = Learned(*o);
+                       LearnedTerms network = Learned(*o);
                        network.rod = rod.value();
                        SetLearned(network, o);
                        return std::nullopt;
@@ -113,7 +115,7 @@ Row RodInputRow() {
       "rod_input", "let the self force's network see how far the rod has moved",
       [](const FitOptions& o) { return Learned(o).shape.rod_input; },
       [](bool value, FitOptions* o) {
-        SelfNetwork network = Learned(*o);
+        LearnedTerms network = Learned(*o);
         network.shape.rod_input = value;
         SetLearned(network, o);
       });
@@ -124,6 +126,34 @@ Row PresetPriorsRow() {
       "preset_priors", "keep the preset's weak priors",
       [](const FitOptions& o) { return o.preset_priors; },
       [](bool value, FitOptions* o) { o->preset_priors = value; });
+}
+
+Row InteractionRow() {
+  Row row = Decided(WordsRow(
+      "interaction", OptionStage::kModel,
+      "what people do to each other: none, or some of these, comma-separated: contact (smooth "
+      "and mutual: spring,damping), spring, damping, ldp (smoothed: potential,lean), "
+      "potential, lean, ldp_discrete (LDP's exact form, to evaluate), network:4 (learned beside "
+      "contact, by hidden sizes), network (given by --interaction_network), drive (who was pushed "
+      "by others steps on)",
+      [](const std::string& text, FitOptions* o) -> MaybeError {
+        const Result<InteractionChoice> choice = ParseInteraction("--interaction", text);
+        if (!choice.ok()) return choice.error();
+        o->model.interaction = choice.value().terms;
+        LearnedTerms learned = Learned(*o);
+        learned.pair = choice.value().pair;
+        SetLearned(learned, o);
+        return std::nullopt;
+      }));
+  row.json = "/interaction";
+  row.text = [](const FitOptions& o) { return InteractionText(o.model); };
+  row.write = [](const FitOptions& o) { return Json(InteractionText(o.model)); };
+  row.read = [](const Json& json, FitOptions* o) {
+    const auto choice = ParseInteraction("interaction", json.get<std::string>());
+    if (!choice.ok()) throw std::runtime_error(choice.error().ToString());
+    o->model.interaction = choice.value().terms;
+  };
+  return row;
 }
 
 Row InteractionNetworkRow() {
@@ -179,12 +209,7 @@ std::vector<Row> ModelOptionRows() {
           "cart_derivative", "/cart_derivative",
           [](O & o) -> auto& { return o.model.cart_derivative; },
           "none or backward: lets Kd_x and Kd_y act"),
-      Decided(NameRow<InteractionTerms>(
-          "interaction", "/interaction", [](O & o) -> auto& { return o.model.interaction; },
-          "what people do to each other: none, or some of these, comma-separated: contact (smooth "
-          "and mutual: spring,damping), spring, damping, ldp (smoothed: potential,lean), "
-          "potential, lean, ldp_discrete (LDP's exact form, to evaluate), network (of "
-          "--interaction_network), drive (who was pushed by others steps on)")),
+      InteractionRow(),
       InteractionNetworkRow(),
       MayBeAbsent(NameRow<ProcessNoiseTerms>(
           "process_noise", "/process_noise", [](O & o) -> auto& { return o.model.process_noise; },

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/parameters/learned_terms_io.h"
 #include "models/parameter_facts.h"
 
 namespace pushid {
@@ -82,6 +83,17 @@ FitOptions LdpPreset() {
   return o;
 }
 
+// LDP's whole composition for groups: potential, torques against leaning on each other, and a
+// network beside them.
+FitOptions LdpGroupsPreset() {
+  constexpr int kHidden = 4;
+  FitOptions o = LdpPreset();
+  o.preset = "ldp_groups";
+  o.model.interaction.potential = o.model.interaction.lean = o.model.interaction.learned = true;
+  o.model.learned = InitialNetwork({}, o.seed, {}, PairShape{{kHidden}});
+  return o;
+}
+
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   if (kind != SelfForceKind::kLinear) return;
   for (int id = kAx; id <= kDq; ++id) {
@@ -140,7 +152,7 @@ void SetStance(Stance stance, FitOptions* options) {
 
 std::string MemoryOf(const ModelOptions& model) {
   if (model.stance != Stance::kSlide) return "--stance=" + NameOf(model.stance);
-  if (model.self_network != nullptr) return "a network";
+  if (model.learned != nullptr) return "a network";
   if (model.cart_derivative != CartDerivative::kNone) return "--cart_derivative";
   if (model.interaction.drive) return "--interaction=drive";
   return "";
@@ -174,11 +186,12 @@ std::string PresetFor(const std::string& name, const std::vector<PendulumRecordi
 Result<FitOptions> StartPreset(const std::string& name) {
   if (name == "tail") return TailPreset();
   if (name == "ldp") return LdpPreset();
+  if (name == "ldp_groups") return LdpGroupsPreset();
   if (name == "group") return GroupPreset();
   if (name == kAutoPreset) {
     return Error{"the preset auto looks at recordings: ask PresetFor what it stands for"};
   }
-  return Error{"--preset is '" + name + "'; it must be auto, tail, ldp or group"};
+  return Error{"--preset is '" + name + "'; it must be auto, tail, ldp, ldp_groups or group"};
 }
 
 Result<FitOptions> MakePreset(const std::string& name) {

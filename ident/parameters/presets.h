@@ -5,6 +5,8 @@
 //   ldp:   one person: plain PD balance and friction from upright; six free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
 //          partially pooled by setting (condition); eighteen shared parameters
+//   ldp_groups: people who touch, as LDP composes them: that with a potential, torques against
+//          leaning on each other and a learned interaction
 //   auto:  tail where every recording is of one person, otherwise group
 //
 //   FitOptions options = MakePreset("tail").value();

@@ -7,7 +7,7 @@
 #include "datasets/files/atomic_file.h"
 #include "ident/prediction/median_prediction.h"
 #include "ident/results/model_rollout.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
@@ -59,7 +59,7 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
   add(PredictOne(model.options, PeoplesParameters(model, recording, effect), recording, frames));
   for (const EnsembleMember& member : model.others) {
     ModelOptions options = model.options;
-    options.self_network = member.network;
+    options.learned = member.network;
     ParameterSet<double> parameters = member.parameters;
     parameters[kTailGain] *= std::exp(effect);
     add(PredictOne(options, {parameters}, recording, frames));

@@ -200,7 +200,7 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
   f[kContactWork] = {balance.TotalWork(), 1.0};
   f[kContactAbsorbed] = {balance.absorbed, 1.0};
   // Of mutual contact alone: LDP's terms and networks push without taking anything first.
-  if (!model.options.interaction.AtCarts()) f[kRestitution] = {balance.returned, balance.absorbed};
+  if (model.options.interaction.Mutual()) f[kRestitution] = {balance.returned, balance.absorbed};
 }
 
 }  // namespace pushid

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "models/cart_damping.h"
+#include "models/learned_terms.h"
 #include "models/modal_stability.h"
 #include "models/rollout.h"
-#include "models/self_network.h"
 
 namespace pushid {
 namespace {
@@ -76,7 +76,7 @@ constexpr int kPreviousAt = 6, kRodAt = 8, kMemoryAt = 9;
 
 // One step of what is learned, about rest, by central differences (it is smooth, and its values are
 // of order one): d[force; rod's velocity; memory]/d(free state).
-Eigen::MatrixXd LearnedStep(const SelfNetwork& network, const SelfForce& self,
+Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
                             const ParameterSet<double>& parameters) {
   constexpr double kDifference = 1e-5;
   const NetworkShape& shape = network.shape;
@@ -124,8 +124,8 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
       InverseMassMatrix<double>(body, Angles<double>(), body.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
-  if (options.self_network != nullptr) {
-    learned = LearnedStep(*options.self_network, self, parameters);
+  if (options.learned != nullptr) {
+    learned = LearnedStep(*options.learned, self, parameters);
   }
   const Eigen::Index size = learned.cols(), memory = size - kMemoryAt;
   Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
@@ -128,8 +128,8 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
       return "--settling_weight holds it to settle";
     case Verdict::kUnstableThoughSettled:
       // The hinge on the modes sees no network.
-      return options.self_network == nullptr ? "--mode_weight makes the free modes decay"
-                                             : "a smaller --network_prior holds it";
+      return options.learned == nullptr ? "--mode_weight makes the free modes decay"
+                                        : "a smaller --network_prior holds it";
     case Verdict::kRodRunsAway:
       return "a smaller --network_prior or --rod=constant holds it";
     case Verdict::kNegativeDrag:

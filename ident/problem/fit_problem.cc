@@ -14,8 +14,8 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const F
       counts_(std::move(counts)),
       map_(options.table.Map()) {
   map_.pool_by = options.pool_by;
-  if (options.model.self_network != nullptr && !options.hold_network) {
-    map_.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  if (options.model.learned != nullptr && !options.hold_network) {
+    map_.num_weights = static_cast<int>(options.model.learned->weights.size());
   }
 }
 
@@ -37,7 +37,7 @@ FitPoint FitProblem::NominalPoint() const {
       velocity.insert(velocity.end(), person.start.qd.data(), person.start.qd.data() + 4);
     }
   }
-  if (map_.num_weights > 0) point.weights = options_.model.self_network->weights;
+  if (map_.num_weights > 0) point.weights = options_.model.learned->weights;
   return point;
 }
 
@@ -61,9 +61,9 @@ ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::st
 ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
   ModelOptions model = options_.model;
   if (map_.num_weights == 0) return model;
-  SelfNetwork network = *model.self_network;
+  LearnedTerms network = *model.learned;
   network.weights = point.weights;
-  model.self_network = std::make_shared<const SelfNetwork>(std::move(network));
+  model.learned = std::make_shared<const LearnedTerms>(std::move(network));
   return model;
 }
 

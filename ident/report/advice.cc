@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
 #include "ident/results/interval_agreement.h"
@@ -135,7 +135,7 @@ FitCommand Adviser::SettleHarder(double weight) const {
 FitCommand Adviser::DecayingModes() const {
   const FitOptions& o = result_.options;
   // The hinge on the modes sees no network.
-  if (o.model.self_network != nullptr) {
+  if (o.model.learned != nullptr) {
     const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
     return Same().Set("network_prior", Rounded(prior, 6));
   }

@@ -7,8 +7,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/preparation_text.h"
 #include "ident/report/refits_text.h"
@@ -44,7 +44,7 @@ std::string TrainingText(const FitOptions& o) {
     text += ", stopped early by " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
   }
   if (o.takeover_weight > 0.0) text += ", takeover weight " + Rounded(o.takeover_weight, 4);
-  if (o.model.self_network->num_weights() > kMostGaussNewtonWeights) {
+  if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
     text += ", held while the errors above were computed";
   }
   return text;
@@ -53,7 +53,7 @@ std::string TrainingText(const FitOptions& o) {
 }  // namespace
 
 std::string NetworkText(const FitResult& result) {
-  const auto& network = result.options.model.self_network;
+  const auto& network = result.options.model.learned;
   if (network == nullptr) return "";
   std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
                      Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) +
@@ -98,9 +98,9 @@ std::string ReportText(const FittedModel& model) {
       NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
       NameOf(o.model.push_tail) +
       (o.model.stance == Stance::kSlide ? "" : ", stance " + NameOf(o.model.stance)) +
-      ", self force " + SelfForceText(o.self_force, o.model.self_network.get()) +
-      (RodMoves(o.model) ? ", rod " + RodName(o.model.self_network->rod) : "") + ", interaction " +
-      NameOf(o.model.interaction) + PoolingText(o) + SelfFromText(model.provenance) + "\n\n";
+      ", self force " + SelfForceText(o.self_force, o.model.learned.get()) +
+      (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") + ", interaction " +
+      InteractionText(o.model) + PoolingText(o) + SelfFromText(model.provenance) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {

@@ -1,7 +1,7 @@
 // ident: fitting seed after seed.
 #include "ident/results/ensemble.h"
 
-#include "ident/parameters/self_network_io.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/solver/solver.h"
 
 namespace pushid {
@@ -12,13 +12,13 @@ std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& 
   for (int k = 1; k < options.ensemble; ++k) {
     FitOptions seeded = options;
     seeded.seed = options.seed + k;
-    const SelfNetwork& network = *options.model.self_network;
-    seeded.model.self_network = InitialNetwork(network.shape, seeded.seed, network.rod);
+    const LearnedTerms& network = *options.model.learned;
+    seeded.model.learned = InitialNetwork(network.shape, seeded.seed, network.rod, network.pair);
     const FitProblem problem(recordings, seeded);
     const Solution solution = Solve(problem);
     if (solution.best < 0) continue;
     const FitPoint& point = solution.Best().to;
-    members.push_back({problem.Parameters(point, ""), problem.ModelAt(point).self_network});
+    members.push_back({problem.Parameters(point, ""), problem.ModelAt(point).learned});
   }
   return members;
 }

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "models/learned_terms.h"
 #include "models/parameters.h"
-#include "models/self_network.h"
 
 namespace pushid {
 
@@ -17,7 +17,7 @@ struct PendulumRecording;
 // What one seed found.
 struct EnsembleMember {
   ParameterSet<double> parameters{};
-  std::shared_ptr<const SelfNetwork> network;
+  std::shared_ptr<const LearnedTerms> network;
 };
 
 // The fits of all seeds but the first (options.seed), one by one; a seed without a usable optimum

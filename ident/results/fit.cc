@@ -269,7 +269,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.cost = best.cost;
   result.message = best.message;
   result.parameters = problem.Parameters(best.to, "");
-  if (const auto network = problem.ModelAt(best.to).self_network; network && network->shape.any()) {
+  if (const auto network = problem.ModelAt(best.to).learned; network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -25,7 +25,7 @@ MaybeError TakeSelfFrom(const std::string& path, Stance stance, ParameterTable* 
   const Result<FittedModel> read = ReadFittedModel(path);
   if (!read.ok()) return read.error();
   const FitResult& source = read.value().fit;
-  if (const auto& network = source.options.model.self_network) {
+  if (const auto& network = source.options.model.learned) {
     return Error{"has learned " + LearnedName(*network) +
                      ", which --self_from cannot take over; fit one without",
                  path};
@@ -60,14 +60,16 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
 
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
-  const auto& network = options.model.self_network;
+  const auto& network = options.model.learned;
   for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
     if (network != nullptr || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +
                  " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
   }
   if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
-    return Error{"--takeover_weight acts on a network's force, but only the rod has a network"};
+    return Error{
+        "--takeover_weight acts on a self force's network, but there is none; add one, as in "
+        "--self_force=mlp:4"};
   }
   for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
                            "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
@@ -113,8 +115,8 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
     if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
   }
   // Its shape is known now, and so is the seed.
-  if (const auto network = o.model.self_network) {
-    o.model.self_network = InitialNetwork(network->shape, o.seed, network->rod);
+  if (const auto network = o.model.learned) {
+    o.model.learned = InitialNetwork(network->shape, o.seed, network->rod, network->pair);
   }
   if (Find(given, "pool") == nullptr) PoolOnlyFree(&o);
   if (MaybeError error = PoolParameters(&o)) return *error;

@@ -3,8 +3,8 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
 #include "ident/results/recording_effect_json.h"
@@ -58,7 +58,7 @@ EnsembleMember MemberFrom(const Json& json, const Json& rows, const ParameterTab
   for (const ParameterSpec& spec : table.specs) {
     member.parameters[spec.id] = ValueFrom(json.at("values"), rows, spec);
   }
-  member.network = SelfNetworkFromJson(json.at("self_network"));
+  member.network = LearnedFromJson(json.at("self_network"));
   return member;
 }
 
@@ -221,12 +221,17 @@ class ModelReader {
   void ReadLearned() {
     ModelOptions& options = result_.options.model;
     if (json_.contains("self_network")) {
-      options.self_network = SelfNetworkFromJson(At("self_network"));
+      options.learned = LearnedFromJson(At("self_network"));
       result_.options.hold_network = true;  // what is read is not fitted on
     }
     const std::string learned = At("model").at("self_force");
-    if (SelfForceText(result_.options.self_force, options.self_network.get()) != learned) {
+    if (SelfForceText(result_.options.self_force, options.learned.get()) != learned) {
       throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+    }
+    const bool pair = options.learned != nullptr && options.learned->pair.any();
+    const std::string interaction = At("model").at("interaction");
+    if (options.interaction.learned != pair || InteractionText(options) != interaction) {
+      throw std::runtime_error("interaction is " + interaction + ", which self_network is not");
     }
     if (json_.contains("network_takeover")) {
       const Json& t = At("network_takeover");
@@ -301,7 +306,7 @@ class ModelReader {
       result_.parameters[spec.id] = ValueFrom(values, json_.at("table"), spec);
     }
     if (!json_.contains("ensemble")) return;
-    const auto& network = result_.options.model.self_network;
+    const auto& network = result_.options.model.learned;
     for (const Json& one : At("ensemble")) {
       result_.others.push_back(MemberFrom(one, json_.at("table"), table));
       if (network == nullptr ||

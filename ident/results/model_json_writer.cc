@@ -1,8 +1,8 @@
 // ident: a fitted model to JSON. model_json_reader.cc is the inverse.
 #include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_names.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/results/confidence_json.h"
 #include "ident/results/json_pieces.h"
 #include "ident/results/recording_effect_json.h"
@@ -187,7 +187,7 @@ Json PushRangeJson(const PushRange& range) {
 
 // What only some models have.
 void AddLearned(const FitResult& result, Json* json) {
-  if (const auto& network = result.options.model.self_network) {
+  if (const auto& network = result.options.model.learned) {
     (*json)["self_network"] = ToJson(*network);
     if (const auto& t = result.takeover) {
       (*json)["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},

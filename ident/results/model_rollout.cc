@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 #include "residuals/cost_functions/rollout_residual.h"
 
 namespace pushid {

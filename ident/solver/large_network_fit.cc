@@ -10,7 +10,7 @@
 #include <memory>
 #include <utility>
 
-#include "ident/parameters/self_network_io.h"
+#include "ident/parameters/learned_terms_io.h"
 
 namespace pushid {
 namespace {
@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 class Variables {
  public:
   explicit Variables(const LargeNetworkFit& fit)
-      : fit_(fit), num_weights_(fit.model.self_network->num_weights()), shared_(fit.shared) {}
+      : fit_(fit), num_weights_(fit.model.learned->num_weights()), shared_(fit.shared) {}
 
   int size() const { return num_weights_ + num_shared(); }
   int num_weights() const { return num_weights_; }
@@ -29,7 +29,7 @@ class Variables {
     return fit_.options.fit_shared ? static_cast<int>(fit_.shared.size()) : 0;
   }
   std::vector<double> Start() const {
-    std::vector<double> start = fit_.model.self_network->weights;
+    std::vector<double> start = fit_.model.learned->weights;
     start.resize(size(), 0.0);
     return start;
   }
@@ -166,8 +166,8 @@ class Judge : public ceres::IterationCallback {
 };
 
 MaybeError CheckFit(const LargeNetworkFit& fit) {
-  if (fit.model.self_network == nullptr) return Error{"there is no network to train"};
-  const SelfNetwork& network = *fit.model.self_network;
+  if (fit.model.learned == nullptr) return Error{"there is no network to train"};
+  const LearnedTerms& network = *fit.model.learned;
   if (static_cast<int>(network.weights.size()) != network.num_weights()) {
     return Error{"the network " + LearnedName(network) + " has " +
                  std::to_string(network.num_weights()) + " weights, but " +
@@ -190,7 +190,7 @@ Result<AdjointGradient> MakeTraining(const LargeNetworkFit& fit,
       AdjointGradient::Create(fit.training, fit.model, fit.map, fit.sigmas);
   if (!whole.ok()) return whole;
   const AdjointCost start = whole.value().Evaluate(
-      fit.shared.data(), fit.model.self_network->weights.data(), nullptr, nullptr);
+      fit.shared.data(), fit.model.learned->weights.data(), nullptr, nullptr);
   if (start.ok()) return whole;
   std::vector<AdjointRecording> recordings;
   for (int i = 0; i < static_cast<int>(fit.training.size()); ++i) {
@@ -238,9 +238,9 @@ std::vector<SharedPrior> SharedPriors(const ParameterTable& table, const Paramet
   return priors;
 }
 
-std::shared_ptr<const SelfNetwork> LargeNetworkSolution::Network(SelfNetwork like) const {
+std::shared_ptr<const LearnedTerms> LargeNetworkSolution::Network(LearnedTerms like) const {
   like.weights = weights;
-  return std::make_shared<const SelfNetwork>(std::move(like));
+  return std::make_shared<const LearnedTerms>(std::move(like));
 }
 
 Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,

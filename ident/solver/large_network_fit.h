@@ -89,7 +89,7 @@ struct LargeNetworkSolution {
   std::vector<LargeNetworkIteration> trace;  // from iteration 0 on
 
   // The network at the best point; like: of its shape.
-  std::shared_ptr<const SelfNetwork> Network(SelfNetwork like) const;
+  std::shared_ptr<const LearnedTerms> Network(LearnedTerms like) const;
 };
 
 // Called after every iteration; false ends the training.

@@ -25,14 +25,14 @@ ParameterMap MapBesideNetwork(const FitOptions& options, const ParameterSet<doub
   map.values = physics;
   const ParameterSpec& lift = options.table[kRodLift];
   if (lift.free) map.fitted = {{lift.id, lift.transform}};
-  map.num_weights = static_cast<int>(options.model.self_network->weights.size());
+  map.num_weights = static_cast<int>(options.model.learned->weights.size());
   return map;
 }
 
 }  // namespace
 
 FitOptions PhysicsAlone(FitOptions options) {
-  options.model.self_network = nullptr;
+  options.model.learned = nullptr;
   options.table[kRodLift].free = false;  // no rod moves
   return options;
 }
@@ -71,7 +71,7 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   if (!trained.ok()) return trained.error();
 
   FitOptions held = options;
-  held.model.self_network = trained.value().Network(*options.model.self_network);
+  held.model.learned = trained.value().Network(*options.model.learned);
   held.hold_network = true;
   held.start = FitStart::kNominal;
   held.horizons = {0};

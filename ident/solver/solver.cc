@@ -55,7 +55,7 @@ ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem, bool has_
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = LinearSolverFor(problem, options.model.self_network != nullptr);
+  solver.linear_solver_type = LinearSolverFor(problem, options.model.learned != nullptr);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;

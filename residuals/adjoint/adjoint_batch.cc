@@ -46,7 +46,7 @@ AdjointGradient::Batch::Batch(const std::vector<AdjointRecording>& all,
       masses.push_back(self[n].body.mass);
     }
   }
-  const SelfNetwork& network = *options_.self_network;
+  const LearnedTerms& network = *options_.learned;
   if (network.shape.any()) network_.emplace(network.shape, kernels, columns_, masses);
   if (network.rod.moves()) rod_.emplace(network.rod, kernels, columns_);
 }
@@ -55,7 +55,7 @@ double AdjointGradient::Batch::Forward(const ParameterSet<double>& p, const doub
                                        std::vector<RolloutStatus>* status) {
   end_ = horizon_;
   if (network_) network_->Start(weights);
-  if (rod_) rod_->Start(weights + options_.self_network->rod_at());
+  if (rod_) rod_->Start(weights + options_.learned->rod_at());
   for (int step = 0; step < columns_.num_steps(); ++step) {
     SetForces(step);
     SetRodVelocities(p, step);
@@ -68,7 +68,7 @@ void AdjointGradient::Batch::SetForces(int step) {
   const int people = columns_.active(step);
   forces_.setZero(4, people);
   if (!network_) return;
-  const NetworkShape& shape = options_.self_network->shape;
+  const NetworkShape& shape = options_.learned->shape;
   VectorX<double> u(shape.num_inputs());
   inputs_.setZero(shape.num_inputs(), people);
   for (int column = 0; column < people; ++column) {
@@ -87,7 +87,7 @@ void AdjointGradient::Batch::SetRodVelocities(const ParameterSet<double>& p, int
   const int people = columns_.active(step);
   rod_velocities_.setZero(people);
   if (!rod_) return;
-  RodLayers<double> layers(options_.self_network->rod);
+  RodLayers<double> layers(options_.learned->rod);
   rod_inputs_.setZero(RodShape::kInputs, people);
   for (int column = 0; column < people; ++column) {
     const Walker& walker = walkers_[column];
@@ -239,7 +239,7 @@ void AdjointGradient::Batch::Backward(const ParameterSet<double>& p,
   }
   if (by_weight == nullptr) return;
   if (network_) network_->AddWeightGradient(by_weight);
-  if (rod_) rod_->AddWeightGradient(by_weight + options_.self_network->rod_at());
+  if (rod_) rod_->AddWeightGradient(by_weight + options_.learned->rod_at());
 }
 
 }  // namespace pushid

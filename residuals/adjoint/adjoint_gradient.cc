@@ -15,7 +15,7 @@ constexpr int kPeopleTogether = 64;
 
 MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
                             const ModelOptions& options, const ParameterMap& map) {
-  if (options.self_network == nullptr) return Error{"the adjoint gradient needs a network"};
+  if (options.learned == nullptr) return Error{"the adjoint gradient needs a network"};
   if (options.interaction.Any() || options.interaction.drive) {
     return Error{
         "the adjoint gradient does not know forces between people; use recordings of single "
@@ -54,7 +54,7 @@ Result<AdjointGradient> AdjointGradient::Create(const std::vector<AdjointRecordi
   if (const MaybeError error = WhatCannotBeDone(recordings, options, map)) return *error;
   AdjointGradient gradient;
   gradient.map_ = map;
-  gradient.num_weights_ = options.self_network->num_weights();
+  gradient.num_weights_ = options.learned->num_weights();
   gradient.num_recordings_ = static_cast<int>(recordings.size());
   const auto frames = [&](int i) {
     const int all = recordings[i].recording->num_frames();

@@ -16,8 +16,8 @@ const Eigen::Vector3d kTypical(40.0, 1400.0, 70.0);
 
 TakeoverResidual::TakeoverResidual(const std::vector<PendulumRecording>& recordings,
                                    const ModelOptions& options, double weight)
-    : shape_(options.self_network->shape),
-      num_weights_(options.self_network->num_weights()),
+    : shape_(options.learned->shape),
+      num_weights_(options.learned->num_weights()),
       weight_(weight) {
   mutable_parameter_block_sizes()->push_back(num_weights_);
   set_num_residuals(3);

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
+#include "models/learned_terms.h"
 #include "models/options.h"
-#include "models/self_network.h"
 
 namespace pushid {
 

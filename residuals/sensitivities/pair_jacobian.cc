@@ -156,7 +156,7 @@ PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Interactio
                                  const Pair& pair, const ParameterSet<double>& p,
                                  const PendulumState<double>& n, const PendulumState<double>& j) {
   InteractionTerms others = terms;
-  others.spring = others.damping = false;
+  others.spring = others.damping = others.learned = false;
   PairJacobian jacobian;
   if (others.Any()) {
     jacobian = OtherJacobian(others, network, pair, p, n, j);

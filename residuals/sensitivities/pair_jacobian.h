@@ -11,7 +11,8 @@
 
 namespace pushid {
 
-// d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people.
+// d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people, but for
+// what is learned (learned_pair_jacobian.h).
 struct PairJacobian {
   Eigen::Matrix<double, 8, 16> by_states;  // rows: n then j; columns [q, qd] of n, then of j
   Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on

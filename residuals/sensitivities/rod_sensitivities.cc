@@ -3,7 +3,7 @@
 
 namespace pushid {
 
-RodSensitivities::RodSensitivities(const SelfNetwork& network, const double* weights,
+RodSensitivities::RodSensitivities(const LearnedTerms& network, const double* weights,
                                    int num_columns, int weight_column)
     : shape_(network.rod),
       weights_(weights + network.rod_at()),

@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "models/learned_terms.h"
 #include "models/self_force.h"
-#include "models/self_network.h"
 #include "residuals/parameter_map.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 
@@ -34,7 +34,7 @@ class RodSensitivities {
   using Row = NetworkSensitivities::Row;
 
   // weights: of the whole network; weight_column: of the first of them, negative when not fitted.
-  RodSensitivities(const SelfNetwork& network, const double* weights, int num_columns,
+  RodSensitivities(const LearnedTerms& network, const double* weights, int num_columns,
                    int weight_column);
 
   // dv of a step at a frame with the person's S and s; before: S one frame earlier.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "residuals/kernels/narrow_product.h"
+#include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 #include "residuals/sensitivities/rod_sensitivities.h"
 #include "residuals/sensitivities/stance_sensitivities.h"
@@ -42,6 +43,11 @@ namespace {
 
 using Columns = NetworkSensitivities::ForceColumns;
 
+const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
+  return inputs.network_weights != nullptr ? inputs.network_weights
+                                           : options.learned->weights.data();
+}
+
 // Derivatives of what everybody gets from others, now and lately.
 class ReceivedSensitivities {
  public:
@@ -50,6 +56,7 @@ class ReceivedSensitivities {
       : scene_(scene),
         options_(options),
         inputs_(inputs),
+        weights_(options.interaction.learned ? Weights(options, inputs) : nullptr),
         now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
         lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {}
 
@@ -60,9 +67,7 @@ class ReceivedSensitivities {
     for (Columns& columns : now_) columns.setZero();
     forces->pairs().ForEachPair([&](int n, int j) {
       if (!forces->Between(n, j).acts()) return;
-      const PairJacobian jacobian = ComputePairJacobian(
-          options_.interaction, options_.interaction_network.get(), PairOf(scene_, n, j),
-          forces->Parameters(0), path.At(frame, n), path.At(frame, j));
+      const PairJacobian jacobian = Of(n, j, path, frame, *forces);
       for (int side = 0; side < 2; ++side) {
         Columns& target = now_[side == 0 ? n : j];
         const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
@@ -74,6 +79,9 @@ class ReceivedSensitivities {
               entry.derivative *
               jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter);
         }
+        if (weights_ == nullptr || inputs_.weight_column < 0) continue;
+        target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
+            by_weight_.middleRows<4>(4 * side);
       }
     });
   }
@@ -106,6 +114,21 @@ class ReceivedSensitivities {
   }
 
  private:
+  // Of two people; by_weight_ as well where weights are fitted.
+  PairJacobian Of(int n, int j, const RolloutPath<double>& path, int frame,
+                  const SceneForces<double>& forces) {
+    const Pair pair = PairOf(scene_, n, j);
+    PairJacobian jacobian =
+        ComputePairJacobian(options_.interaction, options_.interaction_network.get(), pair,
+                            forces.Parameters(0), path.At(frame, n), path.At(frame, j));
+    if (weights_ == nullptr) return jacobian;
+    const LearnedTerms& learned = *options_.learned;
+    AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
+                           path.At(frame, n), path.At(frame, j), &jacobian,
+                           inputs_.weight_column < 0 ? nullptr : &by_weight_);
+    return jacobian;
+  }
+
   static constexpr int kDriveParameters = kDriveTime - kDriveGain + 1;
 
   template <typename Jet>
@@ -142,20 +165,17 @@ class ReceivedSensitivities {
   const Scene& scene_;
   const ModelOptions& options_;
   const SensitivityInputs& inputs_;
+  const double* weights_;  // of what is learned; null where no interaction is
+  PairByWeight by_weight_;
   std::vector<Columns> now_, lately_;
 };
-
-const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
-  return inputs.network_weights != nullptr ? inputs.network_weights
-                                           : options.self_network->weights.data();
-}
 
 // One for each person, or none.
 std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelOptions& options,
                                                 const SensitivityInputs& inputs) {
   std::vector<NetworkSensitivities> networks;
-  if (options.self_network == nullptr || !options.self_network->shape.any()) return networks;
-  const SelfNetwork& network = *options.self_network;
+  if (options.learned == nullptr || !options.learned->shape.any()) return networks;
+  const LearnedTerms& network = *options.learned;
   const double* weights = Weights(options, inputs);
   for (const ScenePerson& person : scene.people) {
     networks.emplace_back(network.shape, weights, person.body.mass, inputs.num_columns,
@@ -188,7 +208,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   const bool rod_moves = RodMoves(options);
   std::optional<RodSensitivities> rod;
   if (rod_moves) {
-    rod.emplace(*options.self_network, Weights(options, inputs), inputs.num_columns,
+    rod.emplace(*options.learned, Weights(options, inputs), inputs.num_columns,
                 inputs.weight_column);
   }
   ReceivedSensitivities received(scene, options, inputs);

@@ -27,7 +27,7 @@ struct SensitivityInputs {
   std::vector<std::vector<ColumnEntry>> entries;
   int num_columns = 0;
   int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
-  const double* network_weights = nullptr;  // all of options.self_network, instead of its own
+  const double* network_weights = nullptr;  // all of options.learned, instead of its own
   int weight_column = -1;                   // of the first of them; negative when not fitted
 };
 

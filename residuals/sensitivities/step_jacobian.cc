@@ -1,7 +1,7 @@
 // residuals: forces, their derivatives, and those of the equations of motion, put together.
 #include "residuals/sensitivities/step_jacobian.h"
 
-#include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {
@@ -30,9 +30,15 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
       ForcesAt(scene_, options_.push, person, frame) == ActiveForces::kAll) {
     forces_.pairs().ForEachPair([&](int n, int j) {
       if ((n != person && j != person) || !forces_.Between(n, j).acts()) return;
-      const PairJacobian pair =
-          ComputePairJacobian(options_.interaction, options_.interaction_network.get(),
-                              PairOf(scene_, n, j), forces_.Parameters(0), states_[n], states_[j]);
+      const Pair two = PairOf(scene_, n, j);
+      PairJacobian pair =
+          ComputePairJacobian(options_.interaction, options_.interaction_network.get(), two,
+                              forces_.Parameters(0), states_[n], states_[j]);
+      if (options_.interaction.learned) {
+        const LearnedTerms& learned = *options_.learned;
+        AddLearnedPairJacobian(learned.pair, learned.weights.data() + learned.pair_at(), two,
+                               forces_.Parameters(0), states_[n], states_[j], &pair, nullptr);
+      }
       const int at = n == person ? 0 : 1;
       of_force += pair.by_states.block<4, 8>(4 * at, 8 * at);
     });

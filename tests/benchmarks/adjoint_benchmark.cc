@@ -10,7 +10,7 @@
 
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
-#include "ident/parameters/self_network_io.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/solver/large_network_fit.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
@@ -18,9 +18,9 @@ namespace pushid {
 namespace {
 
 // The last two with LDP's law of the rod, alone and beside its self force.
-const SelfNetwork& Network(int64_t index) {
+const LearnedTerms& Network(int64_t index) {
   static const std::vector<int> hidden = {256, 128, 256};
-  static const SelfNetwork networks[] = {
+  static const LearnedTerms networks[] = {
       {{NetworkKind::kMlp, 4}, {}},
       {{NetworkKind::kGru, 8}, {}},
       {{NetworkKind::kGru, 64, 16}, {}},
@@ -31,7 +31,7 @@ const SelfNetwork& Network(int64_t index) {
 }
 
 // As a fit begins, the outputs small instead of zero: people move nearly as without.
-std::vector<double> SomeWeights(const SelfNetwork& network) {
+std::vector<double> SomeWeights(const LearnedTerms& network) {
   std::vector<double> weights = InitialNetwork(network.shape, 7, network.rod)->weights;
   Random random(7);
   for (double& weight : weights) {
@@ -42,14 +42,14 @@ std::vector<double> SomeWeights(const SelfNetwork& network) {
 
 // Arguments: the network, the vectors, and whether with the gradient.
 void Adjoint(benchmark::State& state) {
-  const SelfNetwork& network = Network(state.range(0));
+  const LearnedTerms& network = Network(state.range(0));
   if (state.range(1) >= static_cast<int>(SupportedVectorKernels().size())) {
     state.SkipWithError("this processor has no such vectors");
     return;
   }
   const VectorKernels& kernels = *SupportedVectorKernels()[state.range(1)];
   ModelOptions options;
-  options.self_network = std::make_shared<const SelfNetwork>(network);
+  options.learned = std::make_shared<const LearnedTerms>(network);
   ParameterMap map;
   map.values = PublishedTailParameters();
   map.fitted = {{kMu, Transform::kLog}, {kKpTheta, Transform::kLog}, {kAx, Transform::kIdentity}};
@@ -90,7 +90,7 @@ BENCHMARK(Adjoint)
 // network, and ten times the prior's standard deviation (0: none).
 void Training(benchmark::State& state) {
   LargeNetworkFit fit;
-  fit.model.self_network = InitialNetwork(Network(state.range(0)).shape, 1);
+  fit.model.learned = InitialNetwork(Network(state.range(0)).shape, 1);
   fit.map.values = PublishedTailParameters();
   const std::vector<PendulumRecording>& all = SinglePeople().recordings;
   for (size_t i = 0; i < all.size(); ++i) {

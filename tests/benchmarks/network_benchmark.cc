@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "datasets/files/random.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
@@ -23,7 +23,7 @@ FitOptions OptionsOf(const char* self_force) {
   options.table = preset.table;
   options.settling_weight = preset.settling_weight;
   const NetworkShape shape = ParseSelfForce("self_force", self_force).value().network;
-  if (shape.any()) options.model.self_network = InitialNetwork(shape, 1);
+  if (shape.any()) options.model.learned = InitialNetwork(shape, 1);
   return options;
 }
 

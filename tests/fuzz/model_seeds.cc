@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "datasets/files/json_file.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/results/result_json.h"
 
 namespace pushid {
@@ -85,7 +85,7 @@ void AddNetworks(FitResult* result) {
   const auto learned = [](uint64_t seed) {
     return InitialNetwork({NetworkKind::kGru, 2}, seed, {RodKind::kMlp, {2}});
   };
-  result->options.model.self_network = learned(1);
+  result->options.model.learned = learned(1);
   result->takeover = Takeover{1.0, 2.0, 3.0, 0.1};
   result->others = {{result->parameters, learned(2)}};
 }

@@ -5,20 +5,20 @@
 #include <memory>
 #include <vector>
 
-#include "ident/parameters/self_network_io.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
 
-inline std::shared_ptr<const SelfNetwork> PlantedNetwork(const NetworkShape& shape) {
-  SelfNetwork network{shape, InitialWeights(shape, 99)};
+inline std::shared_ptr<const LearnedTerms> PlantedNetwork(const NetworkShape& shape) {
+  LearnedTerms network{shape, InitialWeights(shape, 99)};
   Random random(98);
   for (int i = shape.output_at(); i < shape.num_weights(); ++i) {
     network.weights[i] = random.Uniform(-0.4, 0.4);
   }
-  return std::make_shared<const SelfNetwork>(network);
+  return std::make_shared<const LearnedTerms>(network);
 }
 
 struct Study {
@@ -27,12 +27,12 @@ struct Study {
 };
 
 // lift: of the cart, where the network moves the rod.
-inline Study PlantedStudy(std::shared_ptr<const SelfNetwork> planted, double noise,
+inline Study PlantedStudy(std::shared_ptr<const LearnedTerms> planted, double noise,
                           double lift = 0.0) {
   SyntheticOptions synthetic;
   synthetic.frames = 60;
   synthetic.joint_noise_m = noise;
-  synthetic.model.self_network = std::move(planted);
+  synthetic.model.learned = std::move(planted);
   synthetic.parameters[kRodLift] = lift;
   Study study;
   const std::vector<PendulumRecording> all = MakePendulums(synthetic);
@@ -40,7 +40,7 @@ inline Study PlantedStudy(std::shared_ptr<const SelfNetwork> planted, double noi
     (i % 4 == 0 ? study.held_out : study.training).push_back(all[i]);
   }
   study.options = UnbiasedFit(synthetic);
-  study.options.model.self_network = nullptr;
+  study.options.model.learned = nullptr;
   study.options.network_prior = 30.0;
   return study;
 }
@@ -48,7 +48,7 @@ inline Study PlantedStudy(std::shared_ptr<const SelfNetwork> planted, double noi
 inline FitResult FitWith(const Study& study, const NetworkShape& shape, uint64_t seed = 1) {
   FitOptions options = study.options;
   options.seed = seed;
-  if (shape.any()) options.model.self_network = InitialNetwork(shape, seed);
+  if (shape.any()) options.model.learned = InitialNetwork(shape, seed);
   return Fit(study.training, options);
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "models/cart_damping.h"
-#include "models/self_network.h"
+#include "models/learned_terms.h"
 #include "models/terms.h"
 
 namespace pushid {
@@ -80,9 +80,9 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.drive = true; }),
             (Names{"drive_gain", "drive_torque", "drive_time"}));
   EXPECT_EQ(adds([](ModelOptions* m) {
-              SelfNetwork network;
+              LearnedTerms network;
               network.rod.kind = RodKind::kLinear;
-              m->self_network = std::make_shared<const SelfNetwork>(network);
+              m->learned = std::make_shared<const LearnedTerms>(network);
             }),
             Names{"rod_lift"});
   EXPECT_FALSE(Acts(static_cast<Parameter>(kFirstOwnParameter), none));

@@ -83,13 +83,13 @@ Scene TwoPeople(double push) {
 
 // size: of the rod's weights; the self force, where there is one, has its own.
 ModelOptions WithRod(const RodShape& rod, const NetworkShape& self, double size, Random* random) {
-  auto network = std::make_shared<SelfNetwork>();
+  auto network = std::make_shared<LearnedTerms>();
   network->shape = self;
   network->rod = rod;
   network->weights = RandomWeights(self.num_weights(), 0.3, random);
   for (double w : RandomWeights(rod.num_weights(), size, random)) network->weights.push_back(w);
   ModelOptions options;
-  options.self_network = network;
+  options.learned = network;
   return options;
 }
 
@@ -123,10 +123,10 @@ TEST(RodLaw, ZeroWeightsAreAConstantRodToTheLastBit) {
   for (const NetworkShape& self : {kNoNetwork, kBlind, kSeeing}) {
     for (const RodShape& shape : EveryLaw()) {
       const ModelOptions moving = WithRod(shape, self, 0.0, &random);
-      auto network = std::make_shared<SelfNetwork>(*moving.self_network);
+      auto network = std::make_shared<LearnedTerms>(*moving.learned);
       network->rod = {};
       ModelOptions constant;
-      if (self.any()) constant.self_network = network;
+      if (self.any()) constant.learned = network;
       const auto path = Roll(scene, moving, 120), expected = Roll(scene, constant, 120);
       for (int t = 0; t < 120; ++t) {
         for (int n = 0; n < 2; ++n) {
@@ -175,13 +175,13 @@ TEST(RodLaw, CrowdsHaveRodsToo) {
 
 // Weights on l - l_0 alone make it grow without end, from a push on the angles.
 TEST(RodLaw, AFailureNamesTheRod) {
-  SelfNetwork network;
+  LearnedTerms network;
   network.rod.kind = RodKind::kLinear;
   network.weights.assign(11, 0.0);
   network.weights[2] = 1.0;
   network.weights[RodShape::kRodInput] = 5.0;
   ModelOptions options;
-  options.self_network = std::make_shared<SelfNetwork>(network);
+  options.learned = std::make_shared<LearnedTerms>(network);
   const Scene scene = TwoPeople(40.0);
   RolloutPath<double> path;
   const RolloutStatus status =

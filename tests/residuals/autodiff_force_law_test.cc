@@ -174,10 +174,10 @@ TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
     PendulumRecording recording = RecordRollout(scene, options, {p}, 40);
     AddNoise(0.02, &random, &recording);
     ParameterMap map = EveryParameterMap({kMu, kOwnSecond});
-    if (learned) map.num_weights = options.self_network->num_weights();
+    if (learned) map.num_weights = options.learned->num_weights();
     const auto problem = MakeRolloutProblem(recording, options, map, {}, 0.7, 0);
     ParameterBlocks blocks = RandomBlocks(map, problem->layout, p, 0.05, 0.0, &random);
-    if (learned) blocks.back() = options.self_network->weights;
+    if (learned) blocks.back() = options.learned->weights;
     const auto fast = MakeRolloutCost(problem, JacobianMethod::kSensitivities);
     const auto jets = MakeRolloutCost(problem, JacobianMethod::kAutodiff);
     ExpectCorrectJacobian(*fast, *jets, blocks, {1e-9, 1e-10, 1e-11});

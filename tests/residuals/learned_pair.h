@@ -39,7 +39,7 @@ inline PendulumRecording LearnedPair(const ModelOptions& options, double lean, d
 // Weights and parameters at random, those of map fitted.
 inline void ExpectDerivativesEqualJets(const ModelOptions& options, ParameterMap map,
                                        const Regime& regime, Random* random) {
-  map.num_weights = options.self_network->num_weights();
+  map.num_weights = options.learned->num_weights();
   const PendulumRecording recording =
       LearnedPair(options, regime.lean, regime.push, regime.noise, random);
   const auto problem = MakeRolloutProblem(recording, options, map, {}, 0.7, 0);
@@ -59,12 +59,12 @@ inline void ExpectDerivativesEqualJets(const ModelOptions& options, ParameterMap
 inline void ExpectFixedWeightsAreTheModels(const ModelOptions& options, Random* random) {
   const PendulumRecording recording = LearnedPair(options, 0.1, 150.0, 0.0, random);
   ParameterMap fixed = EveryParameterMap({}), fitted = fixed;
-  fitted.num_weights = options.self_network->num_weights();
+  fitted.num_weights = options.learned->num_weights();
   const auto evaluate = [&](const ParameterMap& map) {
     const auto problem = MakeRolloutProblem(recording, options, map, {}, 1.0, 0);
     ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
                               std::vector<double>(8, 0.1)};
-    if (map.num_weights > 0) blocks.push_back(options.self_network->weights);
+    if (map.num_weights > 0) blocks.push_back(options.learned->weights);
     return EvaluateCost(RolloutResidual(problem), blocks, std::vector<bool>(blocks.size(), true));
   };
   const Evaluation with = evaluate(fitted), without = evaluate(fixed);

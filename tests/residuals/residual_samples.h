@@ -169,13 +169,14 @@ inline void AddNoise(double magnitude, Random* random, PendulumRecording* record
 
 // A model with a network of random weights, each up to `size`.
 inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* random,
-                                const RodShape& rod = {}) {
-  auto network = std::make_shared<SelfNetwork>(SelfNetwork{shape, {}, rod});
+                                const RodShape& rod = {}, const PairShape& pair = {}) {
+  auto network = std::make_shared<LearnedTerms>(LearnedTerms{shape, {}, rod, pair});
   for (int i = 0; i < network->num_weights(); ++i) {
     network->weights.push_back(random->Uniform(-size, size));
   }
   ModelOptions options;
-  options.self_network = network;
+  options.learned = network;
+  options.interaction.learned = pair.any();
   return options;
 }
 

@@ -2,8 +2,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/preparation_text.h"
@@ -42,9 +42,9 @@ ReportSection SummarySection(const FittedModel& model) {
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
   facts.Add({"feet", NameOf(o.model.stance)});
-  facts.Add({"self force", SelfForceText(o.self_force, o.model.self_network.get())});
-  if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.self_network->rod)});
-  facts.Add({"interaction", NameOf(o.model.interaction)});
+  facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
+  if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
+  facts.Add({"interaction", InteractionText(o.model)});
   facts.Add({"cost", Rounded(result.cost, 6)});
   if (!result.diagnostics.recordings.empty()) {
     facts.Add(

@@ -39,7 +39,7 @@ TEST(Presets, FreeWhatTheyPromise) {
   const Result<FitOptions> wrong = MakePreset("tial");
   ASSERT_FALSE(wrong.ok());
   EXPECT_TRUE(Contains(wrong.error().ToString(),
-                       "--preset is 'tial'; it must be auto, tail, ldp or group"));
+                       "--preset is 'tial'; it must be auto, tail, ldp, ldp_groups or group"));
 }
 
 TEST(Presets, EveryRowIsSound) {

@@ -1,7 +1,7 @@
 // Learned self forces and rods by name, by seed and by file.
-#include "ident/parameters/self_network_io.h"
-
 #include <gtest/gtest.h>
+
+#include "ident/parameters/learned_terms_io.h"
 
 namespace pushid {
 namespace {
@@ -10,7 +10,7 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
   for (const char* text : {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "linear,gru:4"}) {
     const auto choice = ParseSelfForce("--self_force", text);
     ASSERT_TRUE(choice.ok()) << text;
-    const SelfNetwork network{choice.value().network, {}};
+    const LearnedTerms network{choice.value().network, {}};
     EXPECT_EQ(SelfForceText(choice.value().kind, choice.value().network.any() ? &network : nullptr),
               text);
   }
@@ -65,10 +65,10 @@ TEST(SelfNetworkIo, RodsStartConstantAndBesideTheSelfForce) {
 
 TEST(SelfNetworkIo, FilesKeepEverything) {
   const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {3, 2}};
-  for (const SelfNetwork& network :
+  for (const LearnedTerms& network :
        {*InitialNetwork({NetworkKind::kGru, 2, 3, true}, 1, mlp), *InitialNetwork({}, 2, linear),
         *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4)}) {
-    const auto read = SelfNetworkFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));
+    const auto read = LearnedFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));
     EXPECT_EQ(LearnedName(*read), LearnedName(network));
     EXPECT_EQ(read->shape.rod_input, network.shape.rod_input);
     EXPECT_EQ(read->weights, network.weights);
@@ -76,31 +76,31 @@ TEST(SelfNetworkIo, FilesKeepEverything) {
   // Written before rods moved.
   nlohmann::ordered_json old = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
   old.erase("rod");
-  EXPECT_FALSE(SelfNetworkFromJson(old)->rod.moves());
+  EXPECT_FALSE(LearnedFromJson(old)->rod.moves());
 }
 
 TEST(SelfNetworkIo, DamageIsNamed) {
   const nlohmann::ordered_json good = ToJson(*InitialNetwork({NetworkKind::kMlp, 2}, 1));
-  EXPECT_NO_THROW(SelfNetworkFromJson(good));
+  EXPECT_NO_THROW(LearnedFromJson(good));
   const auto broken = [&](const char* key, const nlohmann::ordered_json& value) {
     nlohmann::ordered_json json = good;
     json[key] = value;
     return json;
   };
-  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "rnn")), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 0)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 3)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("hidden", 2.7)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("rod_input", true)), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("weights", {1.0})), std::runtime_error);
-  EXPECT_THROW(SelfNetworkFromJson(broken("kind", "none")), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("kind", "rnn")), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("hidden", 0)), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("hidden", 3)), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("hidden", 2.7)), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("rod_input", true)), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("weights", {1.0})), std::runtime_error);
+  EXPECT_THROW(LearnedFromJson(broken("kind", "none")), std::runtime_error);
   using Rod = nlohmann::ordered_json;
   for (const Rod& rod :
        {Rod{{"kind", "linear"}, {"hidden", Rod::array()}},
         Rod{{"kind", "mlp"}, {"hidden", Rod::array()}}, Rod{{"kind", "linear"}, {"hidden", {2}}},
         Rod{{"kind", "mlp"}, {"hidden", {0}}}, Rod{{"kind", "gru"}, {"hidden", {2}}},
         Rod{{"kind", "mlp"}}}) {
-    EXPECT_ANY_THROW(SelfNetworkFromJson(broken("rod", rod))) << rod;
+    EXPECT_ANY_THROW(LearnedFromJson(broken("rod", rod))) << rod;
   }
 }
 

@@ -135,10 +135,10 @@ TEST_F(TrajectoryCsv, ARodThatMoves) {
   const SyntheticOptions study = TinyStudy();
   const PendulumRecording recording = MakePendulums(study)[0];
   IdentifiedModel model = TruthOf(study);
-  SelfNetwork network;
+  LearnedTerms network;
   network.rod.kind = RodKind::kLinear;
   network.weights = {0, 0, -0.5, 0, 0, 0, 0, 0, 0, 0, -1};
-  model.options.self_network = std::make_shared<SelfNetwork>(network);
+  model.options.learned = std::make_shared<LearnedTerms>(network);
   model.parameters[kRodLift] = 0.6;
   const Prediction p = Predict(model, recording);
   ASSERT_TRUE(p.status.ok);

@@ -84,12 +84,12 @@ TEST(Behaviour, IdentifiedGainsSettle) {
 // A network that plays a gain moves the free modes as that gain does.
 TEST(Behaviour, FreeModesKnowTheNetwork) {
   constexpr double kSmall = 1e-6;
-  SelfNetwork network{{NetworkKind::kMlp, 1}, {}};
+  LearnedTerms network{{NetworkKind::kMlp, 1}, {}};
   network.weights.assign(network.shape.num_weights(), 0.0);
   network.weights[0] = kSmall;                                     // e_theta
   network.weights[network.shape.output_at() + 2] = -0.1 / kSmall;  // torque
   ModelOptions options = Anisotropic();
-  options.self_network = std::make_shared<const SelfNetwork>(network);
+  options.learned = std::make_shared<const LearnedTerms>(network);
   ParameterSet<double> p = FirmParameters();
   p[kKpTheta] = 1560.0, p[kAx] = -9.2;  // the slowest mode leans, and knows its stiffness
   ParameterSet<double> stiffer = p;
@@ -103,7 +103,7 @@ TEST(Behaviour, FreeModesKnowTheNetwork) {
 // A memory is part of the modes: with a GRU whose gates stay half open, what dies out slowest may
 // be the memory itself.
 TEST(Behaviour, FreeModesKnowTheMemory) {
-  SelfNetwork network{{NetworkKind::kGru, 2}, {}};
+  LearnedTerms network{{NetworkKind::kGru, 2}, {}};
   network.weights.assign(network.shape.num_weights(), 0.0);
   const NetworkShape& s = network.shape;
   // z = logistic(8): the memory decays by 1 - z = 3.4e-4 a step.
@@ -111,7 +111,7 @@ TEST(Behaviour, FreeModesKnowTheMemory) {
     network.weights[s.gates_at() + (row + 1) * s.gate_width() - 1] = 8.0;
   }
   ModelOptions options = Anisotropic();
-  options.self_network = std::make_shared<const SelfNetwork>(network);
+  options.learned = std::make_shared<const LearnedTerms>(network);
   const double z = 1.0 / (1.0 + std::exp(-8.0));
   EXPECT_NEAR(ComputeBehaviour(options, FirmParameters()).fastest_growth, 60.0 * std::log(z), 1e-6);
 }

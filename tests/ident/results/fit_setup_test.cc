@@ -145,6 +145,17 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
   EXPECT_EQ(MakeFitOptions({{"preset", "tail"}}, &groups).value().preset, "tail");  // told so
 }
 
+TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {
+  const FitOptions o = MakeFitOptions({{"loss", "ldp"}, {"sigma_rate", "0.3"}}).value();
+  EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);
+  EXPECT_EQ(o.sigmas.hip, 0.1);
+  EXPECT_EQ(o.sigmas.velocity, 0.1);
+  EXPECT_EQ(o.sigmas.rate, 0.3);
+  EXPECT_EQ(o.sigma_source, SigmaSource::kFixed);
+  EXPECT_EQ(OptionsFrom(OptionsJson(o)).sigmas.loss, FrameLoss::kLdp);
+  EXPECT_EQ(MakeFitOptions({{"loss", "hip"}}).value().sigmas.hip, ResidualSigmas().hip);
+}
+
 TEST(FitSetup, BadOptionsAreNamed) {
   const std::pair<GivenOptions, std::string> cases[] = {
       {{{"preset", "tial"}}, "--preset is 'tial'"},
@@ -166,7 +177,7 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"pooling_sigma", "guess"}},
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
       {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}}, "--pooling_sigma says how parameters differ"},
-      {{{"rod", "linear"}, {"takeover_weight", "1"}}, "only the rod has a network"},
+      {{{"rod", "linear"}, {"takeover_weight", "1"}}, "a self force's network, but there is none"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
       {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
        "--ensemble does not go together with --pool"},

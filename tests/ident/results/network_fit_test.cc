@@ -35,7 +35,7 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
   SyntheticOptions synthetic = SmallStudy();
   synthetic.joint_noise_m = 0.002;
   FitOptions options = UnbiasedFit(synthetic);
-  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 4}, 1);
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 4}, 1);
   options.network_prior = 0.3;
   const FitResult result = Fit(MakePendulums(synthetic), options);
   ASSERT_TRUE(result.takeover.has_value());
@@ -66,7 +66,7 @@ TEST(NetworkFit, ThreadsDoNotMatter) {
   study.options.num_threads = 2;
   const FitResult two = FitWith(study, {NetworkKind::kMlp, 2});
   EXPECT_EQ(one.parameters, again.parameters);
-  EXPECT_EQ(one.options.model.self_network->weights, again.options.model.self_network->weights);
+  EXPECT_EQ(one.options.model.learned->weights, again.options.model.learned->weights);
   EXPECT_NEAR(two.cost, one.cost, 1e-9 * one.cost);
   for (Parameter id : one.options.table.Free()) {
     EXPECT_NEAR(two.parameters[id], one.parameters[id], 1e-9 * std::abs(one.parameters[id]));
@@ -76,7 +76,7 @@ TEST(NetworkFit, ThreadsDoNotMatter) {
 TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
   const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   FitOptions options = study.options;
-  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
   const FitProblem problem(study.training, options);
   FitPoint point = problem.NominalPoint();
   EarlyStopping stopping(problem, &point);
@@ -115,7 +115,7 @@ TEST(EarlyStopping, HoldsOutAStratifiedShare) {
 TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
   const SyntheticOptions synthetic = TinyStudy();
   FitOptions options = DefaultFit(synthetic);
-  options.model.self_network = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
   options.early_stopping = 0.02;
   const FitResult result = Fit(MakePendulums(synthetic), options);
   EXPECT_FALSE(result.ok());
@@ -133,8 +133,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
-  EXPECT_EQ(read.value().fit.options.model.self_network->weights,
-            result.options.model.self_network->weights);
+  EXPECT_EQ(read.value().fit.options.model.learned->weights, result.options.model.learned->weights);
   EXPECT_EQ(read.value().fit.options.ensemble, 3);
   EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, result));
   EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
@@ -203,7 +202,7 @@ TEST(Ensemble, PredictsTheMedian) {
   for (IdentifiedModel& member : members) member.others.clear();
   for (int k : {0, 1}) {
     members[k + 1].parameters = result.others[k].parameters;
-    members[k + 1].options.self_network = result.others[k].network;
+    members[k + 1].options.learned = result.others[k].network;
   }
   for (int t = 0; t < recording.num_frames(); ++t) {
     std::vector<double> x;

@@ -18,17 +18,17 @@ namespace {
 constexpr double kPlantedLift = 0.6;
 
 // Knees that give way to a lean, to speed and to the force on the cart, and straighten again.
-std::shared_ptr<const SelfNetwork> PlantedRod() {
-  SelfNetwork network;
+std::shared_ptr<const LearnedTerms> PlantedRod() {
+  LearnedTerms network;
   network.rod.kind = RodKind::kLinear;
   network.weights = {-1.0, 0.3, -2.5, 0.5, -0.5, 0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
-  return std::make_shared<const SelfNetwork>(network);
+  return std::make_shared<const LearnedTerms>(network);
 }
 
 FitResult FitRod(const Study& study, const RodShape& rod, int ensemble = 1) {
   FitOptions options = study.options;
   options.ensemble = ensemble;
-  options.model.self_network = InitialNetwork({}, 1, rod);
+  options.model.learned = InitialNetwork({}, 1, rod);
   options.table[kRodLift].nominal = 1.0;
   FreeTerms(&options);
   options.table[kRodLift].prior.reset();
@@ -81,7 +81,7 @@ TEST(RodFit, LargeLawsLearnByTheirGradient) {
 TEST(RodFit, TheLiftHasAnEffectThoughTheLawBeginsAtZero) {
   const Study study = PlantedStudy(PlantedRod(), 0.002, kPlantedLift);
   FitOptions options = study.options;
-  options.model.self_network = InitialNetwork({}, 1, {RodKind::kMlp, {2}});
+  options.model.learned = InitialNetwork({}, 1, {RodKind::kMlp, {2}});
   FreeTerms(&options);
   EXPECT_FALSE(CheckEffects(FitProblem(study.training, options)));
 }
@@ -93,10 +93,10 @@ TEST(RodFit, FreeModesKnowTheRod) {
   ModelOptions options = study.options.model;
   const ParameterSet<double> p = SyntheticOptions().parameters;
   const double constant = ComputeBehaviour(options, p).fastest_growth;
-  SelfNetwork network = *InitialNetwork({}, 1, {RodKind::kLinear, {}});
+  LearnedTerms network = *InitialNetwork({}, 1, {RodKind::kLinear, {}});
   const auto growth = [&](double by_rod) {
     network.weights.back() = by_rod;
-    options.self_network = std::make_shared<const SelfNetwork>(network);
+    options.learned = std::make_shared<const LearnedTerms>(network);
     return ComputeBehaviour(options, p);
   };
   ASSERT_LT(constant, 0.0);

@@ -2,8 +2,8 @@
 // point is kept, and the same start gives the same bits.
 #include "ident/solver/large_network_fit.h"
 
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
-#include "ident/parameters/self_network_io.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
@@ -24,8 +24,8 @@ struct Planted {
     for (int i = kShape.output_at(); i < kShape.num_weights(); ++i) {
       weights[i] = random.Uniform(-0.5, 0.5);
     }
-    study.model.self_network =
-        std::make_shared<const SelfNetwork>(SelfNetwork{kShape, std::move(weights)});
+    study.model.learned =
+        std::make_shared<const LearnedTerms>(LearnedTerms{kShape, std::move(weights)});
     study.joint_noise_m = noise;
     recordings = MakePendulums(study);
   }
@@ -44,7 +44,7 @@ struct Planted {
   LargeNetworkFit Fit(uint64_t seed) const {
     LargeNetworkFit fit;
     fit.model = study.model;
-    fit.model.self_network = InitialNetwork(kShape, seed);
+    fit.model.learned = InitialNetwork(kShape, seed);
     fit.map.values = study.parameters;
     return fit;
   }
@@ -71,7 +71,7 @@ TEST(LargeNetworkFit, RecoversWhatAPlantedNetworkDoes) {
   ASSERT_TRUE(solution.ok()) << solution.error().ToString();
   const LargeNetworkSolution& s = solution.value();
   const std::vector<AdjointRecording> unseen = planted.Some(5, 6);
-  const double without = CostOf(fit, unseen, fit.model.self_network->weights);
+  const double without = CostOf(fit, unseen, fit.model.learned->weights);
   const double with = CostOf(fit, unseen, s.weights);
   // 1500 and 900 times less when this was written.
   EXPECT_LT(s.final_cost, 0.01 * s.initial_cost);
@@ -125,7 +125,7 @@ TEST(LargeNetworkFit, TheSameStartGivesTheSameBits) {
   ASSERT_TRUE(one.ok() && two.ok());
   EXPECT_EQ(one.value().weights, two.value().weights);
   EXPECT_EQ(one.value().final_cost, two.value().final_cost);
-  fit.model.self_network = InitialNetwork(kShape, 4);
+  fit.model.learned = InitialNetwork(kShape, 4);
   EXPECT_NE(FitLargeNetwork(fit).value().weights, one.value().weights);
 }
 
@@ -218,10 +218,10 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
   fit.model.interaction.drive = true;
   EXPECT_NE(complaint().find("forces between people"), std::string::npos);
   fit.model.interaction.drive = false;
-  fit.model.self_network =
-      std::make_shared<const SelfNetwork>(SelfNetwork{kShape, std::vector<double>(3)});
+  fit.model.learned =
+      std::make_shared<const LearnedTerms>(LearnedTerms{kShape, std::vector<double>(3)});
   EXPECT_NE(complaint().find("but 3 are given"), std::string::npos);
-  fit.model.self_network = nullptr;
+  fit.model.learned = nullptr;
   EXPECT_NE(complaint().find("no network"), std::string::npos);
 }
 

@@ -136,7 +136,7 @@ TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
         options.push = use;
         options.cart_derivative = derivative;
         ParameterMap map = EveryParameterMap({});
-        map.num_weights = options.self_network->num_weights();
+        map.num_weights = options.learned->num_weights();
         const std::vector<PendulumRecording> made = SomeRecordings(options, regime, &random);
         const std::vector<AdjointRecording> recordings = {
             {&made[0], 1.0}, {&made[1], 0.7}, {&made[2], 1.3, 25}, {&made[3], 1.0}};
@@ -183,14 +183,14 @@ TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
     SCOPED_TRACE(learned.Name());
     const ModelOptions options = WithNetwork(learned.self, 0.8, &random, learned.rod);
     ParameterMap map = EveryParameterMap({});
-    map.num_weights = options.self_network->num_weights();
+    map.num_weights = options.learned->num_weights();
     std::vector<PendulumRecording> made =
         SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
     made[1].scene.pushes.push_back(
         MakeScenePush(1, 8, PushKind::kExternal, {20, Vector4<double>(0.0, 0.0, 3000.0, 0.0)}));
     made[2].scene = ScalePushes(made[2].scene, 1e9);  // at once, and beyond any number
     const std::vector<double> shared = SharedBlock(map, RecoveringParameters());
-    const std::vector<double>& weights = options.self_network->weights;
+    const std::vector<double>& weights = options.learned->weights;
 
     std::vector<AdjointRecording> recordings, shortened;
     std::vector<RolloutStatus> expected;
@@ -233,7 +233,7 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
   const std::vector<PendulumRecording> made =
       SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.8, 0.0}, &random);
   ParameterMap map = EveryParameterMap({});
-  map.num_weights = options.self_network->shape.num_weights();
+  map.num_weights = options.learned->shape.num_weights();
   std::vector<AdjointRecording> once, often;
   for (const PendulumRecording& recording : made) once.push_back({&recording});
   for (int i = 0; i < 40; ++i) often.insert(often.end(), once.begin(), once.end());
@@ -241,8 +241,8 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
   auto forty = AdjointGradient::Create(often, options, map, {});
   ASSERT_TRUE(one.ok() && forty.ok());
   const std::vector<double> shared = SharedBlock(map, RecoveringParameters());
-  Gradient small = ByAdjoint(&one.value(), shared, options.self_network->weights);
-  const Gradient large = ByAdjoint(&forty.value(), shared, options.self_network->weights);
+  Gradient small = ByAdjoint(&one.value(), shared, options.learned->weights);
+  const Gradient large = ByAdjoint(&forty.value(), shared, options.learned->weights);
   for (double& value : small.shared) value *= 40.0;
   for (double& value : small.weights) value *= 40.0;
   EXPECT_NEAR(large.cost, 40.0 * small.cost, 1e-12 * large.cost);
@@ -250,7 +250,7 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
   ExpectSameVector(large.weights, small.weights, 1e-12, "weight");
 
   std::vector<double> shared_alone(shared.size(), NAN), weights_alone(map.num_weights, NAN);
-  const double* weights = options.self_network->weights.data();
+  const double* weights = options.learned->weights.data();
   EXPECT_EQ(forty.value().Evaluate(shared.data(), weights, nullptr, nullptr).cost, large.cost);
   forty.value().Evaluate(shared.data(), weights, shared_alone.data(), nullptr);
   forty.value().Evaluate(shared.data(), weights, nullptr, weights_alone.data());
@@ -277,12 +277,12 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   options.own_laws = {
       MakeForceLaw("brake", {{"brake", "b", "m/s^2", 0.1, 0.0, 5.0, 0.1}}, Brake{})};
   ParameterMap map = EveryParameterMap({});
-  map.num_weights = options.self_network->num_weights();
+  map.num_weights = options.learned->num_weights();
   const std::vector<PendulumRecording> made = SomeRecordings(options, regime, &random);
   const std::vector<AdjointRecording> recordings = {{&made[0]}, {&made[1]}};
   ParameterSet<double> p = RecoveringParameters();
   p[kFirstOwnParameter] = 0.3;
-  const std::vector<double> shared = SharedBlock(map, p), weights = options.self_network->weights;
+  const std::vector<double> shared = SharedBlock(map, p), weights = options.learned->weights;
   const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
   auto adjoint = AdjointGradient::Create(recordings, options, map, {});
   ASSERT_TRUE(adjoint.ok()) << adjoint.error().ToString();

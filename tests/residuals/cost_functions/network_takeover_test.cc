@@ -14,13 +14,13 @@ PendulumRecording Pushed(const ModelOptions& options, Random* random) {
 }
 
 // An MLP of one unit so small that it is linear: output `row` answers to input `column` alone.
-std::shared_ptr<const SelfNetwork> OneGain(int row, int column, double size) {
+std::shared_ptr<const LearnedTerms> OneGain(int row, int column, double size) {
   constexpr double kSmall = 1e-5;
-  SelfNetwork network{{NetworkKind::kMlp, 1}, {}};
+  LearnedTerms network{{NetworkKind::kMlp, 1}, {}};
   network.weights.assign(network.shape.num_weights(), 0.0);
   network.weights[column] = kSmall;
   network.weights[network.shape.output_at() + row] = size / kSmall;
-  return std::make_shared<const SelfNetwork>(network);
+  return std::make_shared<const LearnedTerms>(network);
 }
 
 struct Disguise {
@@ -39,9 +39,9 @@ TEST(NetworkTakeover, NamesTheGainThatANetworkPlays) {
   for (const Disguise& d : {Disguise{"stiffness", 2, 0, {0.0, -f / kNetworkAngle, 0.0}},
                             Disguise{"damping", 2, 4, {0.0, 0.0, -f / kNetworkRate}}}) {
     SCOPED_TRACE(d.name);
-    options.self_network = OneGain(d.row, d.column, -0.3);
+    options.learned = OneGain(d.row, d.column, -0.3);
     const std::vector<PendulumRecording> recordings = {Pushed(options, &random)};
-    const Takeover t = TakeoverResidual(recordings, options, 1.0).Of(options.self_network->weights);
+    const Takeover t = TakeoverResidual(recordings, options, 1.0).Of(options.learned->weights);
     const Eigen::Vector3d taken(t.mu, t.kp_theta, t.kd_theta);
     EXPECT_LT((taken + 0.3 * d.taken).norm(), 1e-3 * d.taken.norm()) << taken.transpose();
     EXPECT_EQ(t.rms_force, 0.0);
@@ -52,12 +52,12 @@ TEST(NetworkTakeover, FrictionInOneDirection) {
   Random random(62);
   ModelOptions options;
   options.gain_scaling = GainScaling::kMass;
-  options.self_network = OneGain(0, 2, -0.2);
+  options.learned = OneGain(0, 2, -0.2);
   PendulumRecording recording = Pushed(options, &random);
   for (auto& states : recording.states) {
     for (PendulumState<double>& state : states) state.qd[1] = 0.0;  // no person moves sideways
   }
-  const Takeover t = TakeoverResidual({recording}, options, 1.0).Of(options.self_network->weights);
+  const Takeover t = TakeoverResidual({recording}, options, 1.0).Of(options.learned->weights);
   const double mu = 0.2 * kNetworkAcceleration * kReferenceMass / kNetworkSpeed;
   EXPECT_NEAR(t.mu, mu, 1e-3 * mu);
   EXPECT_GT(t.rms_force, 0.0);
@@ -71,9 +71,9 @@ TEST(NetworkTakeover, JacobianAgainstNumericDifferentiation) {
       SCOPED_TRACE(NetworkName(shape) + " " + std::to_string(size));
       ModelOptions options;
       const PendulumRecording recording = Pushed(options, &random);
-      SelfNetwork network{shape, std::vector<double>(shape.num_weights())};
+      LearnedTerms network{shape, std::vector<double>(shape.num_weights())};
       for (double& w : network.weights) w = size * random.Uniform(-1.0, 1.0);
-      options.self_network = std::make_shared<const SelfNetwork>(network);
+      options.learned = std::make_shared<const LearnedTerms>(network);
       const std::vector<PendulumRecording> recordings = {recording};
       ExpectCorrectJacobian(TakeoverResidual(recordings, options, 0.8), {network.weights});
     }

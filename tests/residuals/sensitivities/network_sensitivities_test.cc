@@ -39,27 +39,27 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, NetworkTwins,
                          [](const auto& test) { return test.param.name; });
 
 // Whatever the weights, a person who stands still is not moved.
-TEST(SelfNetwork, IsSilentAtRest) {
+TEST(LearnedTerms, IsSilentAtRest) {
   Random random(52);
   for (const NetworkShape& shape : EveryNetwork()) {
     const ModelOptions options = WithNetwork(shape, 3.0, &random);
     NetworkState<double> state(shape, {60.0, 0.9, 0.0});
     for (int t = 0; t < 20; ++t) {
-      EXPECT_EQ(StepNetwork(shape, options.self_network->weights.data(), 60.0, &state).norm(), 0.0)
+      EXPECT_EQ(StepNetwork(shape, options.learned->weights.data(), 60.0, &state).norm(), 0.0)
           << NetworkName(shape);
     }
   }
 }
 
 // A network that a fit does not move has the weights of its model.
-TEST(SelfNetwork, FixedWeightsAreTheModels) {
+TEST(LearnedTerms, FixedWeightsAreTheModels) {
   Random random(53);
   for (const NetworkShape& shape : EveryNetwork()) {
     ExpectFixedWeightsAreTheModels(WithNetwork(shape, 1.0, &random), &random);
   }
 }
 
-TEST(SelfNetwork, SizesAndNames) {
+TEST(LearnedTerms, SizesAndNames) {
   const NetworkShape mlp{NetworkKind::kMlp, 4}, gru{NetworkKind::kGru, 8},
       lstm{NetworkKind::kLstm, 256, 32};
   EXPECT_EQ(mlp.num_weights(), 4 * (6 + 2) + 4 * 4);

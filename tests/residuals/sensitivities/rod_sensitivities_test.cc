@@ -105,11 +105,11 @@ TEST(RodSensitivities, RestResiduals) {
     SCOPED_TRACE(NameOf(learned));
     const ModelOptions options = With(learned, 0.4, &random);
     ParameterMap map = EveryParameterMap({});
-    map.num_weights = options.self_network->num_weights();
+    map.num_weights = options.learned->num_weights();
     RestProblem problem = SettlingProblem(SettlingScene(80.0, 25.0), options, map, {}, 3.0);
     problem.first_frame = 40, problem.last_frame = 44;
     const ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
-                                    options.self_network->weights};
+                                    options.learned->weights};
     ExpectCorrectJacobian(SettlingResidual(problem), blocks);
     ExpectCorrectJacobian(StabilityResidual(problem), blocks);
   }

@@ -1,0 +1,107 @@
+// residuals: the chain rule through gate and layers.
+#include "residuals/sensitivities/learned_pair_jacobian.h"
+
+#include <ceres/jet.h>
+
+namespace pushid {
+namespace {
+
+constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
+
+// The gate by [q of n, q of j] and by the contact's parameters.
+struct GateJacobian {
+  double gate = 0.0;
+  Eigen::Matrix<double, 1, 8> by_places;
+  Eigen::Matrix<double, 1, kContactParameters> by_parameter;
+};
+
+GateJacobian GateOf(const Pair& pair, const ParameterSet<double>& p, const Vector4<double>& q_n,
+                    const Vector4<double>& q_j) {
+  using Jet = ceres::Jet<double, 8 + kContactParameters>;
+  Vector4<Jet> n, j;
+  for (int i = 0; i < 4; ++i) {
+    n[i] = Jet(q_n[i], i);
+    j[i] = Jet(q_j[i], 4 + i);
+  }
+  ParameterSet<Jet> parameters;
+  for (int i = 0; i < kContactParameters; ++i) {
+    parameters[kContactStiffness + i] = Jet(p[kContactStiffness + i], 8 + i);
+  }
+  const Jet gate = PairGate<Jet>(pair, parameters, n, j);
+  return {gate.a, gate.v.head<8>().transpose(), gate.v.tail<kContactParameters>().transpose()};
+}
+
+using Output = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
+
+// d(output)/d(inputs), and into by_weight, scaled, d(output)/d(weights).
+Output Backward(const PairShape& shape, const double* weights, const PairLayers<double>& layers,
+                double scale, Eigen::Ref<Output> by_weight) {
+  int at = shape.num_weights();
+  Output back = Output::Identity(4, 4);  // d(output)/d(sums of the layer)
+  for (int i = static_cast<int>(shape.hidden.size()); i >= 0; --i) {
+    const Eigen::VectorXd& from = layers.values[i];
+    const int inputs = static_cast<int>(from.size()), rows = static_cast<int>(back.cols());
+    at -= rows * (inputs + 1);
+    if (by_weight.cols() > 0) {
+      for (int row = 0; row < rows; ++row) {
+        auto own = by_weight.middleCols(at + row * (inputs + 1), inputs + 1);
+        own.leftCols(inputs).noalias() = scale * back.col(row) * from.transpose();
+        own.col(inputs) = scale * back.col(row);
+      }
+    }
+    const Output by_from = back * PairLayer(weights + at, rows, inputs).leftCols(inputs);
+    if (i == 0) return by_from;
+    back = by_from * (1.0 - from.array().square()).matrix().asDiagonal();
+  }
+  return back;  // not reached: the inputs are the first layer's
+}
+
+// d(u)/d[q, qd of n], d(u)/d[q, qd of j], as columns of by_states.
+Eigen::Matrix<double, 4, 16> ByStates(const Output& by_input) {
+  Eigen::Matrix<double, 4, 16> by_states;
+  const auto input = [&by_input](int i, double unit) { return by_input.col(i) / unit; };
+  for (int i = 0; i < 2; ++i) {
+    by_states.col(i) = input(i, kPairDistance);
+    by_states.col(4 + i) = input(2 + i, kNetworkSpeed);
+    by_states.col(2 + i) = input(4 + 2 * i, kNetworkAngle);
+    by_states.col(10 + i) = input(5 + 2 * i, kNetworkAngle);
+    by_states.col(6 + i) = input(8 + i, kNetworkRate);
+    by_states.col(8 + i) = -by_states.col(i);
+    by_states.col(12 + i) = -by_states.col(4 + i);
+    by_states.col(14 + i) = -by_states.col(6 + i);
+  }
+  return by_states;
+}
+
+}  // namespace
+
+void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const Pair& pair,
+                            const ParameterSet<double>& p, const PendulumState<double>& n,
+                            const PendulumState<double>& j, PairJacobian* jacobian,
+                            PairByWeight* by_weight) {
+  if (by_weight != nullptr) by_weight->setZero(8, shape.num_weights());
+  const GateJacobian gate = GateOf(pair, p, n.q, j.q);
+  if (!(gate.gate > 0.0)) return;
+  PairLayers<double> layers;
+  Output unwanted(4, 0);
+  for (int side = 0; side < 2; ++side) {
+    const double mass = side == 0 ? pair.body_n.mass : pair.body_j.mass;
+    const double scale = kNetworkAcceleration * mass;
+    RunPairNetwork(shape, weights, side == 0 ? n : j, side == 0 ? j : n, &layers);
+    const Output by_input = by_weight == nullptr
+                                ? Backward(shape, weights, layers, 0.0, unwanted)
+                                : Backward(shape, weights, layers, scale * gate.gate,
+                                           by_weight->middleRows<4>(4 * side));
+    const Eigen::Matrix<double, 4, 16> own = scale * gate.gate * ByStates(by_input);
+    auto by_states = jacobian->by_states.middleRows<4>(4 * side);
+    by_states.leftCols<8>() += side == 0 ? own.leftCols<8>() : own.rightCols<8>();
+    by_states.rightCols<8>() += side == 0 ? own.rightCols<8>() : own.leftCols<8>();
+    const Vector4<double> output = scale * layers.output;
+    by_states.middleCols<4>(0) += output * gate.by_places.head<4>();
+    by_states.middleCols<4>(8) += output * gate.by_places.tail<4>();
+    jacobian->by_parameter.middleRows<4>(4 * side).leftCols<kContactParameters>() +=
+        output * gate.by_parameter;
+  }
+}
+
+}  // namespace pushid

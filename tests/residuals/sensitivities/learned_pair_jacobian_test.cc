@@ -1,0 +1,131 @@
+// Derivatives of a learned interaction against Jets: of the force itself, and of whole rollouts, in
+// three regimes.
+#include "residuals/sensitivities/learned_pair_jacobian.h"
+
+#include <ceres/jet.h>
+
+#include "tests/residuals/learned_pair.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kStates = 16, kWeights = 11 * 3 + 4 * 2 + 3 * 4;
+constexpr int kColumns = kStates + kNumPairParameters + kWeights;
+using Jet = ceres::Jet<double, kColumns>;
+
+PendulumState<Jet> JetState(const PendulumState<double>& state, int first) {
+  PendulumState<Jet> jets;
+  for (int i = 0; i < 4; ++i) {
+    jets.q[i] = Jet(state.q[i], first + i);
+    jets.qd[i] = Jet(state.qd[i], first + 4 + i);
+  }
+  return jets;
+}
+
+struct Motion {
+  std::string name;
+  double load, lean, speed, weight;
+};
+
+std::ostream& operator<<(std::ostream& out, const Motion& motion) { return out << motion.name; }
+
+class LearnedPairForce : public testing::TestWithParam<Motion> {};
+
+TEST_P(LearnedPairForce, DerivativesByHandEqualJets) {
+  const Motion& motion = GetParam();
+  Random random(71);
+  const PairShape shape{{3, 2}};
+  ASSERT_EQ(shape.num_weights(), kWeights);
+  int loaded = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const Scene scene = SceneOfPeople(2, 0.05, &random);
+    const Pair pair = PairOf(scene, 0, 1);
+    const ParameterSet<double> p = RandomRecoveringParameters(&random, 0.2);
+    PendulumState<double> n = scene.people[0].start, j = scene.people[1].start;
+    for (PendulumState<double>* state : {&n, &j}) {
+      for (int i = 0; i < 4; ++i) state->qd[i] = random.Uniform(-motion.speed, motion.speed);
+      for (int i : {2, 3}) state->q[i] = random.Uniform(-motion.lean, motion.lean);
+    }
+    j.q[1] = n.q[1] + 0.01;
+    j.q[0] = n.q[0] + std::min(p[kContactDistance], 0.62) - motion.load;
+    std::vector<double> weights(kWeights);
+    std::vector<Jet> jet_weights(kWeights);
+    for (int i = 0; i < kWeights; ++i) {
+      weights[i] = random.Uniform(-motion.weight, motion.weight);
+      jet_weights[i] = Jet(weights[i], kStates + kNumPairParameters + i);
+    }
+    ParameterSet<Jet> parameters;
+    for (int i = 0; i < kNumParameters; ++i) {
+      const int column = i - kFirstPairParameter;
+      const bool shared = column >= 0 && column < kNumPairParameters;
+      parameters[i] = shared ? Jet(p[i], kStates + column) : Jet(p[i]);
+    }
+    PairForce<Jet> force;
+    AddLearnedPair(shape, jet_weights.data(), pair, parameters, JetState(n, 0), JetState(j, 8),
+                   &force);
+    if (!force.acts) continue;  // their leans part them
+    ++loaded;
+    PairJacobian jacobian{};
+    jacobian.by_states.setZero();
+    jacobian.by_parameter.setZero();
+    PairByWeight by_weight;
+    AddLearnedPairJacobian(shape, weights.data(), pair, p, n, j, &jacobian, &by_weight);
+    for (int row = 0; row < 8; ++row) {
+      const Jet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
+      Eigen::Matrix<double, 1, kColumns> actual;
+      actual << jacobian.by_states.row(row), jacobian.by_parameter.row(row), by_weight.row(row);
+      const double scale = std::max(1.0, expected.v.cwiseAbs().maxCoeff());
+      EXPECT_LT((actual - expected.v.transpose()).cwiseAbs().maxCoeff(), 1e-11 * scale) << row;
+    }
+  }
+  EXPECT_GT(loaded, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Regimes, LearnedPairForce,
+                         testing::Values(Motion{"just_touching", 0.03, 1e-3, 1e-3, 0.5},
+                                         Motion{"in_motion", 0.1, 0.1, 0.5, 1.0},
+                                         Motion{"far_from_rest", 0.2, 0.6, 3.0, 2.0}),
+                         [](const auto& test) { return test.param.name; });
+
+// Alone, beside contact, and with everything else that is learned.
+std::vector<ModelOptions> SomeModels(double weight, Random* random) {
+  std::vector<ModelOptions> models = {
+      WithNetwork({}, weight, random, {}, {{4}}), WithNetwork({}, weight, random, {}, {{3, 2}}),
+      WithNetwork({NetworkKind::kGru, 2}, weight, random, {RodKind::kLinear, {}}, {{2}})};
+  for (ModelOptions& options : models) {
+    options.interaction.damping = options.interaction.drive = true;
+  }
+  models[0].interaction = {};
+  models[0].interaction.learned = true;
+  models[1].interaction.spring = true;
+  return models;
+}
+
+class LearnedPairRollouts : public testing::TestWithParam<Regime> {};
+
+TEST_P(LearnedPairRollouts, DerivativesByHandEqualJets) {
+  const Regime& regime = GetParam();
+  Random random(72);
+  for (const ModelOptions& options : SomeModels(regime.weight, &random)) {
+    SCOPED_TRACE(options.learned->pair.hidden.size());
+    ExpectDerivativesEqualJets(options, EveryParameterMap({kMu, kContactDistance}), regime,
+                               &random);
+    if (HasFailure()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ThreeRegimes, LearnedPairRollouts,
+                         testing::Values(Regime{"at_rest", 0.0, 0.0, 0.0, 0.0, 0.5, 1e-14},
+                                         Regime{"moderate", 0.02, 60.0, 0.1, 0.01, 0.3, 1e-13},
+                                         Regime{"large", 0.1, 150.0, 0.3, 0.05, 0.6, 1e-13}),
+                         [](const auto& test) { return test.param.name; });
+
+TEST(LearnedPairRollouts, FixedWeightsAreTheModels) {
+  Random random(73);
+  for (const ModelOptions& options : SomeModels(0.5, &random)) {
+    ExpectFixedWeightsAreTheModels(options, &random);
+  }
+}
+
+}  // namespace
+}  // namespace pushid
