@@ -4,6 +4,7 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "models/learned_terms.h"
+#include "residuals/cost_functions/contact_takeover.h"
 
 namespace pushid {
 namespace {
@@ -19,8 +20,8 @@ std::string MissingNetwork(const FitOptions& o) {
     return std::string(asks) +
            " acts on networks, but there is none; add one, as in --self_force=mlp:4";
   }
-  if (network != nullptr && !network->shape.any() && o.takeover_weight > 0.0) {
-    return "--takeover_weight acts on a self force's network, but there is none; add one, as in "
+  if (network != nullptr && o.takeover_weight > 0.0 && !MayTakeOver(o.model)) {
+    return "--takeover_weight acts on a learned force, but there is none; add one, as in "
            "--self_force=mlp:4";
   }
   if (network != nullptr && network->shape.rod_input &&
@@ -87,6 +88,10 @@ bool FitOptions::IsValid(std::string* error) const {
     *error = "every parameter is fixed: nothing is left to fit";
   }
   return error->empty();
+}
+
+bool MayTakeOver(const ModelOptions& model) {
+  return model.learned != nullptr && (model.learned->shape.any() || MayTakeContactOver(model));
 }
 
 bool NeedsGradientTraining(const FitOptions& options) {

@@ -139,6 +139,10 @@ struct FitOptions {
   bool IsValid(std::string* error) const;
 };
 
+// Whether what is learned could do what gains or contact do (network_takeover.h,
+// contact_takeover.h).
+bool MayTakeOver(const ModelOptions& model);
+
 // More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
 // recordings would hold 20,000 rows of them.
 inline constexpr int kMostGaussNewtonWeights = 2000;

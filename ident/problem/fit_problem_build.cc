@@ -4,6 +4,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/cost_functions/contact_takeover.h"
 #include "residuals/cost_functions/equation_error_residual.h"
 #include "residuals/cost_functions/modal_stability_residual.h"
 #include "residuals/cost_functions/network_takeover.h"
@@ -78,10 +79,16 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     built->Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
                {point->weights.data()}, kNetworkCluster);
   }
-  if (map_.num_weights > 0 && options_.takeover_weight > 0.0) {
+  if (map_.num_weights == 0 || options_.takeover_weight <= 0.0) return;
+  if (options_.model.learned->shape.any()) {
     built->Add(
         std::make_unique<TakeoverResidual>(recordings_, options_.model, options_.takeover_weight),
         {point->weights.data()}, kPriorCluster);
+  }
+  if (MayTakeContactOver(options_.model)) {
+    built->Add(std::make_unique<ContactTakeoverResidual>(
+                   recordings_, options_.model, options_.table.Values(), options_.takeover_weight),
+               {point->weights.data()}, kPriorCluster);
   }
 }
 

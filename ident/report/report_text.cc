@@ -62,11 +62,17 @@ std::string NetworkText(const FitResult& result) {
     text += ", the first of " + std::to_string(result.others.size() + 1) +
             " seeds; predictions are their median";
   }
-  if (!result.takeover) return text;
-  const Takeover& t = *result.takeover;
   const auto signed_number = [](double value) {
     return (value < 0.0 ? "" : "+") + Rounded(value, 3);
   };
+  if (const auto& c = result.contact_takeover) {
+    text += ": where people load each other it acts like stiffness " + signed_number(c->stiffness) +
+            " N/m, damping " + signed_number(c->damping) +
+            " N s/m beside those above;\n  its force on the cart is then " +
+            Rounded(c->rms_force, 2) + " m/s^2 times the mass (root mean square)";
+  }
+  if (!result.takeover) return text;
+  const Takeover& t = *result.takeover;
   return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
          signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
          " N m s/rad beside those above;\n  its force on the cart is " + Rounded(t.rms_force, 2) +

@@ -272,6 +272,11 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   if (const auto network = problem.ModelAt(best.to).learned; network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
+  if (MayTakeContactOver(options.model)) {
+    result.contact_takeover =
+        ContactTakeoverResidual(recordings, options.model, options.table.Values(), 0.0)
+            .Of(problem.ModelAt(best.to).learned->weights);
+  }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to, solved.free ? &*solved.free : nullptr);
   result.uncertainty.settling = solved.settling;

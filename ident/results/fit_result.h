@@ -17,6 +17,7 @@
 #include "ident/solver/likelihood_score.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "residuals/cost_functions/contact_takeover.h"
 #include "residuals/cost_functions/network_takeover.h"
 
 namespace pushid {
@@ -39,8 +40,9 @@ struct FitResult {
   FitOptions options;
   // As they act: fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
-  std::optional<Takeover> takeover;    // by the network, where there is one
-  std::vector<EnsembleMember> others;  // of an ensemble, besides the one reported
+  std::optional<Takeover> takeover;                 // by the network, where there is one
+  std::optional<ContactTakeover> contact_takeover;  // by a learned interaction beside contact
+  std::vector<EnsembleMember> others;               // of an ensemble, besides the one reported
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains

@@ -66,9 +66,10 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
     return Error{std::string("--") + name +
                  " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
   }
-  if (network != nullptr && !network->shape.any() && Find(given, "takeover_weight") != nullptr) {
+  if (network != nullptr && Find(given, "takeover_weight") != nullptr &&
+      !MayTakeOver(options.model)) {
     return Error{
-        "--takeover_weight acts on a self force's network, but there is none; add one, as in "
+        "--takeover_weight acts on a learned force, but there is none; add one, as in "
         "--self_force=mlp:4"};
   }
   for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",

@@ -239,6 +239,12 @@ class ModelReader {
           Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
                    NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
     }
+    if (json_.contains("contact_takeover")) {
+      const Json& t = At("contact_takeover");
+      result_.contact_takeover =
+          ContactTakeover{NumberFrom(t.at("stiffness_N_m")), NumberFrom(t.at("damping_N_s_m")),
+                          NumberFrom(t.at("rms_force_m_s2"))};
+    }
     if (json_.contains("interaction_network")) {
       options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));
     }

@@ -195,6 +195,11 @@ void AddLearned(const FitResult& result, Json* json) {
                                      {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
                                      {"rms_force_m_s2", NumberJson(t->rms_force)}};
     }
+    if (const auto& t = result.contact_takeover) {
+      (*json)["contact_takeover"] = {{"stiffness_N_m", NumberJson(t->stiffness)},
+                                     {"damping_N_s_m", NumberJson(t->damping)},
+                                     {"rms_force_m_s2", NumberJson(t->rms_force)}};
+    }
     for (const EnsembleMember& member : result.others) {
       (*json)["ensemble"].push_back(
           {{"values", ValuesJson(result.options.table, member.parameters)},

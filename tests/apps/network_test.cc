@@ -50,7 +50,7 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
            {{"--rod=gru:4"}, "--rod is 'gru:4'"},
            {{"--rod_input", "--rod=linear"}, "--rod_input is for a network beside a rod"},
            {{"--rod_input", "--self_force=mlp:2"}, "--rod_input is for a network beside a rod"},
-           {{"--rod=linear", "--takeover_weight=1"}, "a self force's network, but there is none"},
+           {{"--rod=linear", "--takeover_weight=1"}, "a learned force, but there is none"},
            {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"},
            {{"--self_force=lstm:64", "--takeover_weight=1"}, "--takeover_weight is for small"},
            {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},

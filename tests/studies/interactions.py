@@ -25,7 +25,7 @@ def cells(p):
         return text + [None, None, None]
     onset = moves["onset_error_frames"]
     return text + [f"{p['fits_that_settle']} of {p['fits']}", "-" if onset is None else number(onset["value"]),
-                   f"{number(moves['false_movers'], 2)} of {number(moves['bystanders'])}"]
+                   f"{moves['false_movers']:.2g} of {moves['bystanders']:.0f}"]
 
 
 def learned():

@@ -177,7 +177,7 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"pooling_sigma", "guess"}},
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
       {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}}, "--pooling_sigma says how parameters differ"},
-      {{{"rod", "linear"}, {"takeover_weight", "1"}}, "a self force's network, but there is none"},
+      {{{"rod", "linear"}, {"takeover_weight", "1"}}, "a learned force, but there is none"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
       {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
        "--ensemble does not go together with --pool"},

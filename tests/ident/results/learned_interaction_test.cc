@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
@@ -77,6 +78,23 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
   EXPECT_GT(without, 0.002);
   EXPECT_LT(rows.HeldOutAde(learned), 0.2 * without);
   EXPECT_TRUE(Contains(NetworkText(learned), "interaction network:3 (49 weights"));
+  ASSERT_TRUE(learned.contact_takeover.has_value());
+  EXPECT_GT(learned.contact_takeover->rms_force, 0.1);
+  EXPECT_TRUE(Contains(NetworkText(learned), "it acts like stiffness "));
+}
+
+TEST(LearnedInteraction, ThePenaltyGivesContactItsMeaningBack) {
+  Rows rows;
+  rows.options.max_iterations = 30;
+  const FitResult free = rows.Fitted({{2}});
+  rows.options.takeover_weight = 30.0;
+  const FitResult held = rows.Fitted({{2}});
+  const auto taken = [](const FitResult& r) {
+    return std::abs(r.contact_takeover->stiffness) / 2000.0 +
+           std::abs(r.contact_takeover->damping) / 100.0;
+  };
+  EXPECT_GT(taken(free), 0.05);
+  EXPECT_LT(taken(held), 0.2 * taken(free));
 }
 
 TEST(LearnedInteraction, OrderOfPeopleDoesNotMatter) {
@@ -117,6 +135,7 @@ TEST(LearnedInteraction, ComesBackFromItsFile) {
   const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(rows.HeldOutAde(read.value().fit), rows.HeldOutAde(fitted));
+  EXPECT_EQ(read.value().fit.contact_takeover->stiffness, fitted.contact_takeover->stiffness);
   nlohmann::ordered_json without = json;
   without["self_network"].erase("interaction");
   without["self_network"]["rod"]["kind"] = "linear";
