@@ -228,9 +228,10 @@ class ModelReader {
     if (SelfForceText(result_.options.self_force, options.learned.get()) != learned) {
       throw std::runtime_error("self_force is " + learned + ", which self_network is not");
     }
-    const bool pair = options.learned != nullptr && options.learned->pair.any();
     const std::string interaction = At("model").at("interaction");
-    if (options.interaction.learned != pair || InteractionText(options) != interaction) {
+    const auto named = ParseInteraction("interaction", interaction);
+    const PairShape pair = options.learned != nullptr ? options.learned->pair : PairShape{};
+    if (!named.ok() || named.value().pair.hidden != pair.hidden) {
       throw std::runtime_error("interaction is " + interaction + ", which self_network is not");
     }
     if (json_.contains("network_takeover")) {

@@ -65,8 +65,8 @@ TEST_F(ReportPage, NumbersBehindEveryPlot) {
   const AppRun run = RunApp(
       "pushid-report", {"--model=" + model, Recordings(), "--text", "--csv_dir=" + Path("csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  for (const char* heading : {"What was fitted\n===============", "Profile likelihood", "What to record next",
-                              "Measured and predicted motion"}) {
+  for (const char* heading : {"What was fitted\n===============", "Profile likelihood",
+                              "What to record next", "Measured and predicted motion"}) {
     EXPECT_TRUE(Contains(run.out, heading));
   }
   for (const std::string& name :

@@ -87,8 +87,8 @@ TEST(LearnedPair, NumbersOfPeopleDoNotMatter) {
   const PairShape shape{{4}};
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = options.interaction.learned = true;
-  options.learned = std::make_shared<LearnedTerms>(
-      LearnedTerms{{}, RandomWeights(shape, &random), {}, shape});
+  options.learned =
+      std::make_shared<LearnedTerms>(LearnedTerms{{}, RandomWeights(shape, &random), {}, shape});
   const auto roll = [&options](const std::vector<int>& order) {
     Scene scene;
     for (int who : order) {
