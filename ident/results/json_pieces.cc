@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "ident/parameters/fit_options_json.h"
+
 namespace pushid {
 
 using Json = nlohmann::ordered_json;
@@ -46,6 +48,62 @@ std::vector<std::vector<double>> RowsFrom(const Json& json) {
   std::vector<std::vector<double>> rows;
   for (const Json& row : json) rows.push_back(NumbersFrom(row));
   return rows;
+}
+
+Json MatrixJson(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (int i = 0; i < matrix.rows(); ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < matrix.cols(); ++j) row.push_back(NumberJson(matrix(i, j)));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Eigen::MatrixXd MatrixFrom(const Json& json) {
+  Eigen::MatrixXd matrix(json.size(), json.empty() ? 0 : json[0].size());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = NumberFrom(json.at(i).at(j));
+  }
+  return matrix;
+}
+
+Json EstimateJson(const Estimate& e) {
+  return {{"name", e.name},
+          {"value", NumberJson(e.value)},
+          {"standard_error", NumberJson(e.standard_error)},
+          {"standard_error_naive", NumberJson(e.standard_error_naive)},
+          {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
+          {"freedom", NumberJson(e.freedom)},
+          {"shares",
+           {{"data", NumberJson(e.shares.data)},
+            {"prior", NumberJson(e.shares.prior)},
+            {"settling", NumberJson(e.shares.settling)}}},
+          {"pull",
+           {{"prior", NumberJson(e.shares.prior_pull)},
+            {"settling", NumberJson(e.shares.settling_pull)}}},
+          {"unit", e.unit},
+          {"status", NameOf(e.status)}};
+}
+
+Estimate EstimateFrom(const Json& json) {
+  Estimate e;
+  e.name = json.at("name");
+  e.value = NumberFrom(json.at("value"));
+  e.standard_error = NumberFrom(json.at("standard_error"));
+  e.standard_error_naive = NumberFrom(json.at("standard_error_naive"));
+  e.lower95 = NumberFrom(json.at("interval_95").at(0));
+  e.upper95 = NumberFrom(json.at("interval_95").at(1));
+  e.unit = json.at("unit");
+  e.status = EnumFrom<EstimateStatus>(json, "status");
+  // Models written before shares were computed say nothing of them.
+  if (!json.contains("shares")) return e;
+  e.freedom = NumberFrom(json.at("freedom"));
+  const Json &shares = json.at("shares"), &pull = json.at("pull");
+  e.shares = {NumberFrom(shares.at("data")), NumberFrom(shares.at("prior")),
+              NumberFrom(shares.at("settling")), NumberFrom(pull.at("prior")),
+              NumberFrom(pull.at("settling"))};
+  return e;
 }
 
 Json CombinationJson(const Combination& c) {

@@ -1,6 +1,7 @@
 // ident: what several writers and readers of result JSON share.
 #pragma once
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -17,6 +18,12 @@ nlohmann::ordered_json NumbersJson(const std::vector<double>& values);
 std::vector<double> NumbersFrom(const nlohmann::ordered_json& json);
 nlohmann::ordered_json RowsJson(const std::vector<std::vector<double>>& rows);
 std::vector<std::vector<double>> RowsFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json MatrixJson(const Eigen::MatrixXd& matrix);  // rows
+Eigen::MatrixXd MatrixFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json EstimateJson(const Estimate& estimate);
+Estimate EstimateFrom(const nlohmann::ordered_json& json);
 
 nlohmann::ordered_json CombinationJson(const Combination& combination);
 Combination CombinationFrom(const nlohmann::ordered_json& json);

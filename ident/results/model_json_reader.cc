@@ -11,39 +11,12 @@
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 #include "ident/results/step_probability_json.h"
+#include "ident/results/takeover_json.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Estimate EstimateFrom(const Json& json) {
-  Estimate e;
-  e.name = json.at("name");
-  e.value = NumberFrom(json.at("value"));
-  e.standard_error = NumberFrom(json.at("standard_error"));
-  e.standard_error_naive = NumberFrom(json.at("standard_error_naive"));
-  e.lower95 = NumberFrom(json.at("interval_95").at(0));
-  e.upper95 = NumberFrom(json.at("interval_95").at(1));
-  e.unit = json.at("unit");
-  e.status = EnumFrom<EstimateStatus>(json, "status");
-  // Models written before shares were computed say nothing of them.
-  if (!json.contains("shares")) return e;
-  e.freedom = NumberFrom(json.at("freedom"));
-  const Json &shares = json.at("shares"), &pull = json.at("pull");
-  e.shares = {NumberFrom(shares.at("data")), NumberFrom(shares.at("prior")),
-              NumberFrom(shares.at("settling")), NumberFrom(pull.at("prior")),
-              NumberFrom(pull.at("settling"))};
-  return e;
-}
-
-Eigen::MatrixXd MatrixFrom(const Json& json) {
-  Eigen::MatrixXd matrix(json.size(), json.empty() ? 0 : json[0].size());
-  for (int i = 0; i < matrix.rows(); ++i) {
-    for (int j = 0; j < matrix.cols(); ++j) matrix(i, j) = NumberFrom(json.at(i).at(j));
-  }
-  return matrix;
-}
 
 // A model written before there was such a parameter, which its table does not name then, has its
 // nominal value: nothing it did used it.
@@ -235,16 +208,10 @@ class ModelReader {
       throw std::runtime_error("interaction is " + interaction + ", which self_network is not");
     }
     if (json_.contains("network_takeover")) {
-      const Json& t = At("network_takeover");
-      result_.takeover =
-          Takeover{NumberFrom(t.at("mu_N_s_m")), NumberFrom(t.at("Kp_theta_N_m_rad")),
-                   NumberFrom(t.at("Kd_theta_N_m_s_rad")), NumberFrom(t.at("rms_force_m_s2"))};
+      result_.takeover = TakeoverFromJson(At("network_takeover"));
     }
     if (json_.contains("contact_takeover")) {
-      const Json& t = At("contact_takeover");
-      result_.contact_takeover =
-          ContactTakeover{NumberFrom(t.at("stiffness_N_m")), NumberFrom(t.at("damping_N_s_m")),
-                          NumberFrom(t.at("rms_force_m_s2"))};
+      result_.contact_takeover = ContactTakeoverFromJson(At("contact_takeover"));
     }
     if (json_.contains("interaction_network")) {
       options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));

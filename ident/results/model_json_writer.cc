@@ -9,39 +9,12 @@
 #include "ident/results/refit_json.h"
 #include "ident/results/result_json.h"
 #include "ident/results/step_probability_json.h"
+#include "ident/results/takeover_json.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json EstimateJson(const Estimate& e) {
-  return {{"name", e.name},
-          {"value", NumberJson(e.value)},
-          {"standard_error", NumberJson(e.standard_error)},
-          {"standard_error_naive", NumberJson(e.standard_error_naive)},
-          {"interval_95", {NumberJson(e.lower95), NumberJson(e.upper95)}},
-          {"freedom", NumberJson(e.freedom)},
-          {"shares",
-           {{"data", NumberJson(e.shares.data)},
-            {"prior", NumberJson(e.shares.prior)},
-            {"settling", NumberJson(e.shares.settling)}}},
-          {"pull",
-           {{"prior", NumberJson(e.shares.prior_pull)},
-            {"settling", NumberJson(e.shares.settling_pull)}}},
-          {"unit", e.unit},
-          {"status", NameOf(e.status)}};
-}
-
-Json MatrixJson(const Eigen::MatrixXd& matrix) {
-  Json rows = Json::array();
-  for (int i = 0; i < matrix.rows(); ++i) {
-    Json row = Json::array();
-    for (int j = 0; j < matrix.cols(); ++j) row.push_back(NumberJson(matrix(i, j)));
-    rows.push_back(row);
-  }
-  return rows;
-}
 
 Json UncertaintyJson(const Uncertainty& u) {
   Json names = Json::array();
@@ -189,17 +162,8 @@ Json PushRangeJson(const PushRange& range) {
 void AddLearned(const FitResult& result, Json* json) {
   if (const auto& network = result.options.model.learned) {
     (*json)["self_network"] = ToJson(*network);
-    if (const auto& t = result.takeover) {
-      (*json)["network_takeover"] = {{"mu_N_s_m", NumberJson(t->mu)},
-                                     {"Kp_theta_N_m_rad", NumberJson(t->kp_theta)},
-                                     {"Kd_theta_N_m_s_rad", NumberJson(t->kd_theta)},
-                                     {"rms_force_m_s2", NumberJson(t->rms_force)}};
-    }
-    if (const auto& t = result.contact_takeover) {
-      (*json)["contact_takeover"] = {{"stiffness_N_m", NumberJson(t->stiffness)},
-                                     {"damping_N_s_m", NumberJson(t->damping)},
-                                     {"rms_force_m_s2", NumberJson(t->rms_force)}};
-    }
+    if (result.takeover) (*json)["network_takeover"] = ToJson(*result.takeover);
+    if (result.contact_takeover) (*json)["contact_takeover"] = ToJson(*result.contact_takeover);
     for (const EnsembleMember& member : result.others) {
       (*json)["ensemble"].push_back(
           {{"values", ValuesJson(result.options.table, member.parameters)},
