@@ -21,6 +21,8 @@ struct InteractionTerms {
   // Those that ask how far the points of contact are apart.
   bool Contact() const { return spring || damping || learned; }
   bool Any() const { return Contact() || AtCarts(); }
+  // A learned force that may do what stiffness and damping of contact should.
+  bool LearnedBesideContact() const { return learned && (spring || damping); }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
   // Those that ask how far the carts are apart.

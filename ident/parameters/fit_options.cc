@@ -4,7 +4,6 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "models/learned_terms.h"
-#include "residuals/cost_functions/contact_takeover.h"
 
 namespace pushid {
 namespace {
@@ -91,7 +90,8 @@ bool FitOptions::IsValid(std::string* error) const {
 }
 
 bool MayTakeOver(const ModelOptions& model) {
-  return model.learned != nullptr && (model.learned->shape.any() || MayTakeContactOver(model));
+  return model.learned != nullptr &&
+         (model.learned->shape.any() || model.interaction.LearnedBesideContact());
 }
 
 bool NeedsGradientTraining(const FitOptions& options) {

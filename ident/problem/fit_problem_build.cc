@@ -85,7 +85,7 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
         std::make_unique<TakeoverResidual>(recordings_, options_.model, options_.takeover_weight),
         {point->weights.data()}, kPriorCluster);
   }
-  if (MayTakeContactOver(options_.model)) {
+  if (options_.model.interaction.LearnedBesideContact()) {
     built->Add(std::make_unique<ContactTakeoverResidual>(
                    recordings_, options_.model, options_.table.Values(), options_.takeover_weight),
                {point->weights.data()}, kPriorCluster);

@@ -272,7 +272,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   if (const auto network = problem.ModelAt(best.to).learned; network && network->shape.any()) {
     result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
   }
-  if (MayTakeContactOver(options.model)) {
+  if (options.model.interaction.LearnedBesideContact()) {
     result.contact_takeover =
         ContactTakeoverResidual(recordings, options.model, options.table.Values(), 0.0)
             .Of(problem.ModelAt(best.to).learned->weights);

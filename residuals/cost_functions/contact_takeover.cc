@@ -26,11 +26,6 @@ Eigen::Matrix<double, 8, 1> ForcesOf(const Pair& pair, const ParameterSet<double
 
 }  // namespace
 
-bool MayTakeContactOver(const ModelOptions& options) {
-  const InteractionTerms& terms = options.interaction;
-  return terms.learned && (terms.spring || terms.damping);
-}
-
 ContactTakeoverResidual::ContactTakeoverResidual(const std::vector<PendulumRecording>& recordings,
                                                  const ModelOptions& options,
                                                  const ParameterSet<double>& contact, double weight)

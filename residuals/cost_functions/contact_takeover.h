@@ -25,9 +25,7 @@ struct ContactTakeover {
   double rms_force = 0.0;  // of the network on a loaded cart over mass, m/s^2
 };
 
-// Whether a model has both: a learned interaction, and contact beside it.
-bool MayTakeContactOver(const ModelOptions& options);
-
+// For models with interaction.LearnedBesideContact().
 class ContactTakeoverResidual : public ceres::CostFunction {
  public:
   // contact: the starting values. recordings must outlive the residual.
