@@ -17,6 +17,12 @@ DEFINE_string(
     "continues 12 given frames, for --peer of pushid-evaluate)");
 DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
+DEFINE_string(sees, pushid::Name(pushid::RestorationTrainingOptions{}.view),
+              "what poses follow: the person's pendulum (pendulum), those of the neighbours too "
+              "(neighbours, of window), or none, to compare with (pose: window has the first pose "
+              "and the push, cvae the pose before)");
+DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
+            "cvae: a network for the lower and one for the upper body (false: one for both)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_int32(crossvalidate, pushid::TrainRestorationFlags{}.crossvalidate,
@@ -55,6 +61,13 @@ MaybeError CheckFlags() {
   }
   if (!CvaeCoordinatesFromName(FLAGS_coordinates)) {
     return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
+  }
+  const auto view = RestorationViewFromName(FLAGS_sees);
+  if (!view) {
+    return Error{"--sees is '" + FLAGS_sees + "'; it must be pendulum, neighbours or pose"};
+  }
+  if (*view == RestorationView::kNeighbours && *kind != RestorationKind::kWindow) {
+    return Error{"--sees=neighbours goes with --kind=window"};
   }
   if (FLAGS_crossvalidate == 0) {
     if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
@@ -97,6 +110,8 @@ Result<RestorationRunOptions> RunOptions() {
   options.observed = ObservedFrames();
   options.training.kind = *RestorationKindFromName(FLAGS_kind);
   options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
+  options.training.view = *RestorationViewFromName(FLAGS_sees);
+  options.training.halves = FLAGS_halves;
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;
   options.training.num_threads = FLAGS_num_threads;

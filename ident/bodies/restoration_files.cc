@@ -2,6 +2,7 @@
 #include "ident/bodies/restoration_files.h"
 
 #include "datasets/files/number_text.h"
+#include "datasets/files/random.h"
 #include "ident/bodies/tensor_folder.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_features.h"
@@ -9,6 +10,8 @@
 
 namespace pushid {
 namespace {
+
+constexpr uint64_t kDrawsSeed = 1;  // of a chain without a pendulum
 
 constexpr TensorFolderKind kRestorationFolder = {
     "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
@@ -34,10 +37,24 @@ namespace {
 
 using MadeRestoration = Result<std::unique_ptr<Restoration>>;
 
-MadeRestoration MakeWindow(const RestorationFile&, const std::string&, TensorReader* reader) {
+Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
+  const std::string name = file.settings.value(kViewKey, Name(RestorationView::kPendulum));
+  const std::optional<RestorationView> view = RestorationViewFromName(name);
+  if (view) return *view;
+  return Error{
+      std::string(kViewKey) + " is " + Quoted(name) + "; it must be pendulum, neighbours or pose",
+      path};
+}
+
+MadeRestoration MakeWindow(const RestorationFile& file, const std::string& path,
+                           TensorReader* reader) {
+  const Result<RestorationView> view = ViewOf(file, path);
+  if (!view.ok()) return view.error();
+  const int inputs = WindowInputRows(view.value());
   WindowWeights weights;
-  weights.inputs = TakeScaling("inputs", kWindowInputs, reader);
-  weights.network = TakeNetwork("network", 3, kWindowInputs, kWindowOutputs, reader);
+  weights.view = view.value();
+  weights.inputs = TakeScaling("inputs", inputs, reader);
+  weights.network = TakeNetwork("network", 3, inputs, WindowOutputRows(view.value()), reader);
   return std::unique_ptr<Restoration>(new WindowRestoration(std::move(weights)));
 }
 
@@ -49,7 +66,15 @@ MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
     return Error{
         std::string(kCvaeCoordinatesKey) + " is " + Quoted(name) + "; it must be tip or ldp", path};
   }
-  return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(reader), *coordinates));
+  const Result<RestorationView> view = ViewOf(file, path);
+  if (!view.ok()) return view.error();
+  const CvaeLayout layout = {*coordinates, view.value() == RestorationView::kPendulum,
+                             file.settings.value(kCvaeHalvesKey, true)};
+  const auto draws = [] {
+    const auto random = std::make_shared<Random>(kDrawsSeed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+  return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(layout, reader), draws));
 }
 
 struct Maker {

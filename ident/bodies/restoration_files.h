@@ -15,8 +15,12 @@
 namespace pushid {
 
 inline constexpr int kRestorationFormat = 1;
-// In RestorationFile::settings of kCvae: a name of CvaeCoordinates.
+// In RestorationFile::settings: a name of RestorationView (of kWindow and kCvae), of
+// CvaeCoordinates, and whether the body has two networks (of kCvae). Files of before have none of
+// them.
+inline constexpr char kViewKey[] = "sees";
 inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
+inline constexpr char kCvaeHalvesKey[] = "halves";
 
 // In RestorationFile::training: the most people of one recording that it learned from.
 inline constexpr char kMostPeopleKey[] = "most_people";

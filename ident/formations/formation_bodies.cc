@@ -65,15 +65,8 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const Restoration& restoration,
                                         const PostprocessOptions& options) {
   const Scene& scene = run.recording.scene;
-  std::vector<RestorationInput> people(scene.num_people());
+  std::vector<RestorationInput> people = PeopleOf(scene, first_poses);
   for (int n = 0; n < scene.num_people(); ++n) {
-    people[n].first_pose = first_poses[n];
-    people[n].body = scene.people[n].body;
-    people[n].dt = scene.dt;
-    for (size_t i = 0; i < scene.pushes.size(); ++i) {
-      const double start = scene.pushes[i].start_frame * scene.dt;
-      people[n].push_start = i == 0 ? start : std::min(people[n].push_start, start);
-    }
     for (int t = 0; t < run.num_frames(); ++t) {
       people[n].q.push_back(run.prediction.path.At(t, n).q);
     }

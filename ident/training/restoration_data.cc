@@ -63,12 +63,16 @@ std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& rec
   std::vector<RestorationSample> samples;
   const auto add = [&](const BodyRecording& recording, std::vector<RestorationInput> people) {
     const double weight = 100.0 / (recording.num_people() * recording.num_frames());
+    std::vector<RestorationInput> others;
+    for (const RestorationInput& person : people) others.push_back(Mirrored(person));
+    const auto seen = std::make_shared<const std::vector<RestorationInput>>(std::move(people));
+    const auto other = std::make_shared<const std::vector<RestorationInput>>(std::move(others));
     for (int n = 0; n < recording.num_people(); ++n) {
-      samples.push_back({people[n], recording.bodies[n], weight});
+      samples.push_back({seen, n, recording.bodies[n], weight});
       if (!mirrored) continue;
       BodyMotion motion;
       for (const Pose& pose : recording.bodies[n]) motion.push_back(Mirrored(pose));
-      samples.push_back({Mirrored(people[n]), std::move(motion), weight});
+      samples.push_back({other, n, std::move(motion), weight});
     }
   };
   for (size_t k = 0; k < among.size(); ++k) {

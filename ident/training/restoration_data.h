@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,11 +33,14 @@ std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumReco
                                                   uint64_t seed,
                                                   const OutOfFoldProgress& progress = nullptr);
 
-// One person of one recording with one pendulum.
+// One person of one recording with one pendulum, among everybody of the recording.
 struct RestorationSample {
-  RestorationInput person;
+  std::shared_ptr<const std::vector<RestorationInput>> people;
+  int index = 0;        // who of them
   BodyMotion motion;    // the true one
   double weight = 1.0;  // of a frame: recordings count alike
+
+  const RestorationInput& person() const { return (*people)[index]; }
 };
 
 // Of every person of the recordings: the true pendulum, the predicted one (where the path is not

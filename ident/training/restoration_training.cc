@@ -13,18 +13,20 @@ namespace pushid {
 namespace {
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
-RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, Scaling* scaling) {
+RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, RestorationView view,
+                                Scaling* scaling) {
   int columns = 0;
   for (const RestorationSample& sample : samples) columns += static_cast<int>(sample.motion.size());
   RegressionSamples all;
-  all.inputs.resize(kWindowInputs, columns);
-  all.targets.resize(kWindowOutputs, columns);
+  all.inputs.resize(WindowInputRows(view), columns);
+  all.targets.resize(WindowOutputRows(view), columns);
   all.weights.resize(columns);
   int at = 0;
   for (const RestorationSample& sample : samples) {
     const int frames = static_cast<int>(sample.motion.size());
-    all.inputs.middleCols(at, frames) = WindowInputs(sample.person).leftCols(frames);
-    all.targets.middleCols(at, frames) = WindowTargets(sample.person, sample.motion);
+    all.inputs.middleCols(at, frames) =
+        WindowInputs(*sample.people, sample.index, view).leftCols(frames);
+    all.targets.middleCols(at, frames) = WindowTargets(sample.person(), sample.motion, view);
     all.weights.segment(at, frames).setConstant(static_cast<float>(sample.weight));
     at += frames;
   }
@@ -40,13 +42,14 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
                                        const RestorationTrainingOptions& options,
                                        const TrainingProgress& progress) {
   WindowWeights weights;
-  const RegressionSamples learnt = WindowSamples(training, &weights.inputs);
-  const RegressionSamples judged = WindowSamples(held, &weights.inputs);
+  const RegressionSamples learnt = WindowSamples(training, options.view, &weights.inputs);
+  const RegressionSamples judged = WindowSamples(held, options.view, &weights.inputs);
   TrainedRestoration trained;
   const Result<DenseNetwork> network =
       TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
                  progress, &trained);
   if (!network.ok()) return network.error();
+  trained.file.settings[kViewKey] = Name(options.view);
   AddTensors("inputs", weights.inputs, &trained.file.tensors);
   AddTensors("network", network.value(), &trained.file.tensors);
   return trained;

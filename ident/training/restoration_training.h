@@ -9,12 +9,15 @@
 #include "ident/training/restoration_data.h"
 #include "models/restoration/cvae_features.h"
 #include "models/restoration/regression_trainer.h"
+#include "models/restoration/restoration_view.h"
 
 namespace pushid {
 
 struct RestorationTrainingOptions {
   RestorationKind kind = RestorationKind::kWindow;
+  RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
+  bool halves = true;                                   // of kCvae: lower, then upper body
   double effort = 1.0;                                  // multiplies the number of steps
   uint64_t seed = 1;
   int num_threads = 1;

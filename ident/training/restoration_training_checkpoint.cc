@@ -83,6 +83,7 @@ std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
   return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
+         Name(options.view) + (options.halves ? " halves " : " whole ") +
          std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
          KeyOfSamples(training) + KeyOfSamples(held);
 }
@@ -94,8 +95,8 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
               static_cast<size_t>(values.size()) * sizeof(double)});
   };
   for (const RestorationSample& sample : samples) {
-    add(sample.person.first_pose);
-    for (const auto& q : sample.person.q) add(q);
+    add(sample.person().first_pose);
+    for (const auto& q : sample.person().q) add(q);
     for (const Pose& pose : sample.motion) add(pose);
   }
   return hash.Hex();

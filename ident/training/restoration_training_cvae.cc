@@ -10,14 +10,15 @@ namespace pushid {
 namespace {
 
 std::vector<CvaeSequence> Sequences(const std::vector<RestorationSample>& samples,
-                                    CvaeCoordinates coordinates) {
+                                    const CvaeLayout& layout) {
   std::vector<CvaeSequence> sequences;
   for (const RestorationSample& sample : samples) {
-    const RestorationInput person = Resampled(sample.person, 1.0 / kCvaeRate);
+    const RestorationInput person = Resampled(sample.person(), 1.0 / kCvaeRate);
     const BodyMotion motion =
-        Resampled(sample.motion, sample.person.dt, person.dt, static_cast<int>(person.q.size()));
-    BodyFrames frames = FramesOf(person, motion, coordinates);
-    sequences.push_back({std::move(frames.lower), std::move(frames.upper), PendulumFrames(person)});
+        Resampled(sample.motion, sample.person().dt, person.dt, static_cast<int>(person.q.size()));
+    BodyFrames frames = FramesOf(person, motion, layout);
+    sequences.push_back(
+        {std::move(frames.lower), std::move(frames.upper), PendulumFrames(person, layout)});
   }
   return sequences;
 }
@@ -37,8 +38,8 @@ Scaling ScalingOfAll(const std::vector<CvaeSequence>& sequences,
 void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
   for (CvaeSequence& s : *sequences) {
     s.lower = scalings.lower.Scaled(s.lower);
-    s.upper = scalings.upper.Scaled(s.upper);
-    s.pendulum = scalings.pendulum.Scaled(s.pendulum);
+    if (scalings.layout.halves) s.upper = scalings.upper.Scaled(s.upper);
+    if (scalings.layout.pendulum) s.pendulum = scalings.pendulum.Scaled(s.pendulum);
   }
 }
 
@@ -48,12 +49,14 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
                                      const std::vector<RestorationSample>& held,
                                      const RestorationTrainingOptions& options,
                                      const TrainingProgress& progress) {
-  std::vector<CvaeSequence> learnt = Sequences(training, options.coordinates);
-  std::vector<CvaeSequence> judged = Sequences(held, options.coordinates);
   CvaeWeights scalings;
+  scalings.layout = {options.coordinates, options.view == RestorationView::kPendulum,
+                     options.halves};
+  std::vector<CvaeSequence> learnt = Sequences(training, scalings.layout);
+  std::vector<CvaeSequence> judged = Sequences(held, scalings.layout);
   scalings.lower = ScalingOfAll(learnt, &CvaeSequence::lower);
-  scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
-  scalings.pendulum = ScalingOfAll(learnt, &CvaeSequence::pendulum);
+  if (scalings.layout.halves) scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
+  if (scalings.layout.pendulum) scalings.pendulum = ScalingOfAll(learnt, &CvaeSequence::pendulum);
   Scale(scalings, &learnt);
   Scale(scalings, &judged);
   CvaeOptions cvae;
@@ -76,7 +79,9 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
     if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
   }
   trained.file.tensors = ToTensors(trainer.Best());
-  trained.file.settings[kCvaeCoordinatesKey] = Name(options.coordinates);
+  trained.file.settings = {{kViewKey, Name(options.view)},
+                           {kCvaeCoordinatesKey, Name(options.coordinates)},
+                           {kCvaeHalvesKey, options.halves}};
   checkpoint.Remove();
   return trained;
 }

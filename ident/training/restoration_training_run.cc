@@ -64,7 +64,8 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   std::vector<RolloutPath<double>> paths;
-  if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum) {
+  if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
+      options.training.view != RestorationView::kPose) {
     paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
                              options.training.seed, [&](int fold, int folds) {
                                if (progress) {

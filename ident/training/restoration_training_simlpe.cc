@@ -14,8 +14,8 @@ RegressionSamples Windows(const std::vector<RestorationSample>& samples, Scaling
   std::vector<Eigen::VectorXf> inputs, targets;
   std::vector<float> weights;
   for (const RestorationSample& sample : samples) {
-    const double end = static_cast<double>(sample.motion.size() - 1) * sample.person.dt;
-    const BodyMotion motion = Resampled(sample.motion, sample.person.dt, kSimlpeStep,
+    const double end = static_cast<double>(sample.motion.size() - 1) * sample.person().dt;
+    const BodyMotion motion = Resampled(sample.motion, sample.person().dt, kSimlpeStep,
                                         static_cast<int>(end / kSimlpeStep + 0.5) + 1);
     for (int last = kGivenFrames - 1; last + kSimlpeFrames < static_cast<int>(motion.size());
          ++last) {

@@ -8,10 +8,10 @@
 // windows may be forecast together, which is faster.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "models/enum_names.h"
+#include "models/normal_source.h"
 #include "models/particles.h"
 
 namespace pushid {
@@ -35,9 +35,6 @@ struct SampledFuture {
   Trajectories motion;
   double log_likelihood = 0.0;  // of its transitions; comparable between futures of one person
 };
-
-// Standard normal draws; models hold no random generator of their own.
-using NormalSource = std::function<double()>;
 
 class MotionGenerator {
  public:

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numeric>
 
 #include "models/restoration/rotations.h"
 #include "models/restoration/skeleton_fit.h"
@@ -20,11 +22,29 @@ std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name) {
   return std::nullopt;
 }
 
+const std::vector<int>& CvaeLayout::LowerJoints() const {
+  static const std::vector<int> lower(std::begin(kLowerJoints), std::end(kLowerJoints));
+  static const std::vector<int> all = [] {
+    std::vector<int> joints(kBodyJoints);
+    std::iota(joints.begin(), joints.end(), 0);
+    return joints;
+  }();
+  return halves ? lower : all;
+}
+
+const std::vector<int>& CvaeLayout::UpperJoints() const {
+  static const std::vector<int> upper(std::begin(kUpperJoints), std::end(kUpperJoints));
+  static const std::vector<int> none;
+  return halves ? upper : none;
+}
+
+int CvaeLayout::PendulumFrame() const { return pendulum ? kPendulumFrame : 0; }
+
 namespace {
 
 // Where positions are measured from.
-Eigen::Vector3d Origin(const RestorationInput& person, const Pose& pose,
-                       CvaeCoordinates coordinates) {
+Eigen::Vector3d OriginOf(const RestorationInput& person, const Pose& pose,
+                         CvaeCoordinates coordinates) {
   return coordinates == CvaeCoordinates::kTip ? pose.col(0) : person.first_pose.col(0);
 }
 
@@ -38,27 +58,24 @@ struct FrameParts {
   std::array<Rotation6d, kBodyJoints> rotations;
 };
 
-template <size_t kJoints>
-void Fill(const FrameParts& parts, const std::array<int, kJoints>& joints, int frame,
+void Fill(const FrameParts& parts, const std::vector<int>& joints, int frame,
           Eigen::MatrixXf* out) {
-  constexpr int n = static_cast<int>(kJoints);
+  const int n = static_cast<int>(joints.size());
+  if (n == 0) return;
   auto column = out->col(frame);
-  column.template head<2>() = parts.way.cast<float>();
+  column.head<2>() = parts.way.cast<float>();
   column[2] = static_cast<float>(parts.facing_change);
   for (int i = 0; i < n; ++i) {
-    column.template segment<3>(3 + 3 * i) = parts.positions.col(joints[i]).template cast<float>();
-    column.template segment<3>(3 + 3 * (n + i)) =
-        parts.changes.col(joints[i]).template cast<float>();
-    column.template segment<6>(3 + 6 * (n + i)) = parts.rotations[joints[i]].template cast<float>();
+    column.segment<3>(3 + 3 * i) = parts.positions.col(joints[i]).cast<float>();
+    column.segment<3>(3 + 3 * (n + i)) = parts.changes.col(joints[i]).cast<float>();
+    column.segment<6>(3 + 6 * (n + i)) = parts.rotations[joints[i]].cast<float>();
   }
 }
 
-template <size_t kJoints>
-void TakePositions(const Eigen::MatrixXf& frames, const std::array<int, kJoints>& joints, int frame,
+void TakePositions(const Eigen::MatrixXf& frames, const std::vector<int>& joints, int frame,
                    Pose* pose) {
-  for (size_t i = 0; i < kJoints; ++i) {
-    pose->col(joints[i]) =
-        frames.block<3, 1>(3 + 3 * static_cast<int>(i), frame).template cast<double>();
+  for (size_t i = 0; i < joints.size(); ++i) {
+    pose->col(joints[i]) = frames.block<3, 1>(3 + 3 * static_cast<int>(i), frame).cast<double>();
   }
 }
 
@@ -78,11 +95,12 @@ bool SameRate(double a, double b) { return std::abs(a / b - 1.0) < 1e-3; }
 
 }  // namespace
 
-Eigen::MatrixXf PendulumFrames(const RestorationInput& person) {
+Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout& layout) {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(-heading);
   const int frames = static_cast<int>(person.q.size());
-  Eigen::MatrixXf out = Eigen::MatrixXf::Zero(kPendulumFrame, frames);
+  Eigen::MatrixXf out = Eigen::MatrixXf::Zero(layout.PendulumFrame(), frames);
+  if (!layout.pendulum) return out;
   const Vector4<double> first = TurnedPendulum(person.q[0], -heading);
   const int from[7] = {0, 1, 2, 3, 4, 5, 6};  // what the changes are of
   for (int t = 0; t < frames; ++t) {
@@ -100,10 +118,11 @@ Eigen::MatrixXf PendulumFrames(const RestorationInput& person) {
 }
 
 BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
-                    CvaeCoordinates coordinates) {
+                    const CvaeLayout& layout) {
   const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
   const int frames = static_cast<int>(motion.size());
-  BodyFrames out{Eigen::MatrixXf(kLowerFrame, frames), Eigen::MatrixXf(kUpperFrame, frames)};
+  BodyFrames out{Eigen::MatrixXf(layout.LowerFrame(), frames),
+                 Eigen::MatrixXf(layout.UpperFrame(), frames)};
   FrameParts parts;
   Pose before = Pose::Zero();
   for (int t = 0; t < frames; ++t) {
@@ -111,7 +130,7 @@ BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
     const Pose& last = motion[std::max(0, t - 1)];
     parts.way = (turn * (pose.col(0) - last.col(0))).head<2>();
     parts.facing_change = Wrapped(Heading(pose) - Heading(last));
-    parts.positions = turn * (pose.colwise() - Origin(person, pose, coordinates));
+    parts.positions = turn * (pose.colwise() - OriginOf(person, pose, layout.Origin()));
     parts.changes = Pose::Zero();
     if (t > 0) parts.changes = (parts.positions - before) * kCvaeRate;
     before = parts.positions;
@@ -119,22 +138,22 @@ BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
     for (int j = 0; j < kBodyJoints; ++j) {
       parts.rotations[j] = ToRotation6d(turn * posed.rotations[j] * turn.transpose());
     }
-    Fill(parts, kLowerJoints, t, &out.lower);
-    Fill(parts, kUpperJoints, t, &out.upper);
+    Fill(parts, layout.LowerJoints(), t, &out.lower);
+    Fill(parts, layout.UpperJoints(), t, &out.upper);
   }
   return out;
 }
 
 BodyMotion MotionFromFrames(const RestorationInput& person, const BodyFrames& frames,
-                            CvaeCoordinates coordinates) {
+                            const CvaeLayout& layout) {
   const Eigen::Matrix3d turn = TurnAboutZ(Heading(person.first_pose));
   BodyMotion motion(frames.lower.cols());
   for (int t = 0; t < static_cast<int>(motion.size()); ++t) {
     Pose pose;
-    TakePositions(frames.upper, kUpperJoints, t, &pose);
-    TakePositions(frames.lower, kLowerJoints, t, &pose);  // the hip is the lower body's
+    TakePositions(frames.upper, layout.UpperJoints(), t, &pose);
+    TakePositions(frames.lower, layout.LowerJoints(), t, &pose);  // the hip is the lower body's
     pose = turn * pose;
-    if (coordinates == CvaeCoordinates::kLdp) {
+    if (layout.Origin() == CvaeCoordinates::kLdp) {
       motion[t] = pose.colwise() + person.first_pose.col(0);
     } else {
       const Eigen::Vector3d move = TipAt(person, t) - pose.col(0);

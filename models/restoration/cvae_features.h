@@ -1,7 +1,7 @@
 // models: what LDP's chain of conditional variational autoencoders sees and says, frame by frame.
 //
-// A frame of the lower body has 111 numbers, of the upper body 171, both in the frame of the
-// heading at frame 0 and at 60 Hz:
+// A frame of the lower body has 111 numbers, of the upper body 171, of both in one network 267, all
+// in the frame of the heading at frame 0 and at 60 Hz:
 //   way of the hip since the frame before (x, y), m                         2
 //   change of the facing direction since the frame before, rad              1
 //   joint positions, m                                                      3 per joint
@@ -29,25 +29,43 @@ enum class CvaeCoordinates { kTip, kLdp };
 const char* Name(CvaeCoordinates coordinates);  // "tip", "ldp"
 std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name);
 
-inline constexpr int kLowerFrame = 3 + 12 * static_cast<int>(kLowerJoints.size());
-inline constexpr int kUpperFrame = 3 + 12 * static_cast<int>(kUpperJoints.size());
-inline constexpr int kLowerPositions = 3 * static_cast<int>(kLowerJoints.size());
-inline constexpr int kUpperCondition = kUpperFrame + kLowerPositions;
+// What the chain is made of; to leave parts of LDP's out is to see what they are worth.
+struct CvaeLayout {
+  CvaeCoordinates coordinates = CvaeCoordinates::kTip;
+  bool pendulum = true;  // false: the next pose from the pose alone; the network carries the hip
+  bool halves = true;    // false: one network for all joints, in the place of the lower body's
+
+  const std::vector<int>& LowerJoints() const;
+  const std::vector<int>& UpperJoints() const;  // none without halves
+  int LowerFrame() const { return FrameSize(LowerJoints()); }
+  int UpperFrame() const { return halves ? FrameSize(UpperJoints()) : 0; }
+  int LowerPositions() const { return 3 * static_cast<int>(LowerJoints().size()); }
+  int UpperPositions() const { return 3 * static_cast<int>(UpperJoints().size()); }
+  int UpperCondition() const { return halves ? UpperFrame() + LowerPositions() : 0; }
+  int PendulumFrame() const;  // 15 or 0
+  // Where positions are measured from: without a pendulum there is no tip.
+  CvaeCoordinates Origin() const { return pendulum ? coordinates : CvaeCoordinates::kLdp; }
+
+ private:
+  static int FrameSize(const std::vector<int>& joints) {
+    return 3 + 12 * static_cast<int>(joints.size());
+  }
+};
+
 inline constexpr int kPendulumFrame = 15;
 inline constexpr double kCvaeRate = 60.0;  // Hz
-static_assert(kLowerFrame == 111 && kUpperFrame == 171 && kUpperCondition == 198);
 
 // A column per frame. person and motion at 60 Hz (Resampled).
-Eigen::MatrixXf PendulumFrames(const RestorationInput& person);
+Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout& layout);
 struct BodyFrames {
-  Eigen::MatrixXf lower, upper;
+  Eigen::MatrixXf lower, upper;  // upper: no rows without halves
 };
 BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
-                    CvaeCoordinates coordinates);
+                    const CvaeLayout& layout);
 
 // Back from frames to the world; the hip is at the rod's tip in `tip` coordinates.
 BodyMotion MotionFromFrames(const RestorationInput& person, const BodyFrames& frames,
-                            CvaeCoordinates coordinates);
+                            const CvaeLayout& layout);
 
 // The same person at another rate, by linear interpolation; unchanged where the rates agree.
 RestorationInput Resampled(const RestorationInput& person, double dt);

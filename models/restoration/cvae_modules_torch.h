@@ -83,12 +83,13 @@ class DecoderModule : public torch::nn::Module {
 // One half of the body: an autoencoder of frames and the sampler that stands in for its encoder.
 class HalfModule : public torch::nn::Module {
  public:
-  HalfModule(int frame, int condition)
+  // pendulum: its numbers in a frame.
+  HalfModule(int frame, int condition, int pendulum)
       : encoder(
             register_module("encoder", std::make_shared<EncoderModule>(frame + condition, frame))),
         decoder(register_module("decoder", std::make_shared<DecoderModule>(condition, frame))),
-        sampler(register_module("sampler", std::make_shared<EncoderModule>(
-                                               condition + kPendulumFrame, kPendulumFrame))) {}
+        sampler(register_module("sampler",
+                                std::make_shared<EncoderModule>(condition + pendulum, pendulum))) {}
 
   Gaussian Encode(const Tensor& next, const Tensor& condition) {
     return encoder->Forward(Join(next, condition), next, true);

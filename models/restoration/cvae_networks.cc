@@ -51,6 +51,19 @@ void AddDecoder(const std::string& name, const CvaeDecoder& decoder, TensorList*
   AddTensors(name + ".last", decoder.last, tensors);
 }
 
+// The next frame by the sampler, or the mean over draws of z where there is no pendulum.
+Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder,
+                          const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
+                          const Eigen::MatrixXf& draws) {
+  if (pendulum.rows() > 0)
+    return decoder.Evaluate(sampler.Evaluate(condition, pendulum), condition);
+  Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
+  for (Eigen::Index k = 1; k < draws.cols(); ++k) {
+    sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
+  }
+  return sum / static_cast<float>(draws.cols());
+}
+
 CvaeSampler TakeSampler(const std::string& name, int condition, TensorReader* reader) {
   return {TakeLayer(name + ".first", condition + kPendulumFrame, kCvaeHidden, reader),
           TakeLayer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, reader),
@@ -87,39 +100,47 @@ Eigen::MatrixXf CvaeDecoder::Evaluate(const Eigen::MatrixXf& z,
 }
 
 void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
-               Eigen::MatrixXf* lower) {
-  const Eigen::MatrixXf z = weights.lower_sampler.Evaluate(*lower, pendulum);
-  *lower = weights.lower_decoder.Evaluate(z, *lower);
+               const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower) {
+  *lower = NextFrame(weights.lower_sampler, weights.lower_decoder, *lower, pendulum, draws);
 }
 
 void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
-               const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper) {
-  const Eigen::MatrixXf condition = Stacked(*upper, lower.middleRows(3, kLowerPositions));
-  const Eigen::MatrixXf z = weights.upper_sampler.Evaluate(condition, pendulum);
-  *upper = weights.upper_decoder.Evaluate(z, condition);
+               const Eigen::MatrixXf& draws, const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper) {
+  if (!weights.layout.halves) return;
+  const Eigen::MatrixXf condition =
+      Stacked(*upper, lower.middleRows(3, weights.layout.LowerPositions()));
+  *upper = NextFrame(weights.upper_sampler, weights.upper_decoder, condition, pendulum, draws);
 }
 
 TensorList ToTensors(const CvaeWeights& weights) {
+  const CvaeLayout& layout = weights.layout;
   TensorList tensors;
   AddTensors("lower", weights.lower, &tensors);
-  AddTensors("upper", weights.upper, &tensors);
-  AddTensors("pendulum", weights.pendulum, &tensors);
-  AddSampler("lower_sampler", weights.lower_sampler, &tensors);
-  AddSampler("upper_sampler", weights.upper_sampler, &tensors);
+  if (layout.halves) AddTensors("upper", weights.upper, &tensors);
+  if (layout.pendulum) {
+    AddTensors("pendulum", weights.pendulum, &tensors);
+    AddSampler("lower_sampler", weights.lower_sampler, &tensors);
+    if (layout.halves) AddSampler("upper_sampler", weights.upper_sampler, &tensors);
+  }
   AddDecoder("lower_decoder", weights.lower_decoder, &tensors);
-  AddDecoder("upper_decoder", weights.upper_decoder, &tensors);
+  if (layout.halves) AddDecoder("upper_decoder", weights.upper_decoder, &tensors);
   return tensors;
 }
 
-CvaeWeights TakeCvae(TensorReader* reader) {
+CvaeWeights TakeCvae(const CvaeLayout& layout, TensorReader* reader) {
+  const int lower = layout.LowerFrame(), condition = layout.UpperCondition();
   CvaeWeights weights;
-  weights.lower = TakeScaling("lower", kLowerFrame, reader);
-  weights.upper = TakeScaling("upper", kUpperFrame, reader);
-  weights.pendulum = TakeScaling("pendulum", kPendulumFrame, reader);
-  weights.lower_sampler = TakeSampler("lower_sampler", kLowerFrame, reader);
-  weights.upper_sampler = TakeSampler("upper_sampler", kUpperCondition, reader);
-  weights.lower_decoder = TakeDecoder("lower_decoder", kLowerFrame, kLowerFrame, reader);
-  weights.upper_decoder = TakeDecoder("upper_decoder", kUpperCondition, kUpperFrame, reader);
+  weights.layout = layout;
+  weights.lower = TakeScaling("lower", lower, reader);
+  weights.lower_decoder = TakeDecoder("lower_decoder", lower, lower, reader);
+  if (layout.pendulum) {
+    weights.pendulum = TakeScaling("pendulum", kPendulumFrame, reader);
+    weights.lower_sampler = TakeSampler("lower_sampler", lower, reader);
+  }
+  if (!layout.halves) return weights;
+  weights.upper = TakeScaling("upper", layout.UpperFrame(), reader);
+  weights.upper_decoder = TakeDecoder("upper_decoder", condition, layout.UpperFrame(), reader);
+  if (layout.pendulum) weights.upper_sampler = TakeSampler("upper_sampler", condition, reader);
   return weights;
 }
 

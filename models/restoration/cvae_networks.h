@@ -4,6 +4,10 @@
 //   lower: z = S_l(x^l_t, pendulum_t+1),  x^l_t+1 = D_l(z, x^l_t)
 //   upper: c = [x^u_t, lower positions t+1],  z = S_u(c, pendulum_t+1),  x^u_t+1 = D_u(z, c)
 //
+// Without halves only the lower body's pair is there, and poses all joints. Without a pendulum
+// there are no samplers: z is drawn from a standard normal three times a frame and the poses are
+// averaged, as LDP does in its ablation.
+//
 // z is the sampler's mean: drawing it triples the jitter. The experts' outputs are blended, not
 // their weights: the same function, since a layer is linear, and one product for a whole crowd.
 #pragma once
@@ -34,19 +38,24 @@ struct CvaeDecoder {
 };
 
 struct CvaeWeights {
-  Scaling lower, upper, pendulum;
+  CvaeLayout layout;
+  Scaling lower, upper, pendulum;  // of what the layout has
   CvaeSampler lower_sampler, upper_sampler;
   CvaeDecoder lower_decoder, upper_decoder;
 };
 
+inline constexpr int kCvaeDraws = 3;  // of z in a frame, without a pendulum
+
 // One frame on: scaled frames of everybody, a column each, in place. pendulum: scaled, of the next
-// frame.
-void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum, Eigen::MatrixXf* lower);
-// lower: already of the next frame.
+// frame. draws: of z where there is no pendulum, kLatent x kCvaeDraws, the same for everybody, so
+// that the order of people changes nothing.
+void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
+               const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower);
+// lower: already of the next frame. Nothing happens without halves.
 void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
-               const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper);
+               const Eigen::MatrixXf& draws, const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper);
 
 TensorList ToTensors(const CvaeWeights& weights);
-CvaeWeights TakeCvae(TensorReader* reader);
+CvaeWeights TakeCvae(const CvaeLayout& layout, TensorReader* reader);
 
 }  // namespace pushid

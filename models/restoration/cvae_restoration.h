@@ -1,6 +1,9 @@
 // models: bodies by LDP's chain, frame after frame, everybody together.
 #pragma once
 
+#include <functional>
+
+#include "models/normal_source.h"
 #include "models/restoration/cvae_networks.h"
 #include "models/restoration/restoration.h"
 
@@ -8,15 +11,16 @@ namespace pushid {
 
 class CvaeRestoration : public Restoration {
  public:
-  CvaeRestoration(CvaeWeights weights, CvaeCoordinates coordinates)
-      : weights_(std::move(weights)), coordinates_(coordinates) {}
+  // draws: of z where there is no pendulum, made anew for every call of Restore.
+  explicit CvaeRestoration(CvaeWeights weights, std::function<NormalSource()> draws = nullptr)
+      : weights_(std::move(weights)), draws_(std::move(draws)) {}
   std::string_view kind() const override { return Name(RestorationKind::kCvae); }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const CvaeWeights& weights() const { return weights_; }
 
  private:
   CvaeWeights weights_;
-  CvaeCoordinates coordinates_;
+  std::function<NormalSource()> draws_;
 };
 
 }  // namespace pushid

@@ -17,6 +17,14 @@ Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest)
   return all;
 }
 
+// Where the right and the left ankle stand among the joints.
+std::array<int64_t, 2> AnklesAmong(const std::vector<int>& joints) {
+  const auto at = [&joints](int joint) {
+    return std::find(joints.begin(), joints.end(), joint) - joints.begin();
+  };
+  return {at(kRightAnkle), at(kLeftAnkle)};
+}
+
 Tensor Positions(const Tensor& frames, int numbers) { return frames.slice(-1, 3, 3 + numbers); }
 
 }  // namespace
@@ -54,7 +62,8 @@ void CvaeStages::FinishStage() {
   const auto& best = Upper() ? best_upper : best_lower;
   const std::vector<Tensor> from = best->parameters(), to = Half().parameters();
   for (size_t i = 0; i < to.size(); ++i) to[i].copy_(from[i]);
-  ++stage;
+  do ++stage;
+  while (stage < 4 && !Has(stage));
 }
 
 // Sequences at random, recordings weighted by nothing else; a random first frame that leaves room.
@@ -86,14 +95,14 @@ Tensor CvaeStages::AutoencoderLoss(const Tensor& next, const Tensor& condition, 
 Tensor CvaeStages::Skate(const Tensor& output, const Tensor& x, const Tensor& next,
                          const Tensor& before) const {
   Tensor skate = torch::zeros({1});
-  for (const int64_t ankle : {3, 7}) {  // right and left among the lower joints
+  const int numbers = layout().LowerPositions();
+  for (const int64_t ankle : AnklesAmong(layout().LowerJoints())) {
     const auto place = [&](const Tensor& frame) {
       const auto part = [&](const Tensor& t) { return t.slice(-1, 3 * ankle, 3 * ankle + 2); };
       const Tensor hip_way =
           frame.slice(-1, 0, 2) * lower_spread.slice(0, 0, 2) + lower_mean.slice(0, 0, 2);
-      const Tensor p =
-          Positions(frame, kLowerPositions) * lower_spread.slice(0, 3, 3 + kLowerPositions) +
-          lower_mean.slice(0, 3, 3 + kLowerPositions);
+      const Tensor p = Positions(frame, numbers) * lower_spread.slice(0, 3, 3 + numbers) +
+                       lower_mean.slice(0, 3, 3 + numbers);
       return std::make_pair(part(p), hip_way);
     };
     const auto [now, way] = place(output);
@@ -149,7 +158,7 @@ double CvaeStages::Step() {
 }
 
 // Whole sequences from their first frame: [sequence, frame, number].
-Tensor CvaeStages::RollOut(const CvaeSequences& s, bool with_sampler) {
+Tensor CvaeStages::RollOut(const CvaeSequences& s, Latent latent) {
   torch::NoGradGuard no_grad;
   const Tensor& frames = Frames(s);
   Tensor out = torch::zeros_like(frames);
@@ -157,8 +166,10 @@ Tensor CvaeStages::RollOut(const CvaeSequences& s, bool with_sampler) {
   out.select(1, 0).copy_(x);
   for (int64_t t = 1; t < s.longest(); ++t) {
     const Tensor condition = Condition(x, Upper() ? s.lower_predicted.select(1, t) : Tensor());
-    const Tensor z = with_sampler ? Half().Sample(condition, s.pendulum.select(1, t)).mean
-                                  : Half().Encode(frames.select(1, t), condition).mean;
+    const Tensor z =
+        latent == Latent::kSampler   ? Half().Sample(condition, s.pendulum.select(1, t)).mean
+        : latent == Latent::kEncoder ? Half().Encode(frames.select(1, t), condition).mean
+                                     : torch::zeros({s.count(), kLatent});
     x = Half().decoder->Forward(z, condition).clamp(-kLargestScaled, kLargestScaled);
     out.select(1, t).copy_(x);
   }
@@ -166,7 +177,7 @@ Tensor CvaeStages::RollOut(const CvaeSequences& s, bool with_sampler) {
 }
 
 double CvaeStages::HeldLoss() {
-  const Tensor out = RollOut(held, Sampler());
+  const Tensor out = RollOut(held, Sampler() ? Latent::kSampler : Latent::kEncoder);
   const Tensor spread = (Upper() ? upper_spread : lower_spread).slice(0, 3, 3 + NumPositions());
   const Tensor error =
       (Positions(out, NumPositions()) - Positions(Frames(held), NumPositions())) * spread;
@@ -180,8 +191,9 @@ double CvaeStages::HeldLoss() {
 
 void CvaeStages::PredictLower(CvaeSequences* s) {
   const int kept = stage;
-  stage = 1;
-  s->lower_predicted = Positions(RollOut(*s, true), kLowerPositions).contiguous();
+  stage = 0;  // of the lower body
+  const Latent latent = layout().pendulum ? Latent::kSampler : Latent::kPriorMean;
+  s->lower_predicted = Positions(RollOut(*s, latent), layout().LowerPositions()).contiguous();
   stage = kept;
 }
 

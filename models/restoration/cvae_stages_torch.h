@@ -27,7 +27,7 @@ struct CvaeStages {
   CvaeOptions options;
   CvaeWeights scalings;
   CvaeSequences training, held;
-  std::shared_ptr<HalfModule> lower, upper, best_lower, best_upper;
+  std::shared_ptr<HalfModule> lower, upper, best_lower, best_upper;  // upper: null without halves
   std::unique_ptr<torch::optim::AdamW> optimizer;
   Tensor lower_spread, upper_spread, lower_mean;  // of positions, for errors in m
   int stage = 0, step = 0, rounds = 0;
@@ -41,14 +41,21 @@ struct CvaeStages {
   bool Sampler() const { return stage % 2 == 1; }
   HalfModule& Half() { return Upper() ? *upper : *lower; }
   const Tensor& Frames(const CvaeSequences& s) const { return Upper() ? s.upper : s.lower; }
+  const CvaeLayout& layout() const { return scalings.layout; }
   int NumPositions() const {
-    return Upper() ? 3 * static_cast<int>(kUpperJoints.size()) : kLowerPositions;
+    return Upper() ? layout().UpperPositions() : layout().LowerPositions();
   }
   // x_t and, for the upper body, the lower positions of the next frame.
   Tensor Condition(const Tensor& x, const Tensor& lower_next) const {
     return Upper() ? Join(x, lower_next) : x;
   }
 
+  // Whether the layout has it.
+  bool Has(int stage) const {
+    return (layout().halves || stage < 2) && (layout().pendulum || stage % 2 == 0);
+  }
+  // Of stages that the layout has not, 0.
+  int Steps(int stage) const { return Has(stage) ? options.steps[stage] : 0; }
   void StartStage();
   void FinishStage();
   void NewBatch();
@@ -58,7 +65,8 @@ struct CvaeStages {
                      const Tensor& before, Tensor* output);
   Tensor Skate(const Tensor& output, const Tensor& x, const Tensor& next,
                const Tensor& before) const;
-  Tensor RollOut(const CvaeSequences& s, bool with_sampler);
+  enum class Latent { kEncoder, kSampler, kPriorMean };
+  Tensor RollOut(const CvaeSequences& s, Latent latent);
   double HeldLoss();
   void PredictLower(CvaeSequences* s);
 };

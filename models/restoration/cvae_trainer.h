@@ -1,10 +1,10 @@
 // models: training of LDP's chain, with LibTorch behind it and nothing of LibTorch in front.
 //
-// Four stages, one after the other: the lower autoencoder, its sampler, the upper autoencoder (on
-// lower positions that the finished lower chain predicts), its sampler. Every step takes one frame
-// of 64 rollouts: teacher-forced for the first 14 % of a stage's steps, then more and more (14 %)
-// and for the rest (72 %) on what the network said itself, without gradients through earlier
-// frames.
+// Four stages (those that the layout has), one after the other: the lower autoencoder, its sampler,
+// the upper autoencoder (on lower positions that the finished lower chain predicts), its sampler.
+// Every step takes one frame of 64 rollouts: teacher-forced for the first 14 % of a stage's steps,
+// then more and more (14 %) and for the rest (72 %) on what the network said itself, without
+// gradients through earlier frames.
 //   autoencoder: mean square error of the scaled frame + 0.005 KL to a standard normal, mean
 //                over the latent variable
 //   sampler:     squared difference of its mean and log-variance to the encoder's; for the lower
@@ -31,7 +31,7 @@ struct CvaeSequence {
 };
 
 struct CvaeOptions {
-  std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages
+  std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages, where they are
   int rollout = 8, sampler_rollout = 16;                  // frames
   int batch = 64;
   int round = 400;  // steps between two judgements
@@ -44,7 +44,7 @@ struct CvaeOptions {
 
 class CvaeTrainer {
  public:
-  // scalings: only for the foot skate, which is in m; they become part of Best().
+  // scalings: the layout, and for the foot skate, which is in m; they become part of Best().
   CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
               const CvaeWeights& scalings, const CvaeOptions& options);
   ~CvaeTrainer();
@@ -61,7 +61,7 @@ class CvaeTrainer {
   std::string State() const;
   bool Resume(const std::string& state);
 
-  // Of the four stages' networks: 865536, 136960, 1097904, 159232.
+  // Of the four stages' networks: 865536, 136960, 1097904, 159232; 0 of stages that are not.
   std::array<int64_t, 4> NumParameters() const;
 
  private:

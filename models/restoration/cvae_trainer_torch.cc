@@ -26,10 +26,17 @@ CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSeq
   t.held = Gather(held);
   t.lower_spread = ToTensor(scalings.lower.spread), t.lower_mean = ToTensor(scalings.lower.mean);
   t.upper_spread = ToTensor(scalings.upper.spread);
-  t.lower = std::make_shared<HalfModule>(kLowerFrame, kLowerFrame);
-  t.upper = std::make_shared<HalfModule>(kUpperFrame, kUpperCondition);
-  t.best_lower = std::make_shared<HalfModule>(kLowerFrame, kLowerFrame);
-  t.best_upper = std::make_shared<HalfModule>(kUpperFrame, kUpperCondition);
+  const CvaeLayout& layout = scalings.layout;
+  const auto lower = [&layout] {
+    return std::make_shared<HalfModule>(layout.LowerFrame(), layout.LowerFrame(),
+                                        layout.PendulumFrame());
+  };
+  const auto upper = [&layout] {
+    return std::make_shared<HalfModule>(layout.UpperFrame(), layout.UpperCondition(),
+                                        layout.PendulumFrame());
+  };
+  t.lower = lower(), t.best_lower = lower();
+  if (layout.halves) t.upper = upper(), t.best_upper = upper();
   t.StartStage();
 }
 
@@ -40,8 +47,8 @@ bool CvaeTrainer::Done() const { return torch_->stage == 4; }
 double CvaeTrainer::ShareDone() const {
   double all = 0.0, done = 0.0;
   for (int i = 0; i < 4; ++i) {
-    all += torch_->options.steps[i];
-    if (i < torch_->stage) done += torch_->options.steps[i];
+    all += torch_->Steps(i);
+    if (i < torch_->stage) done += torch_->Steps(i);
   }
   return Done() ? 1.0 : (done + torch_->step) / all;
 }
@@ -50,17 +57,17 @@ TrainingPoint CvaeTrainer::RunRound() {
   Torch& t = *torch_;
   double sum = 0.0;
   int steps = 0;
-  while (steps < t.options.round && t.step < t.options.steps[t.stage]) sum += t.Step(), ++steps;
+  while (steps < t.options.round && t.step < t.Steps(t.stage)) sum += t.Step(), ++steps;
   TrainingPoint point = {++t.rounds, sum / std::max(1, steps), t.HeldLoss(), kStageNames[t.stage]};
   // Best of the part in which the network goes on from its own frames.
-  if (point.validation_loss < t.best_loss && t.step >= t.options.steps[t.stage] / 2) {
+  if (point.validation_loss < t.best_loss && t.step >= t.Steps(t.stage) / 2) {
     torch::NoGradGuard no_grad;
     t.best_loss = point.validation_loss;
     const std::vector<Tensor> from = t.Half().parameters();
     const std::vector<Tensor> to = (t.Upper() ? t.best_upper : t.best_lower)->parameters();
     for (size_t i = 0; i < to.size(); ++i) to[i].copy_(from[i]);
   }
-  if (t.step >= t.options.steps[t.stage]) {
+  if (t.step >= t.Steps(t.stage)) {
     t.FinishStage();
     if (t.stage < 4) t.StartStage();
   }
@@ -69,10 +76,12 @@ TrainingPoint CvaeTrainer::RunRound() {
 
 CvaeWeights CvaeTrainer::Best() const {
   CvaeWeights weights = torch_->scalings;
-  weights.lower_sampler = torch_->lower->sampler->SamplerWeights();
-  weights.upper_sampler = torch_->upper->sampler->SamplerWeights();
-  weights.lower_decoder = torch_->lower->decoder->Weights();
-  weights.upper_decoder = torch_->upper->decoder->Weights();
+  const auto take = [&](const HalfModule& half, CvaeSampler* sampler, CvaeDecoder* decoder) {
+    if (weights.layout.pendulum) *sampler = half.sampler->SamplerWeights();
+    *decoder = half.decoder->Weights();
+  };
+  take(*torch_->lower, &weights.lower_sampler, &weights.lower_decoder);
+  if (weights.layout.halves) take(*torch_->upper, &weights.upper_sampler, &weights.upper_decoder);
   return weights;
 }
 
@@ -82,16 +91,20 @@ std::array<int64_t, 4> CvaeTrainer::NumParameters() const {
     for (const Tensor& p : parameters) sum += p.numel();
     return sum;
   };
-  return {
-      count(torch_->lower->AutoencoderParameters()), count(torch_->lower->sampler->parameters()),
-      count(torch_->upper->AutoencoderParameters()), count(torch_->upper->sampler->parameters())};
+  std::array<int64_t, 4> all = {};
+  for (int i = 0; i < 4; ++i) {
+    if (!torch_->Has(i)) continue;
+    const HalfModule& half = i < 2 ? *torch_->lower : *torch_->upper;
+    all[i] = count(i % 2 == 0 ? half.AutoencoderParameters() : half.sampler->parameters());
+  }
+  return all;
 }
 
 std::string CvaeTrainer::State() const {
   const Torch& t = *torch_;
   torch::serialize::OutputArchive archive, lower, upper, best_lower, best_upper, optimizer;
-  t.lower->save(lower), t.upper->save(upper);
-  t.best_lower->save(best_lower), t.best_upper->save(best_upper);
+  t.lower->save(lower), t.best_lower->save(best_lower);
+  if (t.upper) t.upper->save(upper), t.best_upper->save(best_upper);
   t.optimizer->save(optimizer);
   archive.write("lower", lower), archive.write("upper", upper);
   archive.write("best_lower", best_lower), archive.write("best_upper", best_upper);
@@ -117,13 +130,13 @@ bool CvaeTrainer::Resume(const std::string& state) {
     archive.read("lower", lower), archive.read("upper", upper);
     archive.read("best_lower", best_lower), archive.read("best_upper", best_upper);
     archive.read("optimizer", optimizer);
-    t.lower->load(lower), t.upper->load(upper);
-    t.best_lower->load(best_lower), t.best_upper->load(best_upper);
+    t.lower->load(lower), t.best_lower->load(best_lower);
+    if (t.upper) t.upper->load(upper), t.best_upper->load(best_upper);
     Tensor counts, random;
     archive.read("counts", counts);
     archive.read("random", random);
     t.stage = static_cast<int>(counts[0].item<double>());
-    if (t.stage > 2) {
+    if (t.stage > 2 && t.stage < 4) {
       t.PredictLower(&t.training);
       t.PredictLower(&t.held);
     }

@@ -4,9 +4,10 @@
 //   std::vector<BodyMotion> bodies = restoration.Restore({person});
 //   Finish(person, PostprocessOptions(), &bodies[0]);           // postprocess.h
 //
-// All that a restoration knows of a person is the pose at frame 0, mass, rod length and the
-// pendulum's path; people do not see each other, so their order changes nothing. Every kind turns a
-// person to the heading at frame 0 first and back at the end.
+// All that a restoration knows of a person is the pose at frame 0, mass, rod length and what its
+// view names (restoration_view.h): the pendulum's path, those of the neighbours too, or, to compare
+// with, no pendulum at all. The order of people changes nothing. Every kind turns a person to the
+// heading at frame 0 first and back at the end.
 #pragma once
 
 #include <string_view>
@@ -17,12 +18,21 @@
 
 namespace pushid {
 
+// What is pushed from outside: all that a restoration without pendulums is told of the motion.
+struct SeenPush {
+  Vector3<double> velocity =
+      Vector3<double>::Zero();                      // m/s: impulse over the mass of who is pushed
+  double duration = 0.0;                            // s, of the longest push
+  Vector3<double> place = Vector3<double>::Zero();  // m: hip of who is pushed, at frame 0
+};
+
 struct RestorationInput {
   Pose first_pose;                 // m, world
   Body body;                       // mass, rod length and cart height
   std::vector<Vector4<double>> q;  // the pendulum, frame by frame; at least one
   double dt = 1.0 / 60.0;          // s
   double push_start = 0.0;         // s, of the first push on anybody
+  SeenPush push = {};
   // Frame by frame, whether the feet stand; empty: the model says nothing of them.
   std::vector<bool> stands = {};
   // Poses of the first frames, first_pose among them, where more than that was seen.
@@ -52,6 +62,20 @@ Vector3<double> TipAt(const RestorationInput& person, int frame);
 
 // A pendulum turned about z: the cart's place and the rod's direction are.
 Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle);
+
+// A pendulum's path in the frame of a heading, with its rates, read at any frame; beyond its ends
+// the ends are seen.
+class TurnedPath {
+ public:
+  TurnedPath(const RestorationInput& person, double heading);
+  const Vector4<double>& First() const { return q_.front(); }
+  Vector4<double> At(double frame) const { return Read(q_, frame); }
+  Vector4<double> RateAt(double frame) const { return Read(rate_, frame); }
+
+ private:
+  static Vector4<double> Read(const std::vector<Vector4<double>>& values, double frame);
+  std::vector<Vector4<double>> q_, rate_;
+};
 
 // The same person in the mirror plane y = 0.
 RestorationInput Mirrored(const RestorationInput& person);

@@ -15,46 +15,19 @@ constexpr std::array<int, 7> kSeenJoints = {kRightKnee,  kLeftKnee,  kRightAnkle
 constexpr double kLagRate = 60.0;     // Hz
 constexpr double kLongestTime = 2.0;  // s
 
-// A pendulum's path in the heading's frame with its rates, read at any time.
-class TurnedPath {
- public:
-  TurnedPath(const RestorationInput& person, double heading) {
-    for (const Vector4<double>& q : person.q) q_.push_back(TurnedPendulum(q, -heading));
-    const int last = static_cast<int>(q_.size()) - 1;
-    for (int t = 0; t <= last; ++t) {
-      const int before = std::max(0, t - 1), after = std::min(last, t + 1);
-      rate_.push_back((q_[after] - q_[before]) / (std::max(1, after - before) * person.dt));
-    }
-  }
-  const Vector4<double>& First() const { return q_.front(); }
-  Vector4<double> At(double frame) const { return Read(q_, frame); }
-  Vector4<double> RateAt(double frame) const { return Read(rate_, frame); }
+constexpr int kPendulumInputs = 4 * static_cast<int>(kLags.size() + kRateLags.size());
+constexpr int kPersonInputs = 6 + 3 * static_cast<int>(kSeenJoints.size());
+constexpr int kPushInputs = 5;
+constexpr int kShapeOutputs = 3 * (kBodyJoints - 1);
 
- private:
-  static Vector4<double> Read(const std::vector<Vector4<double>>& values, double frame) {
-    const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
-    const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
-    const double share = at - static_cast<double>(low);
-    if (share == 0.0) return values[low];
-    return (1.0 - share) * values[low] + share * values[high];
-  }
-  std::vector<Vector4<double>> q_, rate_;
-};
-
-}  // namespace
-
-Eigen::MatrixXf WindowInputs(const RestorationInput& person) {
-  const double heading = Heading(person.first_pose);
-  const TurnedPath path(person, heading);
-  const Eigen::Matrix3d turn = TurnAboutZ(-heading);
+Eigen::MatrixXf PendulumInputs(const RestorationInput& person) {
+  const TurnedPath path(person, Heading(person.first_pose));
   const double frames_per_lag = 1.0 / (kLagRate * person.dt);
-  const double leg = LegLength(person.first_pose);
   const int frames = static_cast<int>(person.q.size());
-  Eigen::MatrixXf inputs(kWindowInputs, frames);
+  Eigen::MatrixXf inputs(kPendulumInputs, frames);
   for (int t = 0; t < frames; ++t) {
-    auto column = inputs.col(t);
     int row = 0;
-    const auto add = [&column, &row](double value) { column[row++] = static_cast<float>(value); };
+    const auto add = [&](double value) { inputs(row++, t) = static_cast<float>(value); };
     const Vector4<double> now = path.At(t);
     for (const int lag : kLags) {
       const Vector4<double> q = path.At(t + lag * frames_per_lag);
@@ -66,9 +39,23 @@ Eigen::MatrixXf WindowInputs(const RestorationInput& person) {
       const Vector4<double> rate = path.RateAt(t + lag * frames_per_lag);
       for (int i = 0; i < 4; ++i) add(rate[i]);
     }
+  }
+  return inputs;
+}
+
+// Only the time differs from frame to frame.
+Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
+  const double heading = Heading(person.first_pose);
+  const Eigen::Matrix3d turn = TurnAboutZ(-heading);
+  const Vector4<double> first = TurnedPendulum(person.q[0], -heading);
+  const double leg = LegLength(person.first_pose);
+  Eigen::MatrixXf inputs(kPersonInputs, static_cast<int>(person.q.size()));
+  for (int t = 0; t < static_cast<int>(inputs.cols()); ++t) {
+    int row = 0;
+    const auto add = [&](double value) { inputs(row++, t) = static_cast<float>(value); };
     add(std::clamp(t * person.dt - person.push_start, 0.0, kLongestTime));
     add(person.body.mass), add(person.body.rod_length), add(leg);
-    add(path.First()[2]), add(path.First()[3]);
+    add(first[2]), add(first[3]);
     for (const int joint : kSeenJoints) {
       const Eigen::Vector3d place =
           turn * (person.first_pose.col(joint) - person.first_pose.col(0));
@@ -78,27 +65,75 @@ Eigen::MatrixXf WindowInputs(const RestorationInput& person) {
   return inputs;
 }
 
-Eigen::MatrixXf WindowTargets(const RestorationInput& person, const BodyMotion& motion) {
+Eigen::MatrixXf PushInputs(const RestorationInput& person) {
   const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
-  Eigen::MatrixXf targets(kWindowOutputs, static_cast<int>(motion.size()));
-  for (size_t t = 0; t < motion.size(); ++t) {
+  const Eigen::Vector3d velocity = turn * person.push.velocity;
+  const Eigen::Vector3d away = turn * (person.push.place - person.first_pose.col(0));
+  Eigen::Matrix<float, kPushInputs, 1> push;
+  push << velocity.head<2>().cast<float>(), static_cast<float>(person.push.duration),
+      away.head<2>().cast<float>();
+  return push.replicate(1, static_cast<int>(person.q.size()));
+}
+
+}  // namespace
+
+int WindowInputRows(RestorationView view) {
+  if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
+  return kPendulumInputs + kPersonInputs +
+         (view == RestorationView::kNeighbours ? kNeighbourInputs : 0);
+}
+
+int WindowOutputRows(RestorationView view) {
+  return kShapeOutputs + (view == RestorationView::kPose ? 3 : 0);
+}
+
+Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,
+                             RestorationView view) {
+  const RestorationInput& person = people[n];
+  Eigen::MatrixXf inputs(WindowInputRows(view), static_cast<int>(person.q.size()));
+  switch (view) {
+    case RestorationView::kPendulum:
+      inputs << PendulumInputs(person), PersonInputs(person);
+      break;
+    case RestorationView::kNeighbours:
+      inputs << PendulumInputs(person), PersonInputs(person), NeighbourInputs(people, n);
+      break;
+    case RestorationView::kPose:
+      inputs << PersonInputs(person), PushInputs(person);
+      break;
+  }
+  return inputs;
+}
+
+Eigen::MatrixXf WindowTargets(const RestorationInput& person, const BodyMotion& motion,
+                              RestorationView view) {
+  const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
+  Eigen::MatrixXf targets(WindowOutputRows(view), static_cast<int>(motion.size()));
+  for (int t = 0; t < static_cast<int>(motion.size()); ++t) {
     for (int j = 1; j < kBodyJoints; ++j) {
       const Eigen::Vector3d shape = motion[t].col(j) - motion[t].col(0) -
                                     (person.first_pose.col(j) - person.first_pose.col(0));
-      targets.block<3, 1>(3 * (j - 1), static_cast<int>(t)) = (turn * shape).cast<float>();
+      targets.block<3, 1>(3 * (j - 1), t) = (turn * shape).cast<float>();
     }
+    if (view != RestorationView::kPose) continue;
+    const Eigen::Vector3d way = motion[t].col(0) - person.first_pose.col(0);
+    targets.block<3, 1>(kShapeOutputs, t) = (turn * way).cast<float>();
   }
   return targets;
 }
 
-BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::MatrixXf& outputs) {
+BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::MatrixXf& outputs,
+                             RestorationView view) {
   const Eigen::Matrix3d turn = TurnAboutZ(Heading(person.first_pose));
   BodyMotion motion(outputs.cols());
   for (int t = 0; t < static_cast<int>(motion.size()); ++t) {
-    const Eigen::Vector3d tip = TipAt(person, t);
-    motion[t].col(0) = tip;
+    Eigen::Vector3d hip = TipAt(person, t);
+    if (view == RestorationView::kPose) {
+      hip = person.first_pose.col(0) + turn * outputs.block<3, 1>(kShapeOutputs, t).cast<double>();
+    }
+    motion[t].col(0) = hip;
     for (int j = 1; j < kBodyJoints; ++j) {
-      motion[t].col(j) = tip + (person.first_pose.col(j) - person.first_pose.col(0)) +
+      motion[t].col(j) = hip + (person.first_pose.col(j) - person.first_pose.col(0)) +
                          turn * outputs.block<3, 1>(3 * (j - 1), t).cast<double>();
     }
   }

@@ -8,9 +8,10 @@ namespace pushid {
 std::vector<BodyMotion> WindowRestoration::Restore(
     const std::vector<RestorationInput>& people) const {
   std::vector<BodyMotion> motions;
-  for (const RestorationInput& person : people) {
-    const Eigen::MatrixXf inputs = weights_.inputs.Scaled(WindowInputs(person));
-    motions.push_back(MotionFromOutputs(person, weights_.network.Evaluate(inputs)));
+  for (int n = 0; n < static_cast<int>(people.size()); ++n) {
+    const Eigen::MatrixXf inputs = weights_.inputs.Scaled(WindowInputs(people, n, weights_.view));
+    motions.push_back(
+        MotionFromOutputs(people[n], weights_.network.Evaluate(inputs), weights_.view));
   }
   return motions;
 }

@@ -4,10 +4,12 @@
 
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
+#include "models/restoration/restoration_view.h"
 
 namespace pushid {
 
 struct WindowWeights {
+  RestorationView view = RestorationView::kPendulum;
   Scaling inputs;
   DenseNetwork network;  // outputs in m
 };

@@ -40,9 +40,7 @@ void RestoreWindow(benchmark::State& state) {
 void RestoreWindowBare(benchmark::State& state) {
   Restore(state, WindowRestoration(RandomWindow()), false);
 }
-void RestoreCvae(benchmark::State& state) {
-  Restore(state, CvaeRestoration(RandomCvae(), CvaeCoordinates::kTip), true);
-}
+void RestoreCvae(benchmark::State& state) { Restore(state, CvaeRestoration(RandomCvae()), true); }
 BENCHMARK(RestoreRigid)->Unit(benchmark::kMillisecond);
 BENCHMARK(RestoreWindow)->Unit(benchmark::kMillisecond);
 BENCHMARK(RestoreWindowBare)->Unit(benchmark::kMillisecond);

@@ -56,11 +56,12 @@ inline RestorationInput WithPendulum(const Pose& first_pose, double mass) {
   return person;
 }
 
-// Walks off along its heading and sways; frames of q.
+// Is pushed from behind, walks off along its heading and sways; frames of q.
 inline RestorationInput MovingPerson(const Pose& first_pose, double mass, int frames) {
   RestorationInput person = WithPendulum(first_pose, mass);
   const double heading = Heading(first_pose);
   const Vector4<double> start = TurnedPendulum(person.q[0], -heading);
+  person.push = {TurnAboutZ(heading) * Eigen::Vector3d(0.6, 0.1, 0.0), 0.2, first_pose.col(0)};
   person.q.clear();
   for (int t = 0; t < frames; ++t) {
     const double s = t / 60.0;
@@ -88,18 +89,21 @@ inline Scaling UnitScaling(int rows) {
   return {Eigen::VectorXf::Zero(rows), Eigen::VectorXf::Ones(rows)};
 }
 
-inline WindowWeights RandomWindow(uint64_t seed = 1) {
+inline WindowWeights RandomWindow(uint64_t seed = 1,
+                                  RestorationView view = RestorationView::kPendulum) {
   Random random(seed);
   WindowWeights weights;
-  weights.inputs = UnitScaling(kWindowInputs);
-  weights.network.layers = {RandomLayer(kWindowInputs, 256, &random),
+  weights.view = view;
+  weights.inputs = UnitScaling(WindowInputRows(view));
+  weights.network.layers = {RandomLayer(WindowInputRows(view), 256, &random),
                             RandomLayer(256, 256, &random),
-                            RandomLayer(256, kWindowOutputs, &random)};
+                            RandomLayer(256, WindowOutputRows(view), &random)};
   weights.network.layers.back().weights *= 0.05f;
   return weights;
 }
 
-inline CvaeWeights RandomCvae(uint64_t seed = 1) {
+// Of a layout, or LDP's own.
+inline CvaeWeights RandomCvae(uint64_t seed = 1, const CvaeLayout& layout = {}) {
   Random random(seed);
   const auto sampler = [&random](int condition) {
     return CvaeSampler{RandomLayer(condition + kPendulumFrame, kCvaeHidden, &random),
@@ -117,13 +121,16 @@ inline CvaeWeights RandomCvae(uint64_t seed = 1) {
     return d;
   };
   CvaeWeights weights;
-  weights.lower = UnitScaling(kLowerFrame);
-  weights.upper = UnitScaling(kUpperFrame);
-  weights.pendulum = UnitScaling(kPendulumFrame);
-  weights.lower_sampler = sampler(kLowerFrame);
-  weights.upper_sampler = sampler(kUpperCondition);
-  weights.lower_decoder = decoder(kLowerFrame, kLowerFrame);
-  weights.upper_decoder = decoder(kUpperCondition, kUpperFrame);
+  weights.layout = layout;
+  weights.lower = UnitScaling(layout.LowerFrame());
+  weights.upper = UnitScaling(layout.UpperFrame());
+  weights.pendulum = UnitScaling(layout.PendulumFrame());
+  if (layout.pendulum) weights.lower_sampler = sampler(layout.LowerFrame());
+  if (layout.pendulum && layout.halves) weights.upper_sampler = sampler(layout.UpperCondition());
+  weights.lower_decoder = decoder(layout.LowerFrame(), layout.LowerFrame());
+  if (layout.halves) {
+    weights.upper_decoder = decoder(layout.UpperCondition(), layout.UpperFrame());
+  }
   return weights;
 }
 

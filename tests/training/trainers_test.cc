@@ -78,17 +78,19 @@ TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
   EXPECT_LT(epochs, 200);
 }
 
-std::vector<CvaeSequence> Sequences(int count, CvaeWeights* scalings) {
+std::vector<CvaeSequence> Sequences(int count, CvaeWeights* scalings,
+                                    const CvaeLayout& layout = {}) {
   std::vector<CvaeSequence> sequences;
   for (int i = 0; i < count; ++i) {
     const RestorationInput person = MovingPerson(StandingPose(), 60.0 + 5 * i, 30);
     const BodyMotion motion = RigidRestoration().Restore({person})[0];
-    BodyFrames frames = FramesOf(person, motion, CvaeCoordinates::kTip);
-    sequences.push_back({frames.lower, frames.upper, PendulumFrames(person)});
+    BodyFrames frames = FramesOf(person, motion, layout);
+    sequences.push_back({frames.lower, frames.upper, PendulumFrames(person, layout)});
   }
-  scalings->lower = UnitScaling(kLowerFrame);
-  scalings->upper = UnitScaling(kUpperFrame);
-  scalings->pendulum = UnitScaling(kPendulumFrame);
+  scalings->layout = layout;
+  scalings->lower = UnitScaling(layout.LowerFrame());
+  scalings->upper = UnitScaling(layout.UpperFrame());
+  scalings->pendulum = UnitScaling(layout.PendulumFrame());
   return sequences;
 }
 
@@ -123,9 +125,9 @@ TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
     Eigen::MatrixXf clamped;
     double of_sequence = 0.0;
     for (Eigen::Index t = 1; t < s.lower.cols(); ++t) {
-      StepLower(weights, s.pendulum.col(t), &lower);
+      StepLower(weights, s.pendulum.col(t), {}, &lower);
       lower = lower.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
-      StepUpper(weights, s.pendulum.col(t), lower, &upper);
+      StepUpper(weights, s.pendulum.col(t), {}, lower, &upper);
       upper = upper.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
       for (int j = 0; j < 14; ++j) {
         of_sequence += (upper - s.upper.col(t)).block<3, 1>(3 + 3 * j, 0).norm() / 14;
@@ -151,6 +153,43 @@ TEST(CvaeTrainerTest, ResumesToTheLastBitInTheMiddleOfAnyStage) {
     const TensorList a = ToTensors(whole.Best()), b = ToTensors(resumed.Best());
     for (size_t i = 0; i < a.size(); ++i)
       EXPECT_EQ(a[i].values, b[i].values) << rounds << a[i].name;
+  }
+}
+
+// What a chain of another layout predicts is what its trainer returned, and its stages are those of
+// the layout.
+TEST(CvaeTrainerTest, LayoutsOfTheAblationAreTrained) {
+  struct Case {
+    CvaeLayout layout;
+    const char* last;  // stage
+    std::array<bool, 4> stages;
+  };
+  const Case cases[] = {
+      {{CvaeCoordinates::kTip, true, false}, "lower sampler", {true, true, false, false}},
+      {{CvaeCoordinates::kTip, false, true}, "upper autoencoder", {true, false, true, false}},
+      {{CvaeCoordinates::kTip, false, false}, "lower autoencoder", {true, false, false, false}},
+  };
+  for (const Case& c : cases) {
+    CvaeWeights scalings;
+    const auto sequences = Sequences(2, &scalings, c.layout);
+    CvaeTrainer trainer(sequences, sequences, scalings, QuickCvae());
+    for (int i = 0; i < 4; ++i) EXPECT_EQ(trainer.NumParameters()[i] > 0, c.stages[i]) << i;
+    std::string state;
+    TrainingPoint last;
+    while (!trainer.Done()) {
+      last = trainer.RunRound();
+      if (state.empty()) state = trainer.State();
+    }
+    EXPECT_EQ(last.stage, c.last);
+    CvaeTrainer resumed(sequences, sequences, scalings, QuickCvae());
+    ASSERT_TRUE(resumed.Resume(state)) << c.last;
+    while (!resumed.Done()) resumed.RunRound();
+    const TensorList trained = ToTensors(trainer.Best()), again = ToTensors(resumed.Best());
+    for (size_t i = 0; i < trained.size(); ++i) EXPECT_EQ(trained[i].values, again[i].values);
+    TensorReader reader(trained);
+    const CvaeWeights taken = TakeCvae(c.layout, &reader);
+    EXPECT_EQ(reader.problem(), "");
+    EXPECT_EQ(ToTensors(taken).size(), trained.size());
   }
 }
 

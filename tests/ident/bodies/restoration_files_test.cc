@@ -56,9 +56,41 @@ TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
   const BodyMotion before =
-      CvaeRestoration(RandomCvae(), CvaeCoordinates::kLdp).Restore({person})[0];
+      CvaeRestoration(RandomCvae(1, {CvaeCoordinates::kLdp})).Restore({person})[0];
   const BodyMotion after = loaded.value()->Restore({person})[0];
   for (int t = 0; t < 20; ++t) EXPECT_EQ(before[t], after[t]);
+}
+
+// What a restoration sees and how it is made stand in its settings; files without them are as
+// before.
+TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
+  const std::vector<RestorationInput> people = {
+      MovingPerson(StandingPose(), 80, 20),
+      MovingPerson(Placed(StandingPose(), 0.0, {0.6, 0.0, 0.0}), 70, 20)};
+  for (const char* name : {"neighbours", "pose"}) {
+    const WindowWeights weights = RandomWindow(1, *RestorationViewFromName(name));
+    RestorationFile file;
+    file.settings["sees"] = name;
+    AddTensors("inputs", weights.inputs, &file.tensors);
+    AddTensors("network", weights.network, &file.tensors);
+    ASSERT_FALSE(WriteRestorationFile(Path("v"), file));
+    const auto loaded = LoadRestoration(Path("v"));
+    ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+    EXPECT_EQ(loaded.value()->Restore(people)[1][19],
+              WindowRestoration(weights).Restore(people)[1][19]);
+  }
+  RestorationFile file;
+  file.kind = RestorationKind::kCvae;
+  file.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
+  file.tensors = ToTensors(RandomCvae(1, {CvaeCoordinates::kTip, false, false}));
+  ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
+  const auto loaded = LoadRestoration(Path("c"));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()->Restore(people)[1][19], loaded.value()->Restore(people)[1][19])
+      << "draws repeat";
+  WriteWindow();
+  Replace("\"settings\": {", "\"settings\": {\"sees\": \"people\"");
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "pendulum, neighbours or pose"));
 }
 
 TEST_F(RestorationFilesTest, RigidNeedsNoFolder) {

@@ -8,6 +8,10 @@
 namespace pushid {
 namespace {
 
+constexpr RestorationView kPendulum = RestorationView::kPendulum;
+constexpr RestorationView kViews[] = {kPendulum, RestorationView::kNeighbours,
+                                      RestorationView::kPose};
+
 BodyMotion RandomMotion(const RestorationInput& person, uint64_t seed) {
   Random random(seed);
   BodyMotion motion;
@@ -28,8 +32,8 @@ TEST(WindowFeaturesTest, NumbersByHand) {
     person.q.push_back(start + Vector4<double>(0.01 * t, -0.002 * t, 0.001 * t, 0.0005 * t));
   }
   person.push_start = 0.1;
-  const Eigen::MatrixXf inputs = WindowInputs(person);
-  ASSERT_EQ(inputs.rows(), kWindowInputs);
+  const Eigen::MatrixXf inputs = WindowInputs({person}, 0, kPendulum);
+  ASSERT_EQ(inputs.rows(), 107);
   ASSERT_EQ(inputs.cols(), 61);
   const auto at = inputs.col(30);
   EXPECT_NEAR(at[0], 0.30, 1e-6);  // lag 0: against frame 0
@@ -58,14 +62,19 @@ TEST(WindowFeaturesTest, TargetsComeBackAsTheMotion) {
   const RestorationInput person =
       MovingPerson(Placed(StandingPose(), 1.1, {0.3, 0.7, 0.0}), 80, 20);
   const BodyMotion motion = RandomMotion(person, 1);
-  const BodyMotion back = MotionFromOutputs(person, WindowTargets(person, motion));
-  for (int t = 0; t < 20; ++t) EXPECT_LT((back[t] - motion[t]).cwiseAbs().maxCoeff(), 1e-6);
-  EXPECT_LT(WindowTargets(person, motion).col(0).norm(), 1e-6) << "nothing has moved at frame 0";
+  for (const RestorationView view : kViews) {
+    const Eigen::MatrixXf targets = WindowTargets(person, motion, view);
+    ASSERT_EQ(targets.rows(), WindowOutputRows(view));
+    const BodyMotion back = MotionFromOutputs(person, targets, view);
+    for (int t = 0; t < 20; ++t) EXPECT_LT((back[t] - motion[t]).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_LT(targets.col(0).norm(), 1e-6) << "nothing has moved at frame 0";
+  }
 }
 
 TEST(WindowFeaturesTest, TheMirrorMirrorsInputsAndTargets) {
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20), other = Mirrored(person);
-  const Eigen::MatrixXf a = WindowInputs(person), b = WindowInputs(other);
+  const Eigen::MatrixXf a = WindowInputs({person}, 0, kPendulum),
+                        b = WindowInputs({other}, 0, kPendulum);
   EXPECT_NEAR(a(0, 12), b(0, 12), 1e-6);
   EXPECT_NEAR(a(1, 12), -b(1, 12), 1e-6);
   EXPECT_NEAR(a(2, 12), b(2, 12), 1e-6);
@@ -73,15 +82,97 @@ TEST(WindowFeaturesTest, TheMirrorMirrorsInputsAndTargets) {
   EXPECT_NEAR(a(86, 0), b(89, 0), 1e-6);  // right knee against left knee
 }
 
+// Three in a row along +x and one to the left of the first, who walk off.
+std::vector<RestorationInput> FourPeople() {
+  std::vector<RestorationInput> people;
+  for (const Eigen::Vector3d& place :
+       {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(0.5, 0.1, 0.0),
+        Eigen::Vector3d(1.0, 0.0, 0.0), Eigen::Vector3d(0.1, 0.6, 0.0)}) {
+    people.push_back(MovingPerson(Placed(StandingPose(), 0.0, place), 60.0, 30));
+  }
+  // The one ahead moves a little further every frame, so that something changes.
+  for (size_t t = 0; t < people[1].q.size(); ++t)
+    people[1].q[t][0] += 0.01 * static_cast<double>(t);
+  return people;
+}
+
+TEST(NeighbourFeaturesTest, NumbersByHand) {
+  const std::vector<RestorationInput> people = FourPeople();
+  const Eigen::MatrixXf inputs = NeighbourInputs(people, 0);
+  ASSERT_EQ(inputs.rows(), 104);
+  const auto at = inputs.col(10);
+  const Eigen::Vector3d away = TipAt(people[1], 0) - TipAt(people[0], 0);
+  EXPECT_NEAR(at[0], away.x(), 1e-6);  // ahead, at frame 0
+  EXPECT_NEAR(at[1], away.y(), 1e-6);
+  EXPECT_NEAR(at[2], people[1].body.rod_length, 1e-6);
+  EXPECT_NEAR(at[3], std::exp(-away.head<2>().squaredNorm()), 1e-6);
+  EXPECT_NEAR(at[4], 0.10, 1e-6);  // now: ten frames of a centimetre
+  EXPECT_NEAR(at[5], 0.0, 1e-6);
+  EXPECT_NEAR(at[4 + 3], 0.0, 1e-6);       // lag -12 is before the beginning
+  EXPECT_NEAR(at[4 + 3 * 3], 0.16, 1e-6);  // lag 6
+  EXPECT_NEAR(at[4 + 3 * 6], 0.6, 1e-4);   // 1 cm a frame
+  EXPECT_NEAR(at[4 + 3 * 6 + 2], people[1].q[10][2], 1e-6);
+  EXPECT_EQ(at.segment(26, 26).norm(), 0.0f) << "nobody behind";
+  EXPECT_GT(at[2 * 26 + 1], 0.5) << "to the left";
+  EXPECT_EQ(at.segment(3 * 26, 26).norm(), 0.0f) << "nobody to the right";
+}
+
+TEST(NeighbourFeaturesTest, OrderChangesNothingAndTheMirrorExchangesLeftAndRight) {
+  const std::vector<RestorationInput> people = FourPeople();
+  const Eigen::MatrixXf inputs = NeighbourInputs(people, 0);
+  EXPECT_EQ(inputs, NeighbourInputs({people[3], people[2], people[0], people[1]}, 2));
+  std::vector<RestorationInput> others;
+  for (const RestorationInput& person : people) others.push_back(Mirrored(person));
+  const Eigen::MatrixXf mirrored = NeighbourInputs(others, 0);
+  EXPECT_NEAR(mirrored(0, 5), inputs(0, 5), 1e-6);
+  EXPECT_NEAR(mirrored(1, 5), -inputs(1, 5), 1e-6);
+  EXPECT_EQ(mirrored.middleRows(2 * 26, 26).norm(), 0.0f);
+  EXPECT_NEAR(mirrored(3 * 26 + 1, 5), -inputs(2 * 26 + 1, 5), 1e-6);
+}
+
+TEST(NeighbourFeaturesTest, NoNumberDependsOnPlaceOrHeading) {
+  std::vector<RestorationInput> moved;
+  const std::vector<RestorationInput> people = FourPeople();
+  const double turn = 0.7;
+  for (RestorationInput person : people) {
+    person.first_pose = TurnAboutZ(turn) * person.first_pose;
+    for (Vector4<double>& q : person.q) q = TurnedPendulum(q, turn);
+    moved.push_back(person);
+  }
+  EXPECT_LT((NeighbourInputs(moved, 1) - NeighbourInputs(people, 1)).cwiseAbs().maxCoeff(), 1e-4);
+}
+
+TEST(WindowFeaturesTest, ThePoseViewSeesThePushAndNoPendulum) {
+  std::vector<RestorationInput> people = FourPeople();
+  for (RestorationInput& person : people) {
+    person.push = {{0.8, -0.2, 0.0}, 0.3, people[0].first_pose.col(0)};
+  }
+  const RestorationView view = RestorationView::kPose;
+  const Eigen::MatrixXf inputs = WindowInputs(people, 1, view);
+  ASSERT_EQ(inputs.rows(), 32);
+  EXPECT_NEAR(inputs(27, 3), 0.8, 1e-6);
+  EXPECT_NEAR(inputs(28, 3), -0.2, 1e-6);
+  EXPECT_NEAR(inputs(29, 3), 0.3, 1e-6);
+  EXPECT_NEAR(inputs(30, 3), -0.5, 1e-6);
+  EXPECT_NEAR(inputs(31, 3), -0.1, 1e-6);
+  std::vector<RestorationInput> elsewhere = people;
+  for (size_t t = 1; t < elsewhere[1].q.size(); ++t) elsewhere[1].q[t] += Vector4<double>::Ones();
+  EXPECT_EQ(WindowInputs(elsewhere, 1, view), inputs);
+}
+
 TEST(CvaeFeaturesTest, SizesAreLdps) {
-  EXPECT_EQ(kLowerFrame, 111);
-  EXPECT_EQ(kUpperFrame, 171);
-  EXPECT_EQ(kUpperCondition, 198);
+  const CvaeLayout layout;
+  EXPECT_EQ(layout.LowerFrame(), 111);
+  EXPECT_EQ(layout.UpperFrame(), 171);
+  EXPECT_EQ(layout.UpperCondition(), 198);
+  const CvaeLayout whole = {CvaeCoordinates::kTip, true, false};
+  EXPECT_EQ(whole.LowerFrame(), 267);
+  EXPECT_EQ(whole.UpperFrame(), 0);
 }
 
 TEST(CvaeFeaturesTest, PendulumByHand) {
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
-  const Eigen::MatrixXf p = PendulumFrames(person);
+  const Eigen::MatrixXf p = PendulumFrames(person, CvaeLayout());
   ASSERT_EQ(p.rows(), 15);
   EXPECT_LT(p.col(0).head<2>().norm(), 1e-6);
   EXPECT_LT(p.col(0).tail<7>().norm(), 1e-6);
@@ -98,7 +189,7 @@ TEST(CvaeFeaturesTest, AFrameByHand) {
   BodyMotion motion = {person.first_pose, person.first_pose,
                        Placed(person.first_pose, 0.0, {0.01, 0.02, 0.0})};
   motion[1].col(kRightToe) += Eigen::Vector3d(0.0, 0.0, 0.05);
-  const BodyFrames ldp = FramesOf(person, motion, CvaeCoordinates::kLdp);
+  const BodyFrames ldp = FramesOf(person, motion, {CvaeCoordinates::kLdp});
   EXPECT_LT(ldp.lower.col(0).head<3>().norm(), 1e-6);
   EXPECT_NEAR(ldp.lower(0, 2), 0.01, 1e-6);  // way of the hip
   EXPECT_NEAR(ldp.upper(1, 2), 0.02, 1e-6);
@@ -111,7 +202,7 @@ TEST(CvaeFeaturesTest, AFrameByHand) {
     EXPECT_NEAR(ldp.lower(3 + 54 + 6 * j, 0), 1.0, 1e-6);
     EXPECT_NEAR(ldp.lower(3 + 54 + 6 * j + 4, 0), 1.0, 1e-6);
   }
-  const BodyFrames tip = FramesOf(person, motion, CvaeCoordinates::kTip);
+  const BodyFrames tip = FramesOf(person, motion, {CvaeCoordinates::kTip});
   EXPECT_NEAR(tip.lower(3, 2), 0.0, 1e-6);
   EXPECT_NEAR(tip.lower(0, 2), 0.01, 1e-6);
 }
@@ -120,8 +211,13 @@ TEST(CvaeFeaturesTest, FramesComeBackAsTheMotion) {
   const RestorationInput person =
       MovingPerson(Placed(StandingPose(), -0.8, {0.3, 0.7, 0.0}), 80, 20);
   const BodyMotion motion = RandomMotion(person, 2);
-  for (const CvaeCoordinates c : {CvaeCoordinates::kTip, CvaeCoordinates::kLdp}) {
-    const BodyMotion back = MotionFromFrames(person, FramesOf(person, motion, c), c);
+  const CvaeLayout layouts[] = {{CvaeCoordinates::kTip},
+                                {CvaeCoordinates::kLdp},
+                                {CvaeCoordinates::kTip, false},
+                                {CvaeCoordinates::kTip, true, false},
+                                {CvaeCoordinates::kTip, false, false}};
+  for (const CvaeLayout& layout : layouts) {
+    const BodyMotion back = MotionFromFrames(person, FramesOf(person, motion, layout), layout);
     for (int t = 0; t < 20; ++t) EXPECT_LT((back[t] - motion[t]).cwiseAbs().maxCoeff(), 1e-6);
   }
 }
@@ -154,11 +250,12 @@ TEST(DenseNetworkTest, ScalingThereAndBackAndWithinItsLimit) {
 
 TEST(CvaeNetworksTest, BlendedOutputsAreTheBlendedWeights) {
   const CvaeWeights weights = RandomCvae(4);
+  const int lower = weights.layout.LowerFrame();
   const CvaeDecoder& d = weights.lower_decoder;
   Random random(9);
   const Eigen::MatrixXf z = RandomMatrix(kLatent, 1, 1.0, &random);
-  const Eigen::MatrixXf c = RandomMatrix(kLowerFrame, 1, 1.0, &random);
-  Eigen::VectorXf in(kLatent + kLowerFrame);
+  const Eigen::MatrixXf c = RandomMatrix(lower, 1, 1.0, &random);
+  Eigen::VectorXf in(kLatent + lower);
   in << z, c;
   const Eigen::VectorXf gate = d.gate.Evaluate(in);
   Eigen::VectorXf shares = (gate.array() - gate.maxCoeff()).exp();

@@ -11,13 +11,35 @@
 namespace pushid {
 namespace {
 
-std::vector<std::unique_ptr<Restoration>> AllKinds() {
-  std::vector<std::unique_ptr<Restoration>> all;
-  all.push_back(std::make_unique<RigidRestoration>());
-  all.push_back(std::make_unique<WindowRestoration>(RandomWindow()));
-  all.push_back(std::make_unique<CvaeRestoration>(RandomCvae(), CvaeCoordinates::kTip));
-  all.push_back(std::make_unique<CvaeRestoration>(RandomCvae(), CvaeCoordinates::kLdp));
-  return all;
+using Restorations = std::vector<std::unique_ptr<Restoration>>;
+
+NormalSource Draws() {
+  const auto random = std::make_shared<Random>(5);
+  return [random] { return random->Normal(); };
+}
+
+// Their hip is the rod's tip.
+Restorations KindsOnTheTip() {
+  Restorations kinds;
+  kinds.push_back(std::make_unique<RigidRestoration>());
+  kinds.push_back(std::make_unique<WindowRestoration>(RandomWindow()));
+  kinds.push_back(
+      std::make_unique<WindowRestoration>(RandomWindow(2, RestorationView::kNeighbours)));
+  kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae()));
+  kinds.push_back(
+      std::make_unique<CvaeRestoration>(RandomCvae(3, {CvaeCoordinates::kTip, true, false})));
+  return kinds;
+}
+
+Restorations AllKinds() {
+  Restorations kinds = KindsOnTheTip();
+  kinds.push_back(std::make_unique<WindowRestoration>(RandomWindow(3, RestorationView::kPose)));
+  kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, {CvaeCoordinates::kLdp})));
+  for (const bool halves : {true, false}) {
+    const CvaeLayout layout = {CvaeCoordinates::kTip, false, halves};
+    kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, layout), Draws));
+  }
+  return kinds;
 }
 
 double Largest(const BodyMotion& a, const BodyMotion& b) {
@@ -80,9 +102,7 @@ TEST(RestorationTest, AnotherPlaceAndHeadingMoveTheMotionAlong) {
 
 TEST(RestorationTest, TheHipGoesWithTheTip) {
   const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
-  auto kinds = AllKinds();
-  kinds.pop_back();  // LDP's coordinates carry the hip themselves
-  for (const auto& restoration : kinds) {
+  for (const auto& restoration : KindsOnTheTip()) {
     const BodyMotion motion = restoration->Restore({person})[0];
     for (int t = 0; t < 30; ++t) {
       EXPECT_LT((motion[t].col(0) - TipAt(person, t)).norm(), 1e-9) << restoration->kind();
@@ -99,7 +119,7 @@ TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {
     const Vector4<double>& low = at_60.q[t / 2];
     at_120.q.push_back(t % 2 == 0 ? low : Vector4<double>(0.5 * (low + at_60.q[t / 2 + 1])));
   }
-  const CvaeRestoration cvae(RandomCvae(), CvaeCoordinates::kTip);
+  const CvaeRestoration cvae(RandomCvae());
   const BodyMotion slow = cvae.Restore({at_60})[0], fast = cvae.Restore({at_120})[0];
   ASSERT_EQ(fast.size(), 121u);
   for (int t = 0; t < 61; ++t) EXPECT_LT((slow[t] - fast[2 * t]).cwiseAbs().maxCoeff(), 1e-4) << t;
