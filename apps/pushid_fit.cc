@@ -12,6 +12,8 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/body_data.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/parameters/parameter_glossary.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
@@ -37,6 +39,24 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
   return drawn;
 }
 
+// The bodies of --body_weight.
+MaybeError TakeBodies(const std::vector<Recording>& recordings, const std::string& folder,
+                      FitOptions* options) {
+  if (options->body_weight <= 0.0) {
+    if (folder.empty()) return std::nullopt;
+    return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
+  }
+  if (folder.empty()) return std::nullopt;  // PrepareFit says that it is missing
+  const auto restoration = LoadRestoration(folder);
+  if (!restoration.ok()) return restoration.error();
+  const auto bodies = MakeBodyRecordings(recordings, options->mapping);
+  if (!bodies.ok()) return bodies.error();
+  const auto data = MakeBodyData(*restoration.value(), bodies.value());
+  if (!data.ok()) return data.error();
+  options->body = data.value();
+  return std::nullopt;
+}
+
 int Run() {
   const double begin = Now();
   const Result<FitFlags> flags = FitFlagsFromCommandLine();
@@ -56,7 +76,7 @@ int Run() {
   }
   std::vector<std::string> file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, false, &file_warnings);
+      LoadFlaggedRecordings({}, options.value().body_weight > 0.0, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
@@ -65,6 +85,10 @@ int Run() {
 
   options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
+  if (MaybeError error =
+          TakeBodies(recordings.value(), flags.value().body_restoration, &options.value())) {
+    return Fail(*error);
+  }
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
   if (MaybeError error = CheckConfidence(options.value(), static_cast<int>(pendulums.size()))) {
     return Fail(*error);

@@ -35,7 +35,8 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
   if (flags.json_out.empty()) return kDone;
   nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(validation.value().evaluation, &json);
-  json["run"] = {{"training_seconds", validation.value().training_seconds}};
+  json["run"] = {{"training_seconds", validation.value().training_seconds},
+                 {"rounds", validation.value().rounds}};
   if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
   return kDone;
 }
@@ -72,26 +73,27 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
   SayWhenInterrupted(KeptCheckpoints(flags.out));
   TrainingLine line;
-  Result<TrainedRestoration> trained =
-      TrainFromRecordings(recordings, all, options,
-                          [&](const std::string& step, double done) { line.Show(step, done); });
+  Result<TrainedChain> chain =
+      TrainChain(recordings, all, options,
+                 [&](const std::string& step, double done) { line.Show(step, done); });
   line.Finish();
-  if (!trained.ok()) return Fail(trained.error());
-  RestorationFile& file = trained.value().file;
-  file.training = Provenance(recordings, options.more, trained.value());
+  if (!chain.ok()) return Fail(chain.error());
+  const TrainedRestoration& trained = chain.value().restoration;
+  RestorationFile file = trained.file;
+  file.training = Provenance(recordings, options.more, trained);
   const std::string title = std::string(Name(options.training.kind)) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
-  if (MaybeError error = WriteFileAtomically(in_out("curve.svg"),
-                                             TrainingCurveSvg(trained.value().curve, title))) {
+  if (MaybeError error =
+          WriteFileAtomically(in_out("curve.svg"), TrainingCurveSvg(trained.curve, title))) {
     return Fail(*error);
   }
   if (MaybeError error = WriteRestorationFile(flags.out, file)) return Fail(*error);
-  const TrainingPoint& last = trained.value().curve.back();
+  const TrainingPoint& last = trained.curve.back();
   std::printf("%s: %zu points of the curve, held-out loss %s at the end, %s s%s; %s\n",
-              title.c_str(), trained.value().curve.size(), Rounded(last.validation_loss, 3).c_str(),
+              title.c_str(), trained.curve.size(), Rounded(last.validation_loss, 3).c_str(),
               Rounded(line.Seconds(), 3).c_str(),
-              trained.value().resumed ? " (resumed from a checkpoint)" : "",
+              trained.resumed ? " (resumed from a checkpoint)" : "",
               in_out("restoration.json").c_str());
   return kDone;
 }

@@ -89,14 +89,13 @@ T RobustWeight(const T& squared_norm, double robust) {
 // the loss as steeper than it is. With c = sqrt(1 + |r|^2 / d^2):
 //   J <- (1 - u u') J sqrt((1 + c) / 2c) + u u' J sqrt(2 / (c (1 + c))),   u = r / |r|
 // residual: w r times `weight`.
-template <typename Rows>
-void CorrectForRobustLoss(const FrameVector<double>& residual, double weight, double robust,
-                          Rows&& jacobian) {
+template <typename Residual, typename Rows>
+void CorrectForRobustLoss(const Residual& residual, double weight, double robust, Rows&& jacobian) {
   const double squared = residual.squaredNorm();
   if (robust <= 0.0 || weight <= 0.0 || squared <= 0.0) return;
   const double c = 1.0 + squared / (2.0 * weight * weight * robust * robust);
   const double across = std::sqrt((1.0 + c) / (2.0 * c)), along = std::sqrt(2.0 / (c * (1.0 + c)));
-  const FrameVector<double> u = residual / std::sqrt(squared);
+  const Eigen::VectorXd u = residual / std::sqrt(squared);
   const Eigen::Matrix<double, 1, Eigen::Dynamic> by_u = u.transpose() * jacobian;
   jacobian *= across;
   jacobian += (along - across) * u * by_u;

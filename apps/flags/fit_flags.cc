@@ -8,6 +8,8 @@ DEFINE_int32(
     resample, pushid::FitFlags{}.resample,
     "fit replica k of a bootstrap: as many people or recordings (--bootstrap_by) drawn with "
     "replacement by --seed and k; 0: the recordings as they are");
+DEFINE_string(body_restoration, "",
+              "folder of pushid-train-restoration --kind=window: the bodies of --body_weight");
 DEFINE_bool(check, pushid::FitFlags{}.check,
             "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, pushid::FitFlags{}.list_parameters,
@@ -17,7 +19,8 @@ namespace pushid {
 
 Result<FitFlags> FitFlagsFromCommandLine() {
   if (FLAGS_resample < 0) return Error{"--resample must not be negative"};
-  return FitFlags{FLAGS_model_out, FLAGS_resample, FLAGS_check, FLAGS_list_parameters};
+  return FitFlags{FLAGS_model_out, FLAGS_resample, FLAGS_body_restoration, FLAGS_check,
+                  FLAGS_list_parameters};
 }
 
 }  // namespace pushid

@@ -36,6 +36,11 @@ DEFINE_double(checkpoint_seconds, pushid::RestorationTrainingOptions{}.checkpoin
               "time between two checkpoints in --out");
 DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
               "multiplies the number of training steps");
+DEFINE_double(body_weight, 0.0,
+              "window: train as a whole: fit the pendulum to the restored bodies too, with this "
+              "weight, train the network on the new pendulums, and so on; 0: apart");
+DEFINE_int32(rounds, pushid::RestorationRunOptions{}.rounds,
+             "with --body_weight: how often, if nothing stops moving before");
 DEFINE_bool(predicted_pendulums, pushid::RestorationRunOptions{}.predicted_pendulums,
             "learn from out-of-fold predicted pendulums too");
 DEFINE_bool(mirrored, pushid::RestorationRunOptions{}.mirrored, "learn from mirrored copies too");
@@ -77,6 +82,12 @@ MaybeError CheckFlags() {
   if (ObservedFrames() > 0 && FLAGS_crossvalidate == 0) {
     return Error{"--observed goes with --crossvalidate: a training sees whole recordings"};
   }
+  if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
+  if (FLAGS_body_weight > 0.0 &&
+      (*kind != RestorationKind::kWindow || *view != RestorationView::kPendulum)) {
+    return Error{"--body_weight goes with --kind=window and --sees=pendulum"};
+  }
+  if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
   if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
   if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
     return Error{"--held_out must lie above 0 and not above 0.5"};
@@ -102,6 +113,8 @@ Result<RestorationRunOptions> RunOptions() {
         FLAGS_model};
   }
   options.fit.num_threads = FLAGS_num_threads;
+  options.fit.body_weight = FLAGS_body_weight;
+  options.rounds = FLAGS_rounds;
   options.postprocess = postprocess.value();
   options.inner_folds = FLAGS_inner_folds;
   options.held_out = FLAGS_held_out;

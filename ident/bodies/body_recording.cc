@@ -35,20 +35,6 @@ std::vector<RestorationInput> People(const BodyRecording& recording) {
   return PeopleOf(recording.pendulum.scene, first_poses);
 }
 
-// The impulses of everybody who is pushed together, as one push on the first of them.
-SeenPush PushOf(const Scene& scene, const std::vector<Pose>& first_poses) {
-  SeenPush seen;
-  if (scene.pushes.empty()) return seen;
-  for (const ScenePush& push : scene.pushes) {
-    const double duration = static_cast<double>(push.force.size()) * scene.dt;
-    const double mass = scene.people[push.person].body.mass;
-    seen.velocity.head<2>() += push.mean.head<2>() * (duration / mass);
-    seen.duration = std::max(seen.duration, duration);
-  }
-  seen.place = first_poses[scene.pushes.front().person].col(kBodyHip);
-  return seen;
-}
-
 // One pose is the first one, which everybody has.
 void AddSeen(const BodyRecording& recording, int observed, std::vector<RestorationInput>* people) {
   if (observed < 2) return;
@@ -96,24 +82,6 @@ RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings) {
   RecordedBodies bodies;
   for (const BodyRecording& recording : made.value()) bodies.push_back(recording.bodies);
   return bodies;
-}
-
-std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses) {
-  double push_start = 0.0;
-  for (size_t i = 0; i < scene.pushes.size(); ++i) {
-    const double start = scene.pushes[i].start_frame * scene.dt;
-    push_start = i == 0 ? start : std::min(push_start, start);
-  }
-  const SeenPush push = PushOf(scene, first_poses);
-  std::vector<RestorationInput> people(scene.num_people());
-  for (int n = 0; n < scene.num_people(); ++n) {
-    people[n].first_pose = first_poses[n];
-    people[n].body = scene.people[n].body;
-    people[n].dt = scene.dt;
-    people[n].push_start = push_start;
-    people[n].push = push;
-  }
-  return people;
 }
 
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings) {

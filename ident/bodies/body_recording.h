@@ -33,9 +33,6 @@ Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recordin
 RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
-// People of a scene in their first poses, without pendulums: q is empty.
-std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses);
-
 // People with predicted pendulums (and whether their feet stand, where a prediction says so, and
 // the first poses that it has seen), or with those seen in the recording, after `observed` poses.
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,6 +67,8 @@ constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
            {"recording", ClusterBy::kRecording}}};
 }
 
+struct BodyData;  // residuals/cost_functions/body_residual.h
+
 struct FitOptions {
   std::string preset = "tail";                      // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
@@ -117,6 +120,11 @@ struct FitOptions {
   bool hold_network = false;  // its weights are taken as they are
   int ensemble = 1;           // networks from so many seeds; predictions are their median
 
+  // Weight of restored bodies against recorded ones (residuals/cost_functions/body_residual.h), and
+  // what is known of the bodies, which no file holds; 0: pendulums alone.
+  double body_weight = 0.0;
+  std::shared_ptr<const BodyData> body;
+
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.
   std::vector<int> horizons = {8, 16, 32, 64, 0};
@@ -142,6 +150,8 @@ struct FitOptions {
 // Whether what is learned could do what gains or contact do (network_takeover.h,
 // contact_takeover.h).
 bool MayTakeOver(const ModelOptions& model);
+// What --takeover_weight is told where it could not.
+std::string NothingToTakeOver();
 
 // More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
 // recordings would hold 20,000 rows of them.

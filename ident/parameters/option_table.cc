@@ -204,6 +204,10 @@ std::vector<Row> WeightRows() {
           "takeover_weight", "/takeover_weight", [](O & o) -> auto& { return o.takeover_weight; },
           kNotNegative,
           "weight of the penalty on what a network takes over from friction and balance")),
+      MayBeAbsent(NumberRow(
+          "body_weight", "/body_weight", [](O & o) -> auto& { return o.body_weight; }, kNotNegative,
+          "weight of the restored bodies of --body_restoration against the recorded ones; 0: "
+          "pendulums alone")),
       MayBeAbsent(CountRow(
           "ensemble", "/ensemble", [](O & o) -> auto& { return o.ensemble; },
           "networks trained from so many seeds; the model predicts the median of them")),

@@ -127,9 +127,9 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
     case Verdict::kSelfPropelling:
       return "--settling_weight holds it to settle";
     case Verdict::kUnstableThoughSettled:
-      // The hinge on the modes sees no network.
-      return options.learned == nullptr ? "--mode_weight makes the free modes decay"
-                                        : "a smaller --network_prior holds it";
+      // The hinge on the modes sees no network; one between people has no part in them.
+      return LearnsAlone(options) ? "a smaller --network_prior holds it"
+                                  : "--mode_weight makes the free modes decay";
     case Verdict::kRodRunsAway:
       return "a smaller --network_prior or --rod=constant holds it";
     case Verdict::kNegativeDrag:

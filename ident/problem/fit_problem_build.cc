@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
+#include "residuals/cost_functions/body_residual.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/contact_takeover.h"
 #include "residuals/cost_functions/equation_error_residual.h"
@@ -191,6 +192,10 @@ void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
     const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
                                             Weight(i, horizon), frames);
     built->AddRollout(std::make_unique<CondensedRollout>(rollout, options_.jacobian),
+                      RecordingBlocks(point, i), i);
+    // Bodies join once the path is there: their joints follow the path before and after a frame.
+    if (horizon != 0 || options_.body_weight <= 0.0) continue;
+    built->AddRollout(std::make_unique<BodyResidual>(rollout, options_.body, options_.body_weight),
                       RecordingBlocks(point, i), i);
   }
 }

@@ -5,13 +5,13 @@
 #include <set>
 #include <utility>
 
-#include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/cost_functions/condensed_rows.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
 namespace {
 
-using PersonRows = CondensedRollout::PersonRows;
+using PersonRows = CondensedRows::PersonRows;
 
 // A cost function's own rows.
 bool EvaluateRows(const ceres::CostFunction& cost, const std::vector<const double*>& at,
@@ -51,7 +51,7 @@ class Gatherer {
     std::vector<double*> on;
     built_.problem->GetParameterBlocksForResidualBlock(block.id, &on);
     const std::vector<const double*> at(on.begin(), on.end());
-    const auto* rollout = dynamic_cast<const CondensedRollout*>(block.cost);
+    const auto* rollout = dynamic_cast<const CondensedRows*>(block.cost);
     std::vector<PersonRows> people(1);
     // A block that cannot be evaluated here was left out by Build; skip it all the same.
     if (!(rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)

@@ -10,6 +10,7 @@
 #include "ident/results/fit.h"
 #include "ident/solver/large_network_stage.h"
 #include "ident/uncertainty/median.h"
+#include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {
 namespace {
@@ -76,6 +77,21 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
                       NameOf(options->pool_by) + ", '" + *units.begin() + "'");
 }
 
+MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
+                       const FitOptions& options) {
+  if (options.body_weight <= 0.0) return std::nullopt;
+  if (options.body == nullptr) {
+    return Error{
+        "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
+        "--kind=window wrote, and takes part in pushid-fit and pushid-train-restoration alone"};
+  }
+  for (const PendulumRecording& recording : recordings) {
+    if (options.body->motions.count(recording.id) > 0) continue;
+    return Error{"--body_weight: recording " + recording.id + " has no whole bodies"};
+  }
+  return std::nullopt;
+}
+
 // Stepping feet get their speed within 20 ms: longer steps of the rollout lag behind.
 MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
@@ -102,7 +118,10 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
     return Error{
         "process noise and the likelihoods of single steps are for models whose state is "
         "place and velocity; " +
-        what + " has a memory of its own: leave one of them out"};
+        what +
+        (model.learned != nullptr ? " has weights, which single steps do not fit"
+                                  : " has a memory of its own") +
+        ": leave one of them out"};
   }
   bool told_by_pushes = false;
   for (const PendulumRecording& r : recordings) {
@@ -173,6 +192,7 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
   std::vector<std::string> told;

@@ -1,9 +1,12 @@
 // ident: trainings from recordings.
 #include "ident/training/restoration_training_run.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 
+#include "ident/bodies/body_data.h"
 #include "ident/bodies/simlpe_files.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/recording_effect.h"
@@ -98,6 +101,51 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                           });
 }
 
+namespace {
+
+// The largest change of a free parameter relative to its value.
+double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
+  double largest = 0.0;
+  for (const Parameter p : before.table.Free()) {
+    const double from = before.parameters[p], to = after.parameters[p];
+    largest = std::max(largest, std::abs(to - from) / std::max(std::abs(from), 1e-12));
+  }
+  return largest;
+}
+
+}  // namespace
+
+Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
+                                const std::vector<int>& among, const RestorationRunOptions& options,
+                                const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  RestorationRunOptions now = options;
+  now.fit.body_weight = 0.0;
+  std::optional<IdentifiedModel> model = FitTo(pendulums, among, now.fit);
+  if (!model) return Error{"the pendulum's fit found no usable optimum"};
+  Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
+  if (!trained.ok()) return trained.error();
+  TrainedChain chain{std::move(*model), std::move(trained.value())};
+  if (options.fit.body_weight <= 0.0) return chain;
+  now.fit.body_weight = options.fit.body_weight;
+  now.training.checkpoint.clear();  // the first round's alone is kept
+  for (bool moves = true; moves && chain.rounds < options.rounds; ++chain.rounds) {
+    const auto restoration = MakeRestoration(chain.restoration.file, "");
+    if (!restoration.ok()) return restoration.error();
+    const auto body = MakeBodyData(*restoration.value(), Picked(recordings, among));
+    if (!body.ok()) return body.error();
+    now.fit.body = body.value();
+    model = FitTo(pendulums, among, now.fit);
+    if (!model) return Error{"the pendulum's fit to bodies found no usable optimum"};
+    moves = LargestChange(chain.model, *model) > kWholeTolerance;
+    trained = TrainFromRecordings(recordings, among, now, progress);
+    if (!trained.ok()) return trained.error();
+    chain.model = std::move(*model);
+    chain.restoration = std::move(trained.value());
+  }
+  return chain;
+}
+
 Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
                                            const RestorationRunOptions& options, FoldScheme scheme,
                                            int folds, const RunProgress& progress) {
@@ -112,19 +160,19 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     const auto told = [&](const std::string& step, double done) {
       if (progress) progress(fold.name + ", " + step, done);
     };
-    std::optional<IdentifiedModel> model = FitTo(pendulums, train, options.fit);
-    if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
-    if (options.observed > 0) {
-      model->recording_effect = FitRecordingEffect(*model, Picked(pendulums, train));
-      if (MaybeError error = CheckLearnsFromFrames(*model)) return *error;
-    }
     const double before = Now();
-    Result<TrainedRestoration> trained = TrainFromRecordings(recordings, train, options, told);
-    if (!trained.ok()) return trained.error();
+    Result<TrainedChain> chain = TrainChain(recordings, train, options, told);
+    if (!chain.ok()) return Error{fold.name + ": " + chain.error().message};
     validation.training_seconds.push_back(Now() - before);
+    validation.rounds.push_back(chain.value().rounds);
+    IdentifiedModel& model = chain.value().model;
+    if (options.observed > 0) {
+      model.recording_effect = FitRecordingEffect(model, Picked(pendulums, train));
+      if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
+    }
     for (int i : fold.held_out) {
       const Result<BodyScores> scores =
-          ScoreTrained(trained.value().file, *model, options, recordings[i]);
+          ScoreTrained(chain.value().restoration.file, model, options, recordings[i]);
       if (!scores.ok()) return scores.error();
       for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }

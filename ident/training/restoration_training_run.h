@@ -17,12 +17,20 @@ struct RestorationRunOptions {
   FitOptions fit;  // of the pendulum
   RestorationTrainingOptions training;
   PostprocessOptions postprocess;
+  int rounds = 3;          // of training as a whole, with fit.body_weight, at most
   int inner_folds = 4;     // of the out-of-fold predictions
   double held_out = 0.15;  // share of the recordings that stop the training early
   bool predicted_pendulums = true, mirrored = true;
   int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h)
   // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
   std::vector<BodyRecording> more;
+};
+
+// A pendulum's model and the restoration of its bodies, learned from the same recordings.
+struct TrainedChain {
+  IdentifiedModel model;
+  TrainedRestoration restoration;
+  int rounds = 0;  // of training as a whole
 };
 
 // step: "pendulum 2/4", "window epoch 12"; done: share of this step.
@@ -34,9 +42,20 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress = nullptr);
 
+// The pendulum fitted and a restoration trained on it; with options.fit.body_weight then as a
+// whole: the pendulum is fitted anew to recorded bodies too
+// (residuals/cost_functions/body_residual.h), by the restoration so far, which is then trained anew
+// on the new pendulums, until no free parameter moves by more than kWholeTolerance of its value, or
+// options.rounds times. Errors: those of either; a fit that finds no optimum.
+inline constexpr double kWholeTolerance = 0.01;
+Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
+                                const std::vector<int>& among, const RestorationRunOptions& options,
+                                const RunProgress& progress = nullptr);
+
 struct ChainValidation {
   BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
-  std::vector<double> training_seconds;  // of the restoration, by fold
+  std::vector<double> training_seconds;  // of pendulum and restoration, by fold
+  std::vector<int> rounds;               // of training as a whole, by fold
 };
 // Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
 // learn from first frames where some are to be seen.

@@ -29,7 +29,8 @@ Eigen::Vector2d Tip(const Body& body, const Vector4<double>& turned) {
 }
 
 // Velocity of the tip: that of the cart and of the rod's end.
-Eigen::Vector2d TipVelocity(const Body& body, const TurnedPath& path, double frame, double dt) {
+Eigen::Vector2d TipVelocity(const Body& body, const FramePath<Vector4<double>>& path, double frame,
+                            double dt) {
   const double before = frame - 0.5, after = frame + 0.5;
   return (Tip(body, path.At(after)) - Tip(body, path.At(before))) / dt;
 }
@@ -61,14 +62,14 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
   const RestorationInput& person = people[n];
   const double heading = Heading(person.first_pose);
   const auto nearest = Nearest(people, n, TurnAboutZ(-heading));
-  const TurnedPath own(person, heading);
+  const FramePath<Vector4<double>> own = TurnedPath(person, heading);
   const double frames_per_lag = 1.0 / (kLagRate * person.dt);
   const int frames = static_cast<int>(person.q.size());
   Eigen::MatrixXf inputs = Eigen::MatrixXf::Zero(kNeighbourInputs, frames);
   for (int quarter = 0; quarter < kNeighbourQuarters; ++quarter) {
     if (nearest[quarter] < 0) continue;
     const RestorationInput& other = people[nearest[quarter]];
-    const TurnedPath path(other, heading);
+    const FramePath<Vector4<double>> path = TurnedPath(other, heading);
     const auto away_at = [&](double frame) -> Eigen::Vector2d {
       return Tip(other.body, path.At(frame)) - Tip(person.body, own.At(frame));
     };

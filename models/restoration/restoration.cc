@@ -19,21 +19,46 @@ Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle) {
           std::atan2(-rod.y(), rod.z())};
 }
 
-TurnedPath::TurnedPath(const RestorationInput& person, double heading) {
-  for (const Vector4<double>& q : person.q) q_.push_back(TurnedPendulum(q, -heading));
-  const int last = static_cast<int>(q_.size()) - 1;
-  for (int t = 0; t <= last; ++t) {
-    const int before = std::max(0, t - 1), after = std::min(last, t + 1);
-    rate_.push_back((q_[after] - q_[before]) / (std::max(1, after - before) * person.dt));
-  }
+FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double heading) {
+  std::vector<Vector4<double>> turned;
+  for (const Vector4<double>& q : person.q) turned.push_back(TurnedPendulum(q, -heading));
+  return {std::move(turned), person.dt};
 }
 
-Vector4<double> TurnedPath::Read(const std::vector<Vector4<double>>& values, double frame) {
-  const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
-  const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
-  const double share = at - static_cast<double>(low);
-  if (share == 0.0) return values[low];
-  return (1.0 - share) * values[low] + share * values[high];
+namespace {
+
+// The impulses of everybody who is pushed together, as one push on the first of them.
+SeenPush PushOf(const Scene& scene, const std::vector<Pose>& first_poses) {
+  SeenPush seen;
+  if (scene.pushes.empty()) return seen;
+  for (const ScenePush& push : scene.pushes) {
+    const double duration = static_cast<double>(push.force.size()) * scene.dt;
+    const double mass = scene.people[push.person].body.mass;
+    seen.velocity.head<2>() += push.mean.head<2>() * (duration / mass);
+    seen.duration = std::max(seen.duration, duration);
+  }
+  seen.place = first_poses[scene.pushes.front().person].col(kBodyHip);
+  return seen;
+}
+
+}  // namespace
+
+std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses) {
+  double push_start = 0.0;
+  for (size_t i = 0; i < scene.pushes.size(); ++i) {
+    const double start = scene.pushes[i].start_frame * scene.dt;
+    push_start = i == 0 ? start : std::min(push_start, start);
+  }
+  const SeenPush push = PushOf(scene, first_poses);
+  std::vector<RestorationInput> people(scene.num_people());
+  for (int n = 0; n < scene.num_people(); ++n) {
+    people[n].first_pose = first_poses[n];
+    people[n].body = scene.people[n].body;
+    people[n].dt = scene.dt;
+    people[n].push_start = push_start;
+    people[n].push = push;
+  }
+  return people;
 }
 
 RestorationInput Mirrored(const RestorationInput& person) {

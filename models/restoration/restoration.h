@@ -10,11 +10,14 @@
 // heading at frame 0 first and back at the end.
 #pragma once
 
+#include <algorithm>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "models/restoration/body.h"
 #include "models/restoration/restoration_kind.h"
+#include "models/scene.h"
 
 namespace pushid {
 
@@ -63,19 +66,39 @@ Vector3<double> TipAt(const RestorationInput& person, int frame);
 // A pendulum turned about z: the cart's place and the rod's direction are.
 Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle);
 
-// A pendulum's path in the frame of a heading, with its rates, read at any frame; beyond its ends
-// the ends are seen.
-class TurnedPath {
+// Values frame by frame with their rates, read at any frame; beyond the ends the ends are seen.
+// Reading is linear, so that a path of derivatives is read as the path itself.
+template <typename Value>
+class FramePath {
  public:
-  TurnedPath(const RestorationInput& person, double heading);
-  const Vector4<double>& First() const { return q_.front(); }
-  Vector4<double> At(double frame) const { return Read(q_, frame); }
-  Vector4<double> RateAt(double frame) const { return Read(rate_, frame); }
+  FramePath(std::vector<Value> values, double dt) : values_(std::move(values)) {
+    const int last = static_cast<int>(values_.size()) - 1;
+    for (int t = 0; t <= last; ++t) {
+      const int before = std::max(0, t - 1), after = std::min(last, t + 1);
+      rates_.push_back((values_[after] - values_[before]) / (std::max(1, after - before) * dt));
+    }
+  }
+  int num_frames() const { return static_cast<int>(values_.size()); }
+  const Value& First() const { return values_.front(); }
+  Value At(double frame) const { return Read(values_, frame); }
+  Value RateAt(double frame) const { return Read(rates_, frame); }
 
  private:
-  static Vector4<double> Read(const std::vector<Vector4<double>>& values, double frame);
-  std::vector<Vector4<double>> q_, rate_;
+  static Value Read(const std::vector<Value>& values, double frame) {
+    const double at = std::clamp(frame, 0.0, static_cast<double>(values.size() - 1));
+    const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
+    const double share = at - static_cast<double>(low);
+    if (share == 0.0) return values[low];
+    return (1.0 - share) * values[low] + share * values[high];
+  }
+  std::vector<Value> values_, rates_;
 };
+
+// The person's pendulum in the frame of a heading.
+FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double heading);
+
+// People of a scene in their first poses, without pendulums: q is empty.
+std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses);
 
 // The same person in the mirror plane y = 0.
 RestorationInput Mirrored(const RestorationInput& person);

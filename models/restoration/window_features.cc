@@ -8,39 +8,21 @@
 namespace pushid {
 namespace {
 
-constexpr std::array<int, 15> kLags = {0, -2, -4, -6, -8, -12, -16, -24, 2, 4, 6, 8, 12, 16, 24};
-constexpr std::array<int, 5> kRateLags = {0, -12, -6, 6, 12};
 constexpr std::array<int, 7> kSeenJoints = {kRightKnee,  kLeftKnee,  kRightAnkle, kLeftAnkle,
                                             kRightWrist, kLeftWrist, kBodyHead};
-constexpr double kLagRate = 60.0;     // Hz
 constexpr double kLongestTime = 2.0;  // s
 
-constexpr int kPendulumInputs = 4 * static_cast<int>(kLags.size() + kRateLags.size());
 constexpr int kPersonInputs = 6 + 3 * static_cast<int>(kSeenJoints.size());
 constexpr int kPushInputs = 5;
 constexpr int kShapeOutputs = 3 * (kBodyJoints - 1);
 
 Eigen::MatrixXf PendulumInputs(const RestorationInput& person) {
-  const TurnedPath path(person, Heading(person.first_pose));
-  const double frames_per_lag = 1.0 / (kLagRate * person.dt);
-  const int frames = static_cast<int>(person.q.size());
-  Eigen::MatrixXf inputs(kPendulumInputs, frames);
-  for (int t = 0; t < frames; ++t) {
-    int row = 0;
-    const auto add = [&](double value) { inputs(row++, t) = static_cast<float>(value); };
-    const Vector4<double> now = path.At(t);
-    for (const int lag : kLags) {
-      const Vector4<double> q = path.At(t + lag * frames_per_lag);
-      const Vector4<double>& base = lag == 0 ? path.First() : now;
-      add(q[0] - base[0]), add(q[1] - base[1]);
-      add(q[2] - path.First()[2]), add(q[3] - path.First()[3]);
-    }
-    for (const int lag : kRateLags) {
-      const Vector4<double> rate = path.RateAt(t + lag * frames_per_lag);
-      for (int i = 0; i < 4; ++i) add(rate[i]);
-    }
+  const auto path = TurnedPath(person, Heading(person.first_pose));
+  Eigen::MatrixXd inputs(kWindowPendulumInputs, path.num_frames());
+  for (int t = 0; t < path.num_frames(); ++t) {
+    FillPendulumInputs(path, person.dt, t, inputs.col(t));
   }
-  return inputs;
+  return inputs.cast<float>();
 }
 
 // Only the time differs from frame to frame.
@@ -79,7 +61,7 @@ Eigen::MatrixXf PushInputs(const RestorationInput& person) {
 
 int WindowInputRows(RestorationView view) {
   if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
-  return kPendulumInputs + kPersonInputs +
+  return kWindowPendulumInputs + kPersonInputs +
          (view == RestorationView::kNeighbours ? kNeighbourInputs : 0);
 }
 

@@ -18,6 +18,7 @@
 // way of the hip since frame 0, 3, which otherwise goes with the rod's tip.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "models/restoration/neighbour_features.h"
@@ -25,6 +26,33 @@
 #include "models/restoration/restoration_view.h"
 
 namespace pushid {
+
+inline constexpr std::array<int, 15> kWindowLags = {0, -2, -4, -6, -8, -12, -16, -24,
+                                                    2, 4,  6,  8,  12, 16,  24};
+inline constexpr std::array<int, 5> kWindowRateLags = {0, -12, -6, 6, 12};
+inline constexpr double kWindowLagRate = 60.0;  // Hz
+inline constexpr int kWindowPendulumInputs =
+    4 * static_cast<int>(kWindowLags.size() + kWindowRateLags.size());
+
+// The pendulum's part of the inputs at a frame. Value: 4 x columns, of a turned path or of its
+// derivatives; rows: kWindowPendulumInputs x columns.
+template <typename Value, typename Rows>
+void FillPendulumInputs(const FramePath<Value>& path, double dt, int frame, Rows&& rows) {
+  const double frames_per_lag = 1.0 / (kWindowLagRate * dt);
+  const Value now = path.At(frame);
+  int row = 0;
+  for (const int lag : kWindowLags) {
+    const Value q = path.At(frame + lag * frames_per_lag);
+    const Value& base = lag == 0 ? path.First() : now;
+    rows.middleRows(row, 2) = q.topRows(2) - base.topRows(2);
+    rows.middleRows(row + 2, 2) = q.bottomRows(2) - path.First().bottomRows(2);
+    row += 4;
+  }
+  for (const int lag : kWindowRateLags) {
+    rows.middleRows(row, 4) = path.RateAt(frame + lag * frames_per_lag);
+    row += 4;
+  }
+}
 
 int WindowInputRows(RestorationView view);
 int WindowOutputRows(RestorationView view);

@@ -39,15 +39,18 @@ ContactTakeoverResidual::ContactTakeoverResidual(const std::vector<PendulumRecor
     for (int t = 0; t < recording.num_frames(); ++t) {
       for (int n = 0; n < recording.num_people(); ++n) {
         for (int j = n + 1; j < recording.num_people(); ++j) {
+          const double weight = recording.Weight(n, t) * recording.Weight(j, t);
+          const double seen = weight * weight;
+          if (seen == 0.0) continue;
           Touch touch{
               PairOf(recording.scene, n, j), recording.states[n][t], recording.states[j][t], {}};
           if (!(PairGate<double>(touch.pair, contact, touch.n.q, touch.j.q) > 0.0)) continue;
-          const double seen = recording.Weight(n, t) * recording.Weight(j, t);
           touch.coefficients.row(0) =
-              seen * ForcesOf<ContactTerm<true, false>>(touch.pair, unit, touch.n, touch.j);
+              ForcesOf<ContactTerm<true, false>>(touch.pair, unit, touch.n, touch.j);
           touch.coefficients.row(1) =
-              seen * ForcesOf<ContactTerm<false, true>>(touch.pair, unit, touch.n, touch.j);
-          gram += touch.coefficients * touch.coefficients.transpose();
+              ForcesOf<ContactTerm<false, true>>(touch.pair, unit, touch.n, touch.j);
+          gram += seen * touch.coefficients * touch.coefficients.transpose();
+          touch.coefficients *= seen;
           touches_.push_back(touch);
         }
       }

@@ -28,7 +28,8 @@ struct ContactTakeover {
 // For models with interaction.LearnedBesideContact().
 class ContactTakeoverResidual : public ceres::CostFunction {
  public:
-  // contact: the starting values. recordings must outlive the residual.
+  // contact: whose distance, reach and height say who touches whom: a fit's starting values, so
+  // that its penalty is linear in the weights, or the fitted ones to report.
   ContactTakeoverResidual(const std::vector<PendulumRecording>& recordings,
                           const ModelOptions& options, const ParameterSet<double>& contact,
                           double weight);

@@ -37,9 +37,9 @@ TakeoverResidual::TakeoverResidual(const std::vector<PendulumRecording>& recordi
         unit(0, 1) = -self.scale.force * state.qd[1];
         unit(1, 2) = -self.scale.stiffness * path.deviation.back()[0];
         unit(2, 2) = -self.scale.damping * state.qd[2];
-        unit *= recording.Weight(n, t);
-        gram += unit * unit.transpose();
-        path.coefficients.push_back(unit);
+        const double seen = recording.Weight(n, t) * recording.Weight(n, t);
+        gram += seen * unit * unit.transpose();
+        path.coefficients.push_back(seen * unit);
       }
       paths_.push_back(std::move(path));
     }

@@ -27,7 +27,7 @@ struct Takeover {
 
 class TakeoverResidual : public ceres::CostFunction {
  public:
-  // recordings must outlive the residual; options must have a network.
+  // options must have a network.
   TakeoverResidual(const std::vector<PendulumRecording>& recordings, const ModelOptions& options,
                    double weight);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;

@@ -109,23 +109,31 @@ Derivatives WantedDerivatives(const RolloutProblem& problem, double** jacobians)
   return problem.map.num_weights == 0 || weights ? Derivatives::kAll : Derivatives::kHeldWeights;
 }
 
+RolloutStatus RollOut(const RolloutProblem& p, double const* const* blocks, Derivatives derivatives,
+                      SensitivityInputs* inputs, RolloutPath<double>* path,
+                      RolloutSensitivities* sensitivities) {
+  const Scene& scene = p.recording->scene;
+  *inputs = RolloutInputs(scene, p.map, p.layout, blocks);
+  if (derivatives == Derivatives::kHeldWeights && inputs->weight_column >= 0) {
+    inputs->num_columns = NormalEquations::PaddedSize(inputs->weight_column);
+    inputs->weight_column = -1;
+  }
+  if (derivatives == Derivatives::kNone) {
+    return Rollout<double>(scene, p.options, inputs->parameters, inputs->initial_velocity,
+                           p.horizon, path, nullptr, inputs->network_weights);
+  }
+  return RolloutWithSensitivities(scene, p.options, *inputs, p.horizon, path, sensitivities);
+}
+
 RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
                           Derivatives derivatives, const FrameVisitor& visit) {
   const Scene& scene = p.recording->scene;
-  SensitivityInputs inputs = RolloutInputs(scene, p.map, p.layout, blocks);
-  if (derivatives == Derivatives::kHeldWeights && inputs.weight_column >= 0) {
-    inputs.num_columns = NormalEquations::PaddedSize(inputs.weight_column);
-    inputs.weight_column = -1;
-  }
   const bool with_rows = derivatives != Derivatives::kNone;
+  SensitivityInputs inputs;
   // A thread's own, used again: asking the system for it each time costs a tenth of a rollout.
   thread_local RolloutPath<double> path;
   thread_local RolloutSensitivities sensitivities;
-  const RolloutStatus status =
-      with_rows
-          ? RolloutWithSensitivities(scene, p.options, inputs, p.horizon, &path, &sensitivities)
-          : Rollout<double>(scene, p.options, inputs.parameters, inputs.initial_velocity, p.horizon,
-                            &path, nullptr, inputs.network_weights);
+  const RolloutStatus status = RollOut(p, blocks, derivatives, &inputs, &path, &sensitivities);
   if (!status.ok) return status;
 
   const bool rod_moves = RodMoves(p.options);

@@ -85,6 +85,12 @@ enum class Derivatives {
 // What Ceres asks of the blocks of a recording.
 Derivatives WantedDerivatives(const RolloutProblem& problem, double** jacobians);
 
+// The path at the given blocks; with derivatives, its sensitivities by the columns of *inputs,
+// which kHeldWeights leaves the weights out of.
+RolloutStatus RollOut(const RolloutProblem& problem, double const* const* blocks,
+                      Derivatives derivatives, SensitivityInputs* inputs, RolloutPath<double>* path,
+                      RolloutSensitivities* sensitivities);
+
 using FrameVisitor = std::function<void(int frame, int person, const FrameVector<double>& residual,
                                         FrameRows* by_column)>;
 

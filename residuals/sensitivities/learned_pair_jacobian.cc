@@ -6,8 +6,6 @@
 namespace pushid {
 namespace {
 
-constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
-
 // The gate by [q of n, q of j] and by the contact's parameters.
 struct GateJacobian {
   double gate = 0.0;

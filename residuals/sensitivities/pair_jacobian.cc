@@ -6,9 +6,6 @@
 namespace pushid {
 namespace {
 
-constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
-static_assert(kContactStiffness == kFirstPairParameter && kContactParameters == 5);
-
 // A person's contact point by [x, y, theta, phi, height], and its velocity by these and the rates.
 struct PointJacobian {
   Eigen::Vector2d place, velocity;

@@ -11,6 +11,10 @@
 
 namespace pushid {
 
+// Those of contact are the first of a pair's.
+inline constexpr int kContactParameters = kContactHeight - kContactStiffness + 1;
+static_assert(kContactStiffness == kFirstPairParameter && kContactParameters == 5);
+
 // d(force on n, force on j) / d(state of n, state of j, pair parameters) of two people, but for
 // what is learned (learned_pair_jacobian.h).
 struct PairJacobian {

@@ -136,6 +136,54 @@ TEST_F(RestorationAppTest, CrossValidatesTheWholeChain) {
   EXPECT_GT(json["true_pendulum"]["mean"]["MPJPE_m"].get<double>(), 0.0);
 }
 
+// What a restoration was told stands in its folder, and those who use it need not know.
+TEST_F(RestorationAppTest, SeesWhatItIsToldTo) {
+  for (const char* view : {"neighbours", "pose"}) {
+    const AppRun run = Train("v", {"--effort=0.1", std::string("--sees=") + view});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(Json(Path("v/restoration.json"))["settings"]["sees"], view);
+    const AppRun evaluate = RunApp(
+        "pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v"), "--quiet"});
+    EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
+  }
+}
+
+// Fitted to bodies too: the weight changes the estimates, and more of them is from the data.
+TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
+  Trained();
+  const auto fit = [this](const std::string& weight) {
+    const AppRun run = RunApp("pushid-fit", {Recordings(), "--body_weight=" + weight,
+                                             "--body_restoration=" + Path("r"), "--quiet",
+                                             "--model_out=" + Path("b.json")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return Json(Path("b.json"));
+  };
+  const auto with = fit("1");
+  EXPECT_EQ(with["model"]["body_weight"], 1.0);
+  const AppRun without = RunApp("pushid-fit", {Recordings(), "--body_restoration=" + Path("r")});
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_TRUE(Contains(without.err, "does nothing without --body_weight"));
+  const AppRun no_folder = RunApp("pushid-fit", {Recordings(), "--body_weight=1"});
+  EXPECT_EQ(no_folder.exit_code, 1);
+  EXPECT_TRUE(Contains(no_folder.err, "--body_restoration"));
+  const AppRun rigid =
+      RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--body_restoration=rigid"});
+  EXPECT_EQ(rigid.exit_code, 1);
+  EXPECT_TRUE(Contains(rigid.err, "--kind=window and --sees=pendulum"));
+  const auto strong = fit("100");
+  EXPECT_NE(with["parameters"][0]["value"], strong["parameters"][0]["value"]);
+}
+
+TEST_F(RestorationAppTest, IsTrainedAsAWhole) {
+  const AppRun run =
+      RunApp("pushid-train-restoration",
+             {Recordings(), model_, "--crossvalidate=2", "--effort=0.1", "--body_weight=1",
+              "--rounds=1", "--quiet", "--json_out=" + Path("cv.json")},
+             240);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json(Path("cv.json"))["run"]["rounds"], (std::vector<int>{1, 1}));
+}
+
 // Physics alone differ too: other recordings are fitted.
 TEST_F(RestorationAppTest, CrossValidatesOnTheFoldsOfGenerators) {
   const auto rigid = [&](const std::string& scheme) {

@@ -1,0 +1,121 @@
+// models: forward mode through the window network.
+#include "models/restoration/window_tangent.h"
+
+#include <cmath>
+
+#include "models/restoration/window_features.h"
+
+namespace pushid {
+namespace {
+
+using TangentBlock = Eigen::Matrix<double, 4, Eigen::Dynamic>;
+
+// The rod's direction r(theta, phi), and its derivatives by the two.
+struct Rod {
+  explicit Rod(const Vector4<double>& q) {
+    const double st = std::sin(q[2]), ct = std::cos(q[2]), sp = std::sin(q[3]), cp = std::cos(q[3]);
+    direction << st, -ct * sp, ct * cp;
+    by_angles << ct, 0.0, st * sp, -ct * cp, -st * cp, -ct * sp;
+  }
+  Eigen::Vector3d direction;
+  Eigen::Matrix<double, 3, 2> by_angles;
+};
+
+// d TurnedPendulum(q, angle) / dq.
+Eigen::Matrix4d TurnedDerivative(const Vector4<double>& q, double angle) {
+  const Eigen::Matrix3d turn = TurnAboutZ(angle);
+  const Rod rod(q);
+  const Eigen::Vector3d r = turn * rod.direction;
+  const Eigen::Matrix<double, 3, 2> dr = turn * rod.by_angles;
+  Eigen::Matrix4d by_q = Eigen::Matrix4d::Zero();
+  by_q.topLeftCorner<2, 2>() = turn.topLeftCorner<2, 2>();
+  by_q.block<1, 2>(2, 2) = dr.row(0) / std::sqrt(1.0 - r.x() * r.x());
+  by_q.block<1, 2>(3, 2) =
+      (r.y() * dr.row(2) - r.z() * dr.row(1)) / (r.y() * r.y() + r.z() * r.z());
+  return by_q;
+}
+
+FramePath<TangentBlock> TurnedDerivatives(const RestorationInput& person, double heading,
+                                          const WindowTangent::PathDerivatives& derivatives) {
+  std::vector<TangentBlock> turned;
+  for (size_t t = 0; t < person.q.size(); ++t) {
+    turned.emplace_back(TurnedDerivative(person.q[t], -heading) * derivatives[t]);
+  }
+  return {std::move(turned), person.dt};
+}
+
+// Of the rod's tip in the world.
+Eigen::MatrixXd TipDerivatives(const RestorationInput& person, int frame,
+                               const TangentBlock& derivatives) {
+  Eigen::MatrixXd by =
+      person.body.rod_length * Rod(person.q[frame]).by_angles * derivatives.bottomRows<2>();
+  by.topRows<2>() += derivatives.topRows<2>();
+  return by;
+}
+
+}  // namespace
+
+WindowTangent::WindowTangent(const WindowWeights& weights)
+    : mean_(weights.inputs.mean.cast<double>()), spread_(weights.inputs.spread.cast<double>()) {
+  for (const DenseLayer& layer : weights.network.layers) {
+    layers_.push_back({layer.weights.cast<double>(), layer.bias.cast<double>()});
+  }
+}
+
+void WindowTangent::Forward(Eigen::VectorXd* x, Eigen::MatrixXd* dx) const {
+  for (size_t l = 0; l < layers_.size(); ++l) {
+    *x = (layers_[l].weights * *x + layers_[l].bias).eval();
+    *dx = (layers_[l].weights * *dx).eval();
+    if (l + 1 == layers_.size()) return;
+    // ELU: e^x - 1 below zero, whose slope is e^x.
+    for (Eigen::Index i = 0; i < x->size(); ++i) {
+      if ((*x)[i] >= 0.0) continue;
+      const double e = std::exp((*x)[i]);
+      (*x)[i] = e - 1.0;
+      dx->row(i) *= e;
+    }
+  }
+}
+
+std::vector<WindowTangent::Joints> WindowTangent::At(const RestorationInput& person,
+                                                     const PathDerivatives& derivatives,
+                                                     const std::vector<int>& frames) const {
+  const double heading = Heading(person.first_pose);
+  const Eigen::Matrix3d turn = TurnAboutZ(heading);
+  const Eigen::MatrixXd inputs =
+      WindowInputs({person}, 0, RestorationView::kPendulum).cast<double>();
+  const auto path = TurnedPath(person, heading);
+  const bool with = !derivatives.empty();
+  const Eigen::Index columns = with ? derivatives.front().cols() : 0;
+  const FramePath<TangentBlock> by_path =
+      with ? TurnedDerivatives(person, heading, derivatives)
+           : FramePath<TangentBlock>({TangentBlock(4, 0)}, person.dt);
+  std::vector<Joints> all;
+  for (const int t : frames) {
+    Eigen::VectorXd x = inputs.col(t);
+    FillPendulumInputs(path, person.dt, t, x.head(kWindowPendulumInputs));  // in double precision
+    x = (x - mean_).cwiseQuotient(spread_);
+    Eigen::MatrixXd dx = Eigen::MatrixXd::Zero(x.size(), columns);
+    if (with) FillPendulumInputs(by_path, person.dt, t, dx.topRows(kWindowPendulumInputs));
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      dx.row(i) *= std::abs(x[i]) < kLargestScaled ? 1.0 / spread_[i] : 0.0;
+    }
+    x = x.cwiseMax(-kLargestScaled).cwiseMin(kLargestScaled);
+    Forward(&x, &dx);
+    Joints joints{Eigen::VectorXd(3 * kBodyJoints), Eigen::MatrixXd(3 * kBodyJoints, columns)};
+    const Eigen::Vector3d tip = TipAt(person, t);
+    Eigen::MatrixXd tip_by(3, columns);
+    if (with) tip_by = TipDerivatives(person, t, derivatives[t]);
+    joints.positions.head<3>() = tip;
+    joints.derivatives.topRows(3) = tip_by;
+    for (int j = 1; j < kBodyJoints; ++j) {
+      const Eigen::Vector3d first = person.first_pose.col(j) - person.first_pose.col(0);
+      joints.positions.segment<3>(3 * j) = tip + first + turn * x.segment<3>(3 * (j - 1));
+      joints.derivatives.middleRows(3 * j, 3) = tip_by + turn * dx.middleRows(3 * (j - 1), 3);
+    }
+    all.push_back(std::move(joints));
+  }
+  return all;
+}
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// residuals: bodies on a rollout.
+#include "residuals/cost_functions/body_residual.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+constexpr int kRows = 3 * kBodyJoints;
+
+std::vector<Pose> FirstPoses(const std::vector<BodyMotion>& motions) {
+  std::vector<Pose> poses;
+  for (const BodyMotion& motion : motions) poses.push_back(motion.front());
+  return poses;
+}
+
+// dq of one person, frame by frame.
+WindowTangent::PathDerivatives OfPerson(const RolloutSensitivities& sensitivities, int person,
+                                        int frames) {
+  WindowTangent::PathDerivatives derivatives;
+  for (int t = 0; t < frames; ++t) {
+    derivatives.emplace_back(sensitivities.At(t, person).topRows<4>());
+  }
+  return derivatives;
+}
+
+}  // namespace
+
+BodyResidual::BodyResidual(std::shared_ptr<const RolloutProblem> rollout,
+                           std::shared_ptr<const BodyData> data, double body_weight)
+    : CondensedRows(std::move(rollout)),
+      data_(std::move(data)),
+      motions_(data_->motions.at(problem().recording->id)),
+      people_(PeopleOf(problem().recording->scene, FirstPoses(motions_))),
+      scale_(std::sqrt(body_weight * kBodyStride)) {
+  const int recorded = static_cast<int>(motions_.front().size());
+  for (int t = kBodyStride; t < std::min(problem().horizon, recorded); t += kBodyStride) {
+    frames_.push_back(t);
+  }
+}
+
+int BodyResidual::num_rows() const {
+  return static_cast<int>(frames_.size()) * num_people() * kRows;
+}
+
+void BodyResidual::FrameRows(const WindowTangent::Joints& joints, int frame, int person,
+                             double weight, Eigen::VectorXd* residuals,
+                             RowMajorMatrix* rows) const {
+  const ResidualSigmas& sigmas = problem().sigmas;
+  const double sigma = sigmas.hip * std::sqrt(static_cast<double>(kBodyJoints));
+  const Eigen::Map<const Eigen::VectorXd> recorded(motions_[person][frame].data(), kRows);
+  const Eigen::VectorXd r = (joints.positions - recorded) / sigma;
+  const double robust = sigmas.OfFrames();
+  const double w = RobustWeight<double>(r.squaredNorm(), robust);
+  *residuals = weight * w * r;
+  if (rows->cols() == 0) return;
+  *rows = (weight / sigma) * joints.derivatives;
+  if (robust <= 0.0) return;
+  // d(w r) = w dr + r (2 dw/ds) r' dr, as in FrameResidualWithJacobian.
+  const double squared_scale = robust * robust;
+  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
+  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
+  const Eigen::RowVectorXd along = r.transpose() * *rows;
+  *rows *= w;
+  *rows += (2.0 * slope) * r * along;
+}
+
+RolloutStatus BodyResidual::Visit(double const* const* blocks, Derivatives derivatives,
+                                  const RowsVisitor& visit) const {
+  thread_local RolloutPath<double> path;
+  thread_local RolloutSensitivities sensitivities;
+  SensitivityInputs inputs;
+  const RolloutStatus status =
+      RollOut(problem(), blocks, derivatives, &inputs, &path, &sensitivities);
+  if (!status.ok) return status;
+  const bool with_rows = derivatives != Derivatives::kNone;
+  Eigen::VectorXd residuals;
+  RowMajorMatrix rows(kRows, with_rows ? inputs.num_columns : 0);
+  for (int n = 0; n < num_people(); ++n) {
+    RestorationInput person = people_[n];
+    for (int t = 0; t < problem().horizon; ++t) person.q.push_back(path.At(t, n).q);
+    WindowTangent::PathDerivatives by_path;
+    if (with_rows) by_path = OfPerson(sensitivities, n, problem().horizon);
+    const auto joints = data_->restoration->At(person, by_path, frames_);
+    for (size_t k = 0; k < frames_.size(); ++k) {
+      const double weight = problem().weight * problem().recording->Weight(n, frames_[k]) * scale_;
+      FrameRows(joints[k], frames_[k], n, weight, &residuals, &rows);
+      visit({n, weight, kRows, residuals.data(), rows.data()});
+    }
+  }
+  return status;
+}
+
+}  // namespace pushid

@@ -1,0 +1,82 @@
+// residuals: rows summed up as they come.
+#include "residuals/cost_functions/condensed_rows.h"
+
+#include <cmath>
+
+namespace pushid {
+namespace {
+
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using RowsOfFrame =
+    Eigen::Map<RowMajorMatrix, Eigen::Unaligned, Eigen::OuterStride<Eigen::Dynamic>>;
+
+// Rows of [J r]: `columns` of J, padded.
+RowsOfFrame Mapped(double* rows, int count, int columns) {
+  return {rows, count, columns + 1,
+          Eigen::OuterStride<Eigen::Dynamic>(NormalEquations::PaddedSize(columns))};
+}
+
+}  // namespace
+
+CondensedRows::CondensedRows(std::shared_ptr<const RolloutProblem> problem)
+    : problem_(std::move(problem)), columns_(problem_->layout) {
+  for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
+  set_num_residuals(problem_->layout.num_acting() + 1);
+}
+
+bool CondensedRows::Evaluate(double const* const* blocks, double* residuals,
+                             double** jacobians) const {
+  const Derivatives wanted = WantedDerivatives(*problem_, jacobians);
+  const int held = wanted == Derivatives::kHeldWeights ? problem_->map.num_weights : 0;
+  const int acting = problem_->layout.num_acting() - held;
+  NormalEquations equations(wanted == Derivatives::kNone ? 0 : acting);
+  double squares = 0.0;
+  const RolloutStatus status = Visit(blocks, wanted, [&](const Rows& rows) {
+    const ConstVector r(rows.residuals, rows.count);
+    squares += r.squaredNorm();
+    if (wanted == Derivatives::kNone) return;
+    Mapped(rows.by_column, rows.count, acting).col(acting) = r;
+    equations.Add(rows.count, rows.by_column);
+  });
+  if (!status.ok) return false;
+  Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
+  values.setZero();
+  if (wanted == Derivatives::kNone) {
+    values[values.size() - 1] = std::sqrt(squares);
+    return true;
+  }
+  const RowMajorMatrix factor = equations.Factor();
+  values.head(acting) = factor.col(acting).head(acting);
+  values[values.size() - 1] = factor(acting, acting);
+  RowMajorMatrix condensed = RowMajorMatrix::Zero(num_residuals(), acting);
+  condensed.topRows(acting) = factor.topLeftCorner(acting, acting);
+  columns_.Scatter(condensed, 0, num_residuals(), jacobians);
+  return true;
+}
+
+bool CondensedRows::EvaluatePeople(double const* const* blocks, bool robust,
+                                   std::vector<PersonRows>* people) const {
+  const int acting = problem_->layout.num_acting();
+  std::vector<NormalEquations> plain(num_people(), NormalEquations(acting));
+  std::vector<NormalEquations> corrected(robust ? num_people() : 0, NormalEquations(acting));
+  const RolloutStatus status = Visit(blocks, Derivatives::kAll, [&](const Rows& rows) {
+    const ConstVector r(rows.residuals, rows.count);
+    RowsOfFrame by_column = Mapped(rows.by_column, rows.count, acting);
+    by_column.col(acting) = r;
+    plain[rows.person].Add(rows.count, rows.by_column);
+    if (!robust) return;
+    CorrectForRobustLoss(r, rows.weight, problem_->sigmas.OfFrames(), by_column.leftCols(acting));
+    corrected[rows.person].Add(rows.count, rows.by_column);
+  });
+  if (!status.ok) return false;
+  people->clear();
+  for (int n = 0; n < num_people(); ++n) {
+    const RowMajorMatrix factor = plain[n].Factor();
+    PersonRows rows{columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}};
+    if (robust) rows.robust_jacobian = columns_.Expand(corrected[n].Factor().leftCols(acting));
+    people->push_back(std::move(rows));
+  }
+  return true;
+}
+
+}  // namespace pushid
