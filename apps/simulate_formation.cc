@@ -98,14 +98,23 @@ std::string WhyNoSpeed(const Scene& scene) {
 // Beyond these the draws behind an interval take longer than the simulation should.
 constexpr int kMostPeopleForBands = 60;
 
-std::string SpeedText(const WaveSpeed& wave, const SpeedBand& band) {
+std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
+  const SpeedBand& band = bands.speed;
   std::string text = "; from person " + std::to_string(wave.from) + " to " +
                      std::to_string(wave.to) + " the onset went " + Rounded(wave.metres, 3) +
                      " m in " + Rounded(wave.seconds, 3) +
                      " s: " + Rounded(wave.MetresPerSecond(), 3) + " m/s";
-  if (band.share > 0.0) {
+  if (band.known()) {
     text += " (90 % of what the parameters leave open: " + Rounded(band.from, 3) + " to " +
-            Rounded(band.to, 3) + ")";
+            Rounded(band.to, 3) + ", each draw's own wave, in " + std::to_string(band.moved) +
+            " of " + std::to_string(band.draws) + " draws)";
+  } else if (band.draws > 0) {
+    text += " (no interval: the push goes on in only " + std::to_string(band.moved) + " of " +
+            std::to_string(band.draws) + " draws of the parameters)";
+  }
+  if (bands.failed > 0) {
+    text += "; " + std::to_string(bands.failed) + " of " + std::to_string(band.draws) +
+            " draws leave the model's domain";
   }
   return text;
 }
@@ -117,7 +126,7 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, bool as_setting)
   std::string text = std::to_string(moved) + " of " + std::to_string(run.num_people()) +
                      " people moved by 2 cm or more";
   if (moved > 1) text += WhyNoSpeed(run.recording.scene);
-  if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands.speed);
+  if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands);
   std::printf("%s\n", text.c_str());
   if (as_setting) {
     std::printf("no intervals: a model does not hold how sure the values of one setting are\n");

@@ -24,6 +24,12 @@ struct LearnedTerms {
   int pair_at() const { return rod_at() + rod.num_weights(); }
 };
 
+// Whether something is learned of a person alone: a force, or how the rod moves.
+inline bool LearnsAlone(const ModelOptions& options) {
+  return options.learned != nullptr &&
+         (options.learned->shape.any() || options.learned->rod.moves());
+}
+
 // Whether the rod moves.
 inline bool RodMoves(const ModelOptions& options) {
   return options.learned != nullptr && options.learned->rod.moves();

@@ -68,7 +68,7 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
   const std::optional<WaveSpeed> wave = SpeedOfWave(run);
   (*dict)["wave_speed"] = wave ? py::object(py::float_(wave->MetresPerSecond())) : py::none();
   if (!waves.onsets.empty()) (*dict)["onset_band90"] = onset_band;
-  if (waves.speed.share > 0.0) {
+  if (waves.speed.known()) {
     (*dict)["wave_speed_band90"] = py::make_tuple(waves.speed.from, waves.speed.to);
   }
   (*dict)["fps"] = 1.0 / run.recording.scene.dt;

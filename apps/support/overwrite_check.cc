@@ -22,6 +22,7 @@ constexpr const char* kInputs[] = {
 
 struct NamedPath {
   std::string name, path;
+  std::string help;  // of the flag
 };
 
 std::vector<NamedPath> Outputs() {
@@ -30,7 +31,7 @@ std::vector<NamedPath> Outputs() {
   std::vector<NamedPath> outputs;
   for (const gflags::CommandLineFlagInfo& flag : flags) {
     if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
-    outputs.push_back({"--" + flag.name, flag.current_value});
+    outputs.push_back({"--" + flag.name, flag.current_value, flag.description});
   }
   return outputs;
 }
@@ -52,19 +53,26 @@ Error BothName(const std::string& a, const std::string& b, const std::string& pa
   return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
 }
 
+// What a flag writes is told by its name or, of pages and pictures, by its help in brackets.
 struct OutputKind {
-  const char *flag, *ending;
+  const char *flag, *help, *ending;
 };
-constexpr OutputKind kKinds[] = {
-    {"svg_out", ".svg"},   {"strip_out", ".svg"},  {"html_out", ".html"},  {"csv_out", ".csv"},
-    {"json_out", ".json"}, {"model_out", ".json"}, {"scores_out", ".json"}};
+constexpr OutputKind kKinds[] = {{"svg_out", "(SVG", ".svg"},
+                                 {"html_out", "(HTML", ".html"},
+                                 {"csv_out", nullptr, ".csv"},
+                                 {"json_out", nullptr, ".json"}};
+
+bool Writes(const NamedPath& output, const OutputKind& kind) {
+  return EndsWith(output.name, kind.flag) ||
+         (kind.help != nullptr && output.help.find(kind.help) != std::string::npos);
+}
 
 // A page under the name of a picture, say.
 MaybeError CheckKind(const NamedPath& output) {
   for (const OutputKind& kind : kKinds) {
-    if (!EndsWith(output.name, kind.flag) || EndsWith(output.path, kind.ending)) continue;
+    if (!Writes(output, kind) || EndsWith(output.path, kind.ending)) continue;
     for (const OutputKind& other : kKinds) {
-      if (!EndsWith(output.path, other.ending)) continue;
+      if (!EndsWith(output.path, other.ending) || Writes(output, other)) continue;
       return Error{output.name + " writes " + kind.ending + ", but " + output.path + " ends in " +
                    other.ending};
     }

@@ -14,7 +14,7 @@ namespace pushid {
 // Whether a flag of this name says where to write. Here, so that plans are read without flags.
 inline bool IsOutputFlag(const std::string& name) {
   return name == "out" || name == "bootstrap_file" ||
-         (EndsWith(name, "_out") && name != "leave_out");
+         (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
 }
 
 // Between the flags, as they are given. RunApp asks for it before anything is done.

@@ -245,8 +245,9 @@ class Maker {
   void CheckPush(const std::string& file) {
     const auto push = ReadPushCsv(file);
     if (push.ok()) return;
-    made_.warnings.push_back(push.error().ToString() +
-                             "; a sensor's record becomes a push by pushid-push --sensor");
+    made_.warnings.push_back(
+        push.error().ToString() +
+        "; if it is a sensor's record, pushid-push --sensor makes a push of it");
   }
 
   void WarnOfUnusedMasses() {

@@ -100,7 +100,7 @@ std::optional<Eigen::Vector3d> HipAt(const AnimatedPerson& person, int t) {
   return std::nullopt;
 }
 
-// How far everybody's joints, or hips, go from one frame to the next: the mean over them.
+// How far everybody's joints, or hips, go from one frame to the next: the sum over people.
 double MotionTo(const Animation& animation, int t) {
   double sum = 0.0;
   for (const AnimatedPerson& person : animation.people) {

@@ -59,8 +59,11 @@ void AddFrames(const PendulumRecording& recording, const std::vector<double>& ra
     for (int n = 0; n < recording.num_people(); ++n) {
       const int row = ((t - 1) * recording.num_people() + n) * kFrameResiduals;
       const Eigen::Map<const FrameVector<double>> r(raw.data() + row);
+      // The first two are of the hip, or of the cart (FrameLoss::kLdp), which has a way of its own.
       error += (sigmas.hip * r.head<2>()).squaredNorm();
-      motion += (recording.hip[n][t] - recording.hip[n][0]).head<2>().squaredNorm();
+      const bool cart = sigmas.loss == FrameLoss::kLdp;
+      motion += cart ? (recording.states[n][t].q - recording.states[n][0].q).head<2>().squaredNorm()
+                     : (recording.hip[n][t] - recording.hip[n][0]).head<2>().squaredNorm();
       const double w = RobustWeight<double>(r.squaredNorm(), sigmas.OfFrames());
       if (w * w < kOutlierWeight) d->outliers.push_back({t, n, r.norm(), w * w});
     }

@@ -1,6 +1,8 @@
 // ident: waves under drawn parameters.
 #include "ident/formations/wave_bands.h"
 
+#include <algorithm>
+
 #include "ident/formations/wave_speed.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/propagation.h"
@@ -11,7 +13,8 @@ namespace {
 constexpr int kDraws = 60;
 constexpr double kLower = 0.05, kUpper = 0.95;
 
-// Onset frames of everybody, one list a draw whose rollout stays in the model's domain.
+// One for each draw: the onset frame of everybody, or nobody where the rollout left the model's
+// domain.
 std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
                                           const FormationRun& run) {
   const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
@@ -21,15 +24,15 @@ std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::s
   if (replicas) options.bootstrap = &*model.bootstrap;
   const auto draws = SampleParameters(model.fit, options);
   if (!draws.ok()) return {};
-  IdentifiedModel drawn = ModelOf(model.fit);
-  drawn.by_unit.clear();  // no person of a formation is one of the fit
+  IdentifiedModel fitted = ModelOf(model.fit);
+  fitted.by_unit.clear();  // no person of a formation is one of the fit
   std::vector<std::vector<int>> onsets;
   for (const ParameterSet<double>& draw : draws.value()) {
-    drawn.parameters = draw;
+    IdentifiedModel drawn = WithShared(fitted, draw);
     if (SetValues(set, &drawn)) return {};
     const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
-    if (!prediction.status.ok) continue;
     onsets.emplace_back();
+    if (!prediction.status.ok) continue;
     for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
   }
   return onsets;
@@ -38,7 +41,7 @@ std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::s
 OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double dt) {
   std::vector<double> seconds;
   for (const std::vector<int>& onsets : draws) {
-    if (onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
+    if (!onsets.empty() && onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
   }
   if (seconds.empty()) return {};
   return {Quantile(seconds, kLower), Quantile(seconds, kUpper),
@@ -48,11 +51,12 @@ OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double 
 SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& scene) {
   std::vector<double> speeds;
   for (const std::vector<int>& onsets : draws) {
+    if (onsets.empty()) continue;
     if (const auto wave = SpeedOfWave(scene, onsets)) speeds.push_back(wave->MetresPerSecond());
   }
-  if (speeds.empty()) return {};
-  return {Quantile(speeds, kLower), Quantile(speeds, kUpper),
-          static_cast<double>(speeds.size()) / static_cast<double>(draws.size())};
+  SpeedBand band{0.0, 0.0, static_cast<int>(speeds.size()), static_cast<int>(draws.size())};
+  if (band.known()) band.from = Quantile(speeds, kLower), band.to = Quantile(speeds, kUpper);
+  return band;
 }
 
 }  // namespace
@@ -61,6 +65,8 @@ WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const Fo
   const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
   WaveBands bands;
   if (draws.empty()) return bands;
+  bands.failed = static_cast<int>(std::count_if(
+      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
   const Scene& scene = run.recording.scene;
   for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
   bands.speed = BandOfSpeed(draws, scene);

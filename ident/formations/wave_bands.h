@@ -19,14 +19,20 @@ struct OnsetBand {
   double moved = 0.0;           // share of the draws in which this person moves; 0: no band
 };
 
+// Of SpeedOfWave in each draw, m/s: each between the first and the foremost of its own movers.
 struct SpeedBand {
-  double from = 0.0, to = 0.0;  // m/s, of SpeedOfWave in each draw
-  double share = 0.0;           // of the draws that have a speed; 0: no band
+  double from = 0.0, to = 0.0;
+  int moved = 0, draws = 0;  // those that have a speed, and all
+
+  // Few draws have no quantiles.
+  bool known() const { return moved >= kLeastDraws; }
+  static constexpr int kLeastDraws = 20;
 };
 
 struct WaveBands {
   std::vector<OnsetBand> onsets;  // of each person; empty: the model says nothing of its errors
   SpeedBand speed;
+  int failed = 0;  // draws whose rollout left the model's domain; nobody moves in them
 };
 
 // Empty where the model has neither covariance nor bootstrap. set: what --set replaces in every

@@ -20,13 +20,18 @@ std::string MissingNetwork(const FitOptions& o) {
            " acts on networks, but there is none; add one, as in --self_force=mlp:4";
   }
   if (network != nullptr && o.takeover_weight > 0.0 && !MayTakeOver(o.model)) {
-    return "--takeover_weight acts on a learned force, but there is none; add one, as in "
-           "--self_force=mlp:4";
+    return NothingToTakeOver();
   }
   if (network != nullptr && network->shape.rod_input &&
       !(network->shape.any() && network->rod.moves())) {
     return "--rod_input is for a network beside a rod that moves, as in --self_force=mlp:4 "
            "--rod=linear";
+  }
+  const bool pair = network != nullptr && network->pair.any();
+  if (o.model.interaction.learned != pair) {
+    return pair ? "a network between people is there, but --interaction does not name network:SIZES"
+                : "--interaction names a network to be fitted, but there is none; name its layers, "
+                  "as in --interaction=spring,damping,network:4";
   }
   if (o.model.interaction.network && o.model.interaction_network == nullptr) {
     return "--interaction names network: --interaction_network must name its JSON file";
@@ -71,6 +76,32 @@ std::string StanceViolation(const FitOptions& o) {
          "the two";
 }
 
+// What LDP's loss cannot go together with; empty: nothing.
+std::string LossViolation(const FitOptions& o) {
+  if (o.sigmas.loss != FrameLoss::kLdp) return "";
+  if (o.sigma_source == SigmaSource::kEstimate) {
+    return "--loss=ldp weighs all states alike: --sigmas must be fixed";
+  }
+  if (o.model.learned != nullptr && o.model.learned->rod.moves()) {
+    return "--loss=ldp does not see the rod's length, which --rod would learn; drop one of the two";
+  }
+  return "";
+}
+
+// What restored bodies cannot go together with; empty: nothing.
+std::string BodyViolation(const FitOptions& o) {
+  if (o.body_weight <= 0.0) return "";
+  const char* other = RodMoves(o.model)                         ? "--rod"
+                      : o.likelihood != Likelihood::kTrajectory ? "--likelihood"
+                      : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
+                                                 : nullptr;
+  if (other == nullptr) return "";
+  return std::string(
+             "--body_weight compares bodies on rollouts of rods of constant length and does "
+             "not go together with ") +
+         other + "; drop one of the two";
+}
+
 }  // namespace
 
 bool FitOptions::IsValid(std::string* error) const {
@@ -83,6 +114,8 @@ bool FitOptions::IsValid(std::string* error) const {
   *error = MissingNetwork(*this);
   if (error->empty()) *error = NetworkViolation(*this);
   if (error->empty()) *error = StanceViolation(*this);
+  if (error->empty()) *error = LossViolation(*this);
+  if (error->empty()) *error = BodyViolation(*this);
   if (error->empty() && table.Free().empty()) {
     *error = "every parameter is fixed: nothing is left to fit";
   }
@@ -92,6 +125,12 @@ bool FitOptions::IsValid(std::string* error) const {
 bool MayTakeOver(const ModelOptions& model) {
   return model.learned != nullptr &&
          (model.learned->shape.any() || model.interaction.LearnedBesideContact());
+}
+
+std::string NothingToTakeOver() {
+  return "--takeover_weight acts on a learned force beside gains or contact, but there is none; "
+         "add "
+         "one, as in --self_force=mlp:4 or --interaction=spring,damping,network:4";
 }
 
 bool NeedsGradientTraining(const FitOptions& options) {

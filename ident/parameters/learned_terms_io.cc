@@ -232,7 +232,8 @@ RodShape RodFromJson(const Json& json) {
 PairShape PairFromJson(const Json& json) {
   PairShape pair{json.at("hidden").get<std::vector<int>>()};
   if (!pair.any() || pair.hidden.size() > kMostLayers) {
-    throw std::runtime_error("interaction: no network has so many layers");
+    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
+                             " hidden layers");
   }
   CheckSizes("interaction", pair.hidden);
   return pair;

@@ -7,9 +7,9 @@
 //   network:4, network:8-8, among the terms of an interaction    hidden sizes
 // JSON: {"kind": "gru", "hidden": 8, "embedding": 0, "rod_input": false,
 //        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4]},
-//        "weights": [...]}, the flat array of models/learned_terms.h, without loss; kind none and
-//        no
-// interaction where those are not learned.
+//        "weights": [...]}
+// weights: the flat array of models/learned_terms.h, without loss. Kind none, and no interaction,
+// where those are not learned.
 #pragma once
 
 #include <cstdint>

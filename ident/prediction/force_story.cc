@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "datasets/files/number_text.h"
@@ -35,26 +36,72 @@ Cause CauseOf(const std::array<double, 4>& forces) {
   return forces[kOthers] > 0.0 ? Cause::kBehind : Cause::kInFront;
 }
 
-// Neighbouring frames of one cause; short ones go to what was before.
-std::vector<StoryMoment> Moments(const ForceStory& story, double dt) {
-  std::vector<StoryMoment> moments;
-  const int frames = static_cast<int>(story.forces.size());
-  for (int t = 0; t < frames; ++t) {
+// The series that a cause is told by.
+Series SeriesOf(Cause cause) {
+  return cause == Cause::kPush ? kPushed : cause == Cause::kOwn ? kAnswer : kOthers;
+}
+
+// Frames of one cause, one after the other.
+std::vector<StoryMoment> Runs(const ForceStory& story) {
+  std::vector<StoryMoment> runs;
+  for (int t = 0; t < static_cast<int>(story.forces.size()); ++t) {
     const Cause cause = CauseOf(story.forces[t]);
-    if (moments.empty() || moments.back().cause != cause)
-      moments.push_back({t, t, cause, 0, 0, ""});
-    moments.back().to = t + 1;
+    if (runs.empty() || runs.back().cause != cause) runs.push_back({t, t, cause, 0, 0, ""});
+    runs.back().to = t + 1;
   }
-  std::vector<StoryMoment> kept;
-  for (const StoryMoment& moment : moments) {
-    const bool too_short = (moment.to - moment.from) * dt < kShortest;
-    if (!kept.empty() && (too_short || kept.back().cause == moment.cause)) {
-      kept.back().to = moment.to;
-    } else {
-      kept.push_back(moment);
+  return runs;
+}
+
+// The cause of which a series of short runs has most.
+Cause Loudest(const ForceStory& story, const std::vector<StoryMoment>& runs) {
+  std::map<Cause, double> sums;
+  for (const StoryMoment& run : runs) {
+    for (int t = run.from; t < run.to; ++t) {
+      sums[run.cause] += std::abs(story.forces[t][SeriesOf(run.cause)]);
     }
   }
-  return kept;
+  return std::max_element(
+             sums.begin(), sums.end(),
+             [](const auto& one, const auto& other) { return one.second < other.second; })
+      ->first;
+}
+
+void Append(const StoryMoment& moment, std::vector<StoryMoment>* moments) {
+  if (!moments->empty() && moments->back().cause == moment.cause) {
+    moments->back().to = moment.to;
+  } else {
+    moments->push_back(moment);
+  }
+}
+
+// Runs of a cause; short ones belong to what was before unless a series of them lasts. A push is
+// told however short it is.
+std::vector<StoryMoment> Moments(const ForceStory& story, double dt) {
+  std::vector<StoryMoment> moments, shorts;
+  const auto take_shorts = [&] {
+    if (shorts.empty()) return;
+    StoryMoment all = shorts.front();
+    all.to = shorts.back().to;
+    const bool lasts = (all.to - all.from) * dt >= kShortest;
+    if (lasts || moments.empty()) {
+      all.cause = Loudest(story, shorts);
+      Append(all, &moments);
+    } else {
+      moments.back().to = all.to;
+    }
+    shorts.clear();
+  };
+  for (const StoryMoment& run : Runs(story)) {
+    const bool told = run.cause == Cause::kPush || (run.to - run.from) * dt >= kShortest;
+    if (!told) {
+      shorts.push_back(run);
+      continue;
+    }
+    take_shorts();
+    Append(run, &moments);
+  }
+  take_shorts();
+  return moments;
 }
 
 // The nearest person behind (side -1) or in front (side 1) at a frame; empty where nobody stands.
@@ -102,9 +149,7 @@ std::string Words(const PendulumRecording& recording, const Prediction& predicti
 }
 
 void Measure(const ForceStory& story, double dt, StoryMoment* moment) {
-  const int series = moment->cause == Cause::kPush  ? kPushed
-                     : moment->cause == Cause::kOwn ? kAnswer
-                                                    : kOthers;
+  const Series series = SeriesOf(moment->cause);
   for (int t = moment->from; t < moment->to; ++t) {
     moment->peak = std::max(moment->peak, std::abs(story.forces[t][series]));
     moment->impulse += dt * story.forces[t][series];

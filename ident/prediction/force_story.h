@@ -4,8 +4,9 @@
 // Along the push, the net force has three causes: a push itself, what others do, and the person's
 // own answer (friction, balance and all that is fitted or learned of one person). The largest of
 // them tells a frame, where it is above 10 N; what others do is from behind where it goes along the
-// push and from in front where it goes against it. A cause that lasts less than 0.1 s belongs to
-// the one before.
+// push and from in front where it goes against it, and named after the nearest person on that side.
+// A cause that lasts less than 0.1 s belongs to the one before, unless it is a push; where several
+// such follow each other for longer, the loudest of them tells all.
 #pragma once
 
 #include <array>

@@ -43,7 +43,7 @@ Prediction MedianPrediction(const PendulumRecording& recording,
     median.rod_lift[n] = MedianOf(predictions, [n](const Prediction& p) { return p.Lift(n); });
   }
   for (int t = 0; t < median.path.num_frames(); ++t) {
-    for (int n = 0; n < recording.num_people(); ++n) {
+    for (int n = 0; n < recording.scene.num_people(); ++n) {
       PendulumState<double>& state = median.path.At(t, n);
       state.q = MedianVector<Vector4<double>>(
           predictions, [&](const Prediction& p) { return p.path.At(t, n).q; });

@@ -71,8 +71,25 @@ BandPoint PointOf(const Prediction& prediction, int frame, int person) {
   return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
 }
 
-// The model with another draw of its shared values; units it knows keep their deviation from them
-// on the fitted scale.
+// Quantiles over samples of one person's path.
+PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
+  PathBand band;
+  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.median, &band.upper50,
+                                          &band.upper90};
+  const size_t frames = paths[0].size();
+  for (auto* row : rows) row->assign(frames, BandPoint::Zero());
+  std::vector<double> values(paths.size());
+  for (size_t t = 0; t < frames; ++t) {
+    for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
+      for (size_t s = 0; s < paths.size(); ++s) values[s] = paths[s][t][axis];
+      for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
+    }
+  }
+  return band;
+}
+
+}  // namespace
+
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared) {
   IdentifiedModel drawn = model;
   drawn.parameters = shared;
@@ -93,25 +110,6 @@ IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<doub
   for (EnsembleMember& member : drawn.others) shift(&member.parameters);
   return drawn;
 }
-
-// Quantiles over samples of one person's path.
-PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
-  PathBand band;
-  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.median, &band.upper50,
-                                          &band.upper90};
-  const size_t frames = paths[0].size();
-  for (auto* row : rows) row->assign(frames, BandPoint::Zero());
-  std::vector<double> values(paths.size());
-  for (size_t t = 0; t < frames; ++t) {
-    for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
-      for (size_t s = 0; s < paths.size(); ++s) values[s] = paths[s][t][axis];
-      for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
-    }
-  }
-  return band;
-}
-
-}  // namespace
 
 Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
                                                            const BandOptions& options) {

@@ -134,8 +134,8 @@ FitCommand Adviser::SettleHarder(double weight) const {
 
 FitCommand Adviser::DecayingModes() const {
   const FitOptions& o = result_.options;
-  // The hinge on the modes sees no network.
-  if (o.model.learned != nullptr) {
+  // The hinge on the modes sees no network; one between people has no part in them.
+  if (LearnsAlone(o.model)) {
     const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
     return Same().Set("network_prior", Rounded(prior, 6));
   }

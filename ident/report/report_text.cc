@@ -73,7 +73,9 @@ std::string NetworkText(const FitResult& result) {
   }
   if (!result.takeover) return text;
   const Takeover& t = *result.takeover;
-  return text + ": on the recordings it acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
+  text +=
+      result.contact_takeover ? ";\n  on the recordings the self force" : ": on the recordings it";
+  return text + " acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
          signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
          " N m s/rad beside those above;\n  its force on the cart is " + Rounded(t.rms_force, 2) +
          " m/s^2 times the mass (root mean square)";
@@ -106,7 +108,9 @@ std::string ReportText(const FittedModel& model) {
       (o.model.stance == Stance::kSlide ? "" : ", stance " + NameOf(o.model.stance)) +
       ", self force " + SelfForceText(o.self_force, o.model.learned.get()) +
       (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") + ", interaction " +
-      InteractionText(o.model) + PoolingText(o) + SelfFromText(model.provenance) + "\n\n";
+      InteractionText(o.model) + PoolingText(o) +
+      (o.body_weight > 0.0 ? ", bodies with weight " + Rounded(o.body_weight, 4) : "") +
+      SelfFromText(model.provenance) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {

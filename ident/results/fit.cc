@@ -226,7 +226,8 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
 }
 
 // The covariance of a network's weights has no meaning for a reader and fills files: from here on
-// the covariance is that of everything else, at the fitted weights.
+// the covariance is that of everything else, whatever the weights are. Bands draw from it with the
+// weights as they are fitted, and so may be too wide where a network trades with a gain.
 void ForgetWeights(Eigen::Index weights, FitResult* result) {
   if (weights == 0) return;
   Uncertainty& u = result->uncertainty;
@@ -274,7 +275,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   }
   if (options.model.interaction.LearnedBesideContact()) {
     result.contact_takeover =
-        ContactTakeoverResidual(recordings, options.model, options.table.Values(), 0.0)
+        ContactTakeoverResidual(recordings, options.model, result.parameters, 0.0)
             .Of(problem.ModelAt(best.to).learned->weights);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);

@@ -68,13 +68,12 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   }
   if (network != nullptr && Find(given, "takeover_weight") != nullptr &&
       !MayTakeOver(options.model)) {
-    return Error{
-        "--takeover_weight acts on a learned force, but there is none; add one, as in "
-        "--self_force=mlp:4"};
+    return Error{NothingToTakeOver()};
   }
-  for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
-                           "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
-                           "robust", "settling_weight", "mode_weight", "stability_weight"}) {
+  for (const char* name :
+       {"horizons", "recording_weight", "effective_weight", "sigma_hip", "sigma_velocity",
+        "sigma_angle", "sigma_rate", "sigmas", "marker_noise", "robust", "loss", "settling_weight",
+        "mode_weight", "stability_weight", "body_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
                  NameOf(options.likelihood) + " is of single steps, and knows nothing of it"};

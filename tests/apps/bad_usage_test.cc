@@ -120,6 +120,9 @@ TEST_F(BadUsageTest, OutputsAreWhatTheirNamesSay) {
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--push=40",
                                                  "--svg_out=" + Path("wave.html")}),
                       {"--svg_out writes .svg", "wave.html ends in .html"}));
+  EXPECT_TRUE(Refused(
+      RunApp("pushid-animate", {model, Recordings(), "--id=" + id_, "--out=" + Path("poses.svg")}),
+      {"--out writes .html", "poses.svg ends in .svg"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--out=" + Path("m.json")}),
                       {"there is no flag --out", "did you mean --", "--model_out"}));
 }

@@ -1,5 +1,6 @@
 // ident: a report in three sentences, for who reads nothing else, and what its names mean.
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/parameters/presets.h"
@@ -70,7 +71,8 @@ std::string NotKnown(const FitResult& result) {
 // Of groups: what was measured and what the model makes of it.
 std::string Travels(const PropagationSummary& p) {
   if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
-  std::string text = "How the push travels: in " + std::to_string(p.recordings) +
+  std::string text = "How the push travels, on the recordings that were fitted: in " +
+                     std::to_string(std::lround(p.figures[kSlownessMeasured].weight)) +
                      " recordings the onset of motion went through the people at " +
                      SpeedText(p.figures[kSlownessMeasured]) +
                      " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";

@@ -50,6 +50,14 @@ TEST(ForceStoryTest, OfTheOneInTheMiddle) {
   EXPECT_EQ(text.find("p01: 0 s still; "), 0u) << text;
 }
 
+TEST(ForceStoryTest, AShortPushIsTold) {
+  Scene scene = SampleFormation(FormationShape::kLine, 1, {0}, {{60.0, 0.5, 0.06}});
+  const FormationRun run = RunFormation(ContactModel(), scene, 120);
+  const ForceStory story = StoryOf(run.recording, run.prediction, 0);
+  EXPECT_TRUE(Has(story, Cause::kPush));
+  EXPECT_EQ(story.moments.back().to, 120);
+}
+
 TEST(ForceStoryTest, ThePushedAndTheRichest) {
   const FormationRun run = RunFormation(ContactModel(), LineOf(3, 120.0), 200);
   const ForceStory pushed = StoryOf(run.recording, run.prediction, 0);

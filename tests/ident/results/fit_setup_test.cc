@@ -156,6 +156,23 @@ TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {
   EXPECT_EQ(MakeFitOptions({{"loss", "hip"}}).value().sigmas.hip, ResidualSigmas().hip);
 }
 
+TEST(FitSetup, WhatDoesNotGoTogetherIsNamed) {
+  const auto violation = [](FitOptions o) {
+    std::string error;
+    EXPECT_FALSE(o.IsValid(&error));
+    return error;
+  };
+  FitOptions o = MakeFitOptions({{"preset", "group"}}).value();
+  o.model.interaction.learned = true;  // without its network
+  EXPECT_TRUE(Contains(violation(o), "names a network to be fitted, but there is none"));
+  o = MakeFitOptions({{"loss", "ldp"}}).value();
+  o.sigma_source = SigmaSource::kEstimate;
+  EXPECT_TRUE(Contains(violation(o), "--sigmas must be fixed"));
+  o = MakeFitOptions({{"rod", "linear"}}).value();
+  o.body_weight = 1.0;
+  EXPECT_TRUE(Contains(violation(o), "does not go together with --rod"));
+}
+
 TEST(FitSetup, BadOptionsAreNamed) {
   const std::pair<GivenOptions, std::string> cases[] = {
       {{{"preset", "tial"}}, "--preset is 'tial'"},
@@ -177,7 +194,8 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"pooling_sigma", "guess"}},
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
       {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}}, "--pooling_sigma says how parameters differ"},
-      {{{"rod", "linear"}, {"takeover_weight", "1"}}, "a learned force, but there is none"},
+      {{{"rod", "linear"}, {"takeover_weight", "1"}},
+       "a learned force beside gains or contact, but there is none"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
       {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
        "--ensemble does not go together with --pool"},

@@ -58,6 +58,25 @@ TEST(ContactTakeover, IsTheRegressionOnUnitContact) {
   EXPECT_GT(taken.rms_force, 0.0);
 }
 
+// Frames that count half weigh less; they do not make the force smaller. Those that were not seen
+// are no touches.
+TEST(ContactTakeover, WeightsAreOfFramesNotOfForces) {
+  Random random(83);
+  const ModelOptions options = Learned(0.5, &random);
+  PendulumRecording recording = Pushed(options, &random);
+  const auto of = [&] {
+    return ContactTakeoverResidual({recording}, options, RecoveringParameters(), 1.0)
+        .Of(options.learned->weights);
+  };
+  const ContactTakeover whole = of();
+  recording.weight.assign(2, std::vector<double>(60, 0.5));
+  EXPECT_NEAR(of().stiffness, whole.stiffness, 1e-9 * std::abs(whole.stiffness));
+  EXPECT_NEAR(of().rms_force, whole.rms_force, 1e-12);
+  recording.weight.assign(2, std::vector<double>(60, 0.0));
+  EXPECT_EQ(of().stiffness, 0.0);
+  EXPECT_EQ(of().rms_force, 0.0);
+}
+
 TEST(ContactTakeover, JacobianAgainstNumericDifferentiation) {
   Random random(82);
   for (double size : {0.0, 1e-6, 0.8}) {

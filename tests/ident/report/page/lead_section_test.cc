@@ -42,16 +42,18 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
 
 TEST(LeadSection, SaysHowThePushTravels) {
   PropagationSummary travels;
-  travels.recordings = 3;
+  travels.recordings = 4;  // in one of which too few moved
   travels.movers = 9.0;
   travels.missed_movers = 2.0;
-  travels.figures[kSlownessMeasured] = {0.5, 0.1, 9.0};
+  travels.figures[kSlownessMeasured] = {0.5, 0.1, 3.0};
   travels.figures[kSlownessPredicted] = {0.25, 0.0, 9.0};
   const ReportSection section = LeadSection(FittedModel(), travels);
   ASSERT_EQ(section.paragraphs.size(), 4u);
-  EXPECT_EQ(section.paragraphs[2],
-            "How the push travels: in 3 recordings the onset of motion went through the people at "
-            "2 +- 0.4 m/s (predicted: 4); of 9 who moved the model misses 2.");
+  EXPECT_EQ(
+      section.paragraphs[2],
+      "How the push travels, on the recordings that were fitted: in 3 recordings the onset of "
+      "motion went through the people at 2 +- 0.4 m/s (predicted: 4); of 9 who moved the model "
+      "misses 2.");
 }
 
 TEST(LeadSection, ManyNamesAreCounted) {
