@@ -1,19 +1,20 @@
 """From the pendulum to the body: restorations cross-validated as a whole chain, four folds, one seed.
 
 single   the 32 recordings of single people (models/restoration/README.md); one minute
-groups   two settings of groups (models/restoration/README.md); three minutes
+groups   all groups together, by setting, five folds (models/restoration/README.md); ten minutes
+whole    pendulum and network trained as a whole, four folds (models/restoration/README.md); twenty minutes
+adds     what bodies add to the identification (models/restoration/README.md); one minute
 
 Times are those of one core. `cvae` takes many minutes of processor time a fold and is left out.
 Needs pushid-train-restoration, which is built where LibTorch is found.
 """
+import os
+
 import studies
 from studies import number, with_error
 
-SETTINGS = ["group_1", "row_1"]  # two of the four: each takes minutes
-
-
-def crossvalidate(setting, model, *flags):
-    return studies.on_recordings("pushid-train-restoration", setting, f"--model={model}", "--crossvalidate=4",
+def crossvalidate(setting, model, *flags, folds=4):
+    return studies.on_recordings("pushid-train-restoration", setting, f"--model={model}", f"--crossvalidate={folds}",
                                  *flags).json
 
 
@@ -41,13 +42,45 @@ def single():
 
 def groups():
     model = studies.fit("groups", "--preset=group").path
+    views = [("`window`", []), ("`window --sees=neighbours`", ["--sees=neighbours"])]
+    found = [(name, crossvalidate("groups", model, *flags, folds=5)) for name, flags in views]
+    rows = [["all", *cells("`rigid`", found[0][1]["baselines"]["rigid"])]]
+    rows += [["all", *cells(name, json, json["true_pendulum"])] for name, json in found]
+    for setting in found[0][1]["by_setting"]:
+        rows += [[setting, *cells(name, {"mean": json["by_setting"][setting]})] for name, json in found]
+    return studies.table(["", "held out, 5 folds", *HEADER[1:]], rows)
+
+
+def whole():
+    model = studies.fit("single").path
     rows = []
-    for setting in SETTINGS:
-        json = crossvalidate(setting, model)
-        rows.append(cells(f"{setting}, `rigid`", json["baselines"]["rigid"]))
-        rows.append(cells(f"{setting}, **`window`**", json, json["true_pendulum"]))
-    return studies.table(HEADER, rows)
+    for name, flags in [("apart", []), ("as a whole, `--body_weight=1`", ["--body_weight=1"])]:
+        json = crossvalidate("single", model, *flags)
+        minutes = sum(json["run"]["training_seconds"]) / 60
+        rounds = ", ".join(map(str, json["run"]["rounds"]))
+        rows.append([*cells(name, json, json["true_pendulum"]), rounds, f"{minutes:.0f}"])
+    return studies.table([*HEADER, "rounds, by fold", "min of one core"], rows)
+
+
+def adds():
+    model = studies.fit("single")
+    restoration = os.path.join(studies.KEPT, "restoration_of_adds")
+    studies.on_recordings("pushid-train-restoration", "single", f"--model={model.path}", f"--out={restoration}",
+                          out=None, keep=False)
+    fits = [("pendulums alone", model.json)]
+    for weight in ("0.3", "1", "3"):
+        fits.append((f"`--body_weight={weight}`", studies.fit(
+            "single", f"--body_weight={weight}", f"--body_restoration={restoration}").json))
+    names = [p["name"] for p in fits[0][1]["parameters"] if p["status"] != "fixed"]
+    rows = []
+    for name in names:
+        row = [f"`{name}`"]
+        for _, json in fits:
+            p = next(p for p in json["parameters"] if p["name"] == name)
+            row.append(f"{with_error(p['value'], p['standard_error'])} ({100 * p['shares']['data']:.0f} %)")
+        rows.append(row)
+    return studies.table(["value +- error (share of the data)", *[title for title, _ in fits]], rows)
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"single": single, "groups": groups})
+    studies.main(__file__, {"single": single, "groups": groups, "whole": whole, "adds": adds})

@@ -2,13 +2,17 @@
 
 curve     errors by the share of the recordings that were fitted (ident/validation/README.md); half an hour of one core
 quarters  the ten quarters one by one (ident/validation/README.md); the same fits
+bodies    the whole chain on quarters, beside siMLPe (ident/validation/README.md); ten minutes of one core
 
-Parts are drawn stratified by setting, strength and pushed person, each recording in as many of them as any other.
-Physics alone, with rigid bodies on the pendulums; MBLE is 0 for these. Three quarters: four of the quarters the other way
+Parts are drawn stratified by setting, strength and pushed person; deals are whole but for the last, so that a recording is
+in at most one part more than another.
+`curve` and `quarters`: physics alone, with rigid bodies on the pendulums; MBLE is 0 for these. Three quarters: four of the quarters the other way
 round.
 """
 import collections
+import hashlib
 import json
+import os
 import random
 import statistics
 
@@ -46,10 +50,14 @@ def parts(setting, divisor):
     return drawn[:DRAWS]
 
 
-def score(setting, fitted, judged):
-    """The errors of a fit of some recordings on others, and the model."""
+def fitted(setting, part):
     preset = "--preset=tail" if setting == "single" else "--preset=group"
-    model = studies.fit(setting, preset, f"--ids={','.join(fitted)}", "--quiet")
+    return studies.fit(setting, preset, f"--ids={','.join(part)}", "--quiet")
+
+
+def score(setting, part, judged):
+    """The errors of a fit of some recordings on others, and the model."""
+    model = fitted(setting, part)
     out = studies.on_recordings("pushid-evaluate", setting, f"--model={model.path}", f"--ids={','.join(judged)}",
                                 "--restoration=rigid", "--quiet").json
     return dict(out["mean"], failed=sum("failure" in r for r in out["recordings"]), model=model.json)
@@ -96,5 +104,38 @@ def quarters():
                          rows)
 
 
+def trained(setting, part, *flags):
+    """A restoration of some recordings; the folder is named after what it was made of."""
+    name = hashlib.sha256(repr((setting, part, flags)).encode()).hexdigest()[:12]
+    folder = os.path.join(studies.KEPT, f"restoration_{name}")
+    model = fitted(setting, part)
+    studies.on_recordings("pushid-train-restoration", setting, f"--model={model.path}", f"--ids={','.join(part)}",
+                          f"--out={folder}", "--quiet", *flags, out=None, keep=False)
+    return folder
+
+
+def chain(setting, part):
+    """The chain and siMLPe, trained on a part and judged on all else; siMLPe is given 12 frames and judged after them."""
+    judged = [e["id"] for e in recordings(setting) if e["id"] not in part]
+    view = "--sees=neighbours" if setting == "groups" else "--sees=pendulum"
+    return studies.on_recordings("pushid-evaluate", setting, f"--model={fitted(setting, part).path}",
+                                 f"--ids={','.join(judged)}", f"--restoration={trained(setting, part, view)}",
+                                 f"--peer={trained(setting, part, '--kind=simlpe')}", "--quiet").json
+
+
+def bodies():
+    rows = []
+    for setting in ("single", "groups"):
+        found = [chain(setting, part) for part in parts(setting, 4)]
+        for title, of in [("physics and `window`", lambda one: one["mean"]),
+                          ("siMLPe, given 12 frames", lambda one: one["baselines"]["simlpe"]["mean"])]:
+            cells = []
+            for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm"):
+                values = [of(one)[key] for one in found]
+                cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
+            rows.append([setting, title, *cells])
+    return studies.table(["a quarter", "", *[title for _, title in METRICS], "MBLE, m", "FSE, cm a frame"], rows)
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"curve": curve, "quarters": quarters})
+    studies.main(__file__, {"curve": curve, "quarters": quarters, "bodies": bodies})

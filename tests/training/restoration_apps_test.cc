@@ -142,8 +142,8 @@ TEST_F(RestorationAppTest, SeesWhatItIsToldTo) {
     const AppRun run = Train("v", {"--effort=0.1", std::string("--sees=") + view});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(Json(Path("v/restoration.json"))["settings"]["sees"], view);
-    const AppRun evaluate = RunApp(
-        "pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v"), "--quiet"});
+    const AppRun evaluate =
+        RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v"), "--quiet"});
     EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
   }
 }
@@ -152,9 +152,9 @@ TEST_F(RestorationAppTest, SeesWhatItIsToldTo) {
 TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
   Trained();
   const auto fit = [this](const std::string& weight) {
-    const AppRun run = RunApp("pushid-fit", {Recordings(), "--body_weight=" + weight,
-                                             "--body_restoration=" + Path("r"), "--quiet",
-                                             "--model_out=" + Path("b.json")});
+    const AppRun run = RunApp(
+        "pushid-fit", {Recordings(), "--body_weight=" + weight, "--body_restoration=" + Path("r"),
+                       "--quiet", "--model_out=" + Path("b.json")});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return Json(Path("b.json"));
   };
