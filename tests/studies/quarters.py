@@ -1,8 +1,8 @@
 """How much data does it take? Fits of parts of the recordings, judged on all the others.
 
-curve     errors by the share of the recordings that were fitted (ident/validation/README.md); half an hour of one core
+curve     errors by the share of the recordings that were fitted (ident/validation/README.md) and their picture; half an hour of one core
 quarters  the ten quarters one by one (ident/validation/README.md); the same fits
-bodies    the whole chain on quarters, beside siMLPe (ident/validation/README.md); ten minutes of one core
+bodies    the whole chain on quarters, beside siMLPe (ident/validation/README.md); eight minutes of one core
 
 Parts are drawn stratified by setting, strength and pushed person; deals are whole but for the last, so that a recording is
 in at most one part more than another.
@@ -16,6 +16,7 @@ import os
 import random
 import statistics
 
+import line_chart
 import studies
 from studies import number
 
@@ -76,8 +77,10 @@ def three_quarters(setting):
 
 
 def curve():
-    rows = []
+    rows, lines = [], {}
+    shares = [*(title for _, title in SHARES), "3/4"]
     for setting in ("single", "groups"):
+        lines[setting] = []
         for title, found in [(t, scores(setting, d)) for d, t in SHARES] + [("3/4", three_quarters(setting))]:
             cells = []
             for key, _ in METRICS:
@@ -85,6 +88,10 @@ def curve():
                 cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
             feet = f"{number(statistics.mean(one['FSE_cm'] for one in found), 2)}"
             rows.append([setting, title, len(found), *cells, feet, sum(one["failed"] for one in found)])
+            hips = [one["hipADE_m"] for one in found]
+            lines[setting].append((statistics.mean(hips), min(hips), max(hips)))
+    with open(os.path.join(studies.SOURCE, "tests/studies/pictures/quarters.svg"), "w", encoding="utf-8") as file:
+        file.write(line_chart.chart("share of the recordings that was fitted", "hipADE on all others, m", shares, lines, 0.3, 0.1))
     return studies.table(["", "share fitted", "parts", *[title for _, title in METRICS], "FSE, cm", "failed rollouts"], rows)
 
 
@@ -130,9 +137,10 @@ def bodies():
         for title, of in [("physics and `window`", lambda one: one["mean"]),
                           ("siMLPe, given 12 frames", lambda one: one["baselines"]["simlpe"]["mean"])]:
             cells = []
-            for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm"):
+            for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "FSE_cm"):
                 values = [of(one)[key] for one in found]
                 cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
+            cells.insert(3, f"{statistics.mean(of(one)['MBLE_m'] for one in found):.3f}")
             rows.append([setting, title, *cells])
     return studies.table(["a quarter", "", *[title for _, title in METRICS], "MBLE, m", "FSE, cm a frame"], rows)
 
