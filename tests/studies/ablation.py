@@ -1,6 +1,6 @@
 """What are the pendulum and the two halves of the body worth? Restorations with parts left out, four folds, one seed.
 
-table     the five metrics of every variant, single and groups (models/restoration/README.md); two hours of one core
+table     the five metrics of every variant, single and groups (models/restoration/README.md); an hour of one core
 strength  MPJPE by the strength of the push (models/restoration/README.md); the same runs
 
 In every fold pendulum, its out-of-fold predictions and networks are made anew from the other recordings. Without a
