@@ -96,6 +96,11 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
   const Result<Candidates> candidates = ModelCandidates(flags, options, recordings);
   if (!candidates.ok()) return candidates.error();
   for (const auto& [name, candidate] : candidates.value()) {
+    if (candidate.body_weight > 0.0) {
+      return Error{"--body_weight: '" + name +
+                   "' would be judged with a restoration that has seen the recordings held out; "
+                   "pushid-train-restoration --crossvalidate --body_weight trains both anew"};
+    }
     if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
       return Error{"--observed: '" + name +
                    "' has no push tail, by which first frames are read; give it "

@@ -71,6 +71,13 @@ MaybeError CheckFlags() {
   if (!view) {
     return Error{"--sees is '" + FLAGS_sees + "'; it must be pendulum, neighbours or pose"};
   }
+  if (*view != RestorationView::kPendulum && !RowOf(*kind).follows_pendulum) {
+    return Error{"--sees says what follows pendulums, and --kind=" + FLAGS_kind +
+                 " continues recorded bodies"};
+  }
+  if (!FLAGS_halves && *kind != RestorationKind::kCvae) {
+    return Error{"--nohalves goes with --kind=cvae"};
+  }
   if (*view == RestorationView::kNeighbours && *kind != RestorationKind::kWindow) {
     return Error{"--sees=neighbours goes with --kind=window"};
   }

@@ -245,6 +245,13 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   refused(train, {"--out=" + Path("x"), "--held_out=0.9"}, {"--held_out"});
   refused(train, {"--crossvalidate=1"}, {"--crossvalidate"});
   refused(train, {"--out=" + Path("x"), "--coordinates=hip"}, {"--coordinates"});
+  refused(train, {"--out=" + Path("x"), "--sees=people"}, {"--sees", "neighbours"});
+  refused(train, {"--out=" + Path("x"), "--kind=cvae", "--sees=neighbours"}, {"--kind=window"});
+  refused(train, {"--out=" + Path("x"), "--kind=simlpe", "--sees=pose"}, {"--sees"});
+  refused(train, {"--out=" + Path("x"), "--nohalves"}, {"--kind=cvae"});
+  refused(train, {"--out=" + Path("x"), "--body_weight=1", "--sees=pose"}, {"--body_weight"});
+  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {Recordings(), "--body_weight=1"}),
+                      {"--body_weight", "pushid-train-restoration --crossvalidate"}));
   refused("pushid-evaluate", {"--restoration=" + Path("none")}, {"restoration.json"});
   refused("pushid-predict", {"--id=" + id_, "--out=" + Path("m.bvh")}, {"--restoration"});
   refused("pushid-predict",
