@@ -78,7 +78,9 @@ TEST(BodyResidual, NothingIsLeftAtTheTruth) {
     EXPECT_EQ(residual.num_rows(), 9 * 2 * 66);
     EXPECT_LT(CostAt(residual, s.truth), 1e-8);
     // Who stands still in their own posture says nothing of gains.
-    if (regime != Regime::kStanding) EXPECT_GT(CostAt(residual, s.blocks), 1e-6);
+    if (regime != Regime::kStanding) {
+      EXPECT_GT(CostAt(residual, s.blocks), 1e-6);
+    }
   }
 }
 
