@@ -95,6 +95,9 @@ MaybeError CheckFlags() {
     return Error{"--body_weight goes with --kind=window and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
+  if (FLAGS_body_weight == 0.0 && FLAGS_rounds != RestorationRunOptions{}.rounds) {
+    return Error{"--rounds does nothing without --body_weight; give --body_weight=1"};
+  }
   if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
   if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
     return Error{"--held_out must lie above 0 and not above 0.5"};

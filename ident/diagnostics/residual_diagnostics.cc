@@ -84,9 +84,11 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
     d.id = recording.id;
     for (const FitProblem::Built::Block& block : built.blocks) {
       if (block.cluster != g) continue;
-      built.problem->EvaluateResidualBlock(block.id, false, &d.cost, nullptr, nullptr);
-      d.cost -= built.OffsetOf(g);
+      double cost = 0.0;  // of the rollout, and another of the bodies on it
+      built.problem->EvaluateResidualBlock(block.id, false, &cost, nullptr, nullptr);
+      d.cost += cost;
     }
+    d.cost -= built.OffsetOf(g);
     const std::vector<double> raw = problem.RawResiduals(point, g);
     if (!raw.empty()) {
       AddFrames(recording, raw, problem.options().sigmas, &d);

@@ -94,7 +94,8 @@ std::string BodyViolation(const FitOptions& o) {
   const char* other = RodMoves(o.model)                         ? "--rod"
                       : o.likelihood != Likelihood::kTrajectory ? "--likelihood"
                       : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
-                                                 : nullptr;
+                      : o.sigmas.loss == FrameLoss::kLdp ? "--loss=ldp"
+                                                         : nullptr;
   if (other == nullptr) return "";
   return std::string(
              "--body_weight compares bodies on rollouts of rods of constant length and does "

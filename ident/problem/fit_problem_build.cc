@@ -194,7 +194,10 @@ void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
     built->AddRollout(std::make_unique<CondensedRollout>(rollout, options_.jacobian),
                       RecordingBlocks(point, i), i);
     // Bodies join once the path is there: their joints follow the path before and after a frame.
-    if (horizon != 0 || options_.body_weight <= 0.0) continue;
+    // A fit has those of all recordings (PrepareFit); what was read from a file, and a design's
+    // recordings that are still to be made, have none, and are seen by their pendulums alone.
+    if (horizon != 0 || options_.body_weight <= 0.0 || options_.body == nullptr) continue;
+    if (options_.body->motions.count(recordings_[i].id) == 0) continue;
     built->AddRollout(std::make_unique<BodyResidual>(rollout, options_.body, options_.body_weight),
                       RecordingBlocks(point, i), i);
   }

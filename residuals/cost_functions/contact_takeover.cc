@@ -39,8 +39,7 @@ ContactTakeoverResidual::ContactTakeoverResidual(const std::vector<PendulumRecor
     for (int t = 0; t < recording.num_frames(); ++t) {
       for (int n = 0; n < recording.num_people(); ++n) {
         for (int j = n + 1; j < recording.num_people(); ++j) {
-          const double weight = recording.Weight(n, t) * recording.Weight(j, t);
-          const double seen = weight * weight;
+          const double seen = std::pow(recording.Weight(n, t) * recording.Weight(j, t), 2);
           if (seen == 0.0) continue;
           Touch touch{
               PairOf(recording.scene, n, j), recording.states[n][t], recording.states[j][t], {}};

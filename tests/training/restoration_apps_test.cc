@@ -171,6 +171,18 @@ TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
   EXPECT_EQ(rigid.exit_code, 1);
   EXPECT_TRUE(Contains(rigid.err, "--kind=window and --sees=pendulum"));
   const auto strong = fit("100");
+  // A recording's cost is of its rollout and its bodies: all but priors and settling.
+  double sum = 0.0;
+  for (const auto& recording : with["diagnostics"]["recordings"]) {
+    sum += recording["cost"].get<double>();
+  }
+  const double all = with["fit"]["cost"];
+  EXPECT_GT(sum, 0.8 * all);
+  EXPECT_LE(sum, all * (1.0 + 1e-9));
+  // A report has no bodies, and says what pendulums say.
+  const AppRun report = RunApp(
+      "pushid-report", {"--model=" + Path("b.json"), Recordings(), "--html_out=" + Path("b.html")});
+  EXPECT_EQ(report.exit_code, 0) << report.err;
   EXPECT_NE(with["parameters"][0]["value"], strong["parameters"][0]["value"]);
 }
 
