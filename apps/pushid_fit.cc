@@ -39,15 +39,23 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
   return drawn;
 }
 
+MaybeError CheckBodyFlags(const FitOptions& options, const std::string& folder) {
+  if (options.body_weight > 0.0 && folder.empty()) {
+    return Error{
+        "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
+        "--kind=window wrote"};
+  }
+  if (options.body_weight <= 0.0 && !folder.empty()) {
+    return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
+  }
+  return std::nullopt;
+}
+
 // The bodies of --body_weight.
 MaybeError TakeBodies(const std::vector<Recording>& recordings, const std::string& folder,
                       FitOptions* options) {
-  if (options->body_weight <= 0.0) {
-    if (folder.empty()) return std::nullopt;
-    return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
-  }
-  if (folder.empty()) return std::nullopt;  // PrepareFit says that it is missing
-  const auto restoration = LoadRestoration(folder);
+  if (options->body_weight <= 0.0) return std::nullopt;
+  const auto restoration = LoadRestoration(folder, "--body_restoration");
   if (!restoration.ok()) return restoration.error();
   const auto bodies = MakeBodyRecordings(recordings, options->mapping);
   if (!bodies.ok()) return bodies.error();
@@ -69,6 +77,9 @@ int Run() {
   if (!options.ok()) return Fail(options.error());
   if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
+  if (MaybeError error = CheckBodyFlags(options.value(), flags.value().body_restoration)) {
+    return Fail(*error);
+  }
   if (flags.value().check) return kDone;
   const std::string& model_out = flags.value().model_out;
   if (!model_out.empty()) {

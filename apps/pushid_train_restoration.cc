@@ -61,6 +61,22 @@ nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
   return json;
 }
 
+// Alone, or as a whole with the pendulum.
+Result<TrainedRestoration> Learn(const TrainRestorationFlags& flags,
+                                 const std::vector<BodyRecording>& recordings,
+                                 const std::vector<int>& all, const RestorationRunOptions& options,
+                                 TrainingLine* line) {
+  const auto told = [line](const std::string& step, double done) { line->Show(step, done); };
+  if (options.fit.body_weight <= 0.0) {
+    SayWhenInterrupted(KeptCheckpoints(flags.out));
+    return TrainFromRecordings(recordings, all, options, told);
+  }
+  SayWhenInterrupted("nothing is kept of a training as a whole; the same command begins anew");
+  Result<TrainedChain> chain = TrainChain(recordings, all, options, told);
+  if (!chain.ok()) return chain.error();
+  return std::move(chain.value().restoration);
+}
+
 int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
           RestorationRunOptions options) {
   if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
@@ -71,14 +87,11 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   if (MaybeError error = CheckWritable(options.training.checkpoint)) return Fail(*error);
   std::vector<int> all(recordings.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  SayWhenInterrupted(KeptCheckpoints(flags.out));
   TrainingLine line;
-  Result<TrainedChain> chain =
-      TrainChain(recordings, all, options,
-                 [&](const std::string& step, double done) { line.Show(step, done); });
+  const Result<TrainedRestoration> learnt = Learn(flags, recordings, all, options, &line);
   line.Finish();
-  if (!chain.ok()) return Fail(chain.error());
-  const TrainedRestoration& trained = chain.value().restoration;
+  if (!learnt.ok()) return Fail(learnt.error());
+  const TrainedRestoration& trained = learnt.value();
   RestorationFile file = trained.file;
   file.training = Provenance(recordings, options.more, trained);
   const std::string title = std::string(Name(options.training.kind)) + " restoration, " +

@@ -50,19 +50,7 @@ FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumSt
     j(2, 8) = (c_th * c_ph - lift) / sigmas.hip;
     j(2, 9) = -state.rod / sigmas.hip;
   }
-  if (sigmas.robust <= 0.0) {
-    j *= measured.weight;
-    return measured.weight * r;
-  }
-
-  // d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c).
-  const double squared_scale = sigmas.robust * sigmas.robust;
-  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
-  const double w = std::sqrt(2.0 / (1.0 + c));
-  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
-  const Eigen::Matrix<double, 1, kColumns> along = r.transpose() * j;
-  j = measured.weight * (w * j + (2.0 * slope) * r * along);
-  return measured.weight * w * r;
+  return RobustlyWeighted(r, measured.weight, sigmas.robust, jacobian);
 }
 
 }  // namespace

@@ -84,6 +84,23 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
+// w r and its derivative, times `weight`, of residuals that share one w:
+//   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c)
+template <typename Residual, typename Jacobian>
+Residual RobustlyWeighted(const Residual& r, double weight, double robust, Jacobian* jacobian) {
+  if (robust <= 0.0) {
+    *jacobian *= weight;
+    return weight * r;
+  }
+  const double squared_scale = robust * robust;
+  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
+  const double w = std::sqrt(2.0 / (1.0 + c));
+  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
+  const Eigen::Matrix<double, 1, Jacobian::ColsAtCompileTime> along = r.transpose() * *jacobian;
+  *jacobian = weight * (w * *jacobian + (2.0 * slope) * r * along);
+  return weight * w * r;
+}
+
 // A frame's rows of the Jacobian of w r, made those whose J'J is the robust cost's own Hessian but
 // for the model's second derivatives (Triggs et al. 2000, section 4.3): the Jacobian of w r counts
 // the loss as steeper than it is. With c = sqrt(1 + |r|^2 / d^2):

@@ -7,6 +7,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/scheme_flags.h"
+#include "ident/parameters/option_names.h"
 #include "ident/results/result_json.h"
 #include "models/learned_terms.h"
 
@@ -17,7 +18,7 @@ DEFINE_string(
     "continues 12 given frames, for --peer of pushid-evaluate)");
 DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
-DEFINE_string(sees, pushid::Name(pushid::RestorationTrainingOptions{}.view),
+DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
               "what poses follow: the person's pendulum (pendulum), those of the neighbours too "
               "(neighbours, of window), or none, to compare with (pose: window has the first pose "
               "and the push, cvae the pose before)");
@@ -55,6 +56,26 @@ DEFINE_int32(num_threads, pushid::RestorationTrainingOptions{}.num_threads,
 namespace pushid {
 namespace {
 
+// What goes with which kind.
+MaybeError CheckView(RestorationKind kind, RestorationView view) {
+  if (view != RestorationView::kPendulum && !RowOf(kind).follows_pendulum) {
+    return Error{"--sees says what follows pendulums, and --kind=" + FLAGS_kind +
+                 " continues recorded bodies"};
+  }
+  if (view == RestorationView::kNeighbours && kind != RestorationKind::kWindow) {
+    return Error{"--sees=neighbours goes with --kind=window"};
+  }
+  const bool chain = kind == RestorationKind::kCvae;
+  if (!FLAGS_halves && !chain) return Error{"--nohalves goes with --kind=cvae"};
+  if (FLAGS_coordinates == Name(RestorationTrainingOptions{}.coordinates)) return std::nullopt;
+  if (!chain || view == RestorationView::kPose) {
+    return Error{
+        "--coordinates goes with --kind=cvae --sees=pendulum: without a pendulum there is "
+        "no tip"};
+  }
+  return std::nullopt;
+}
+
 MaybeError CheckFlags() {
   if (MaybeError missing =
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
@@ -67,20 +88,9 @@ MaybeError CheckFlags() {
   if (!CvaeCoordinatesFromName(FLAGS_coordinates)) {
     return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
   }
-  const auto view = RestorationViewFromName(FLAGS_sees);
-  if (!view) {
-    return Error{"--sees is '" + FLAGS_sees + "'; it must be pendulum, neighbours or pose"};
-  }
-  if (*view != RestorationView::kPendulum && !RowOf(*kind).follows_pendulum) {
-    return Error{"--sees says what follows pendulums, and --kind=" + FLAGS_kind +
-                 " continues recorded bodies"};
-  }
-  if (!FLAGS_halves && *kind != RestorationKind::kCvae) {
-    return Error{"--nohalves goes with --kind=cvae"};
-  }
-  if (*view == RestorationView::kNeighbours && *kind != RestorationKind::kWindow) {
-    return Error{"--sees=neighbours goes with --kind=window"};
-  }
+  RestorationView view;
+  if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return error;
+  if (MaybeError error = CheckView(*kind, view)) return error;
   if (FLAGS_crossvalidate == 0) {
     if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
   } else if (FLAGS_crossvalidate < 2) {
@@ -91,7 +101,7 @@ MaybeError CheckFlags() {
   }
   if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
-      (*kind != RestorationKind::kWindow || *view != RestorationView::kPendulum)) {
+      (*kind != RestorationKind::kWindow || view != RestorationView::kPendulum)) {
     return Error{"--body_weight goes with --kind=window and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
@@ -111,6 +121,8 @@ MaybeError CheckFlags() {
 }
 
 Result<RestorationRunOptions> RunOptions() {
+  RestorationView view;
+  if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return *error;
   const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
   if (!model.ok()) return model.error();
   const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
@@ -133,7 +145,7 @@ Result<RestorationRunOptions> RunOptions() {
   options.observed = ObservedFrames();
   options.training.kind = *RestorationKindFromName(FLAGS_kind);
   options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
-  options.training.view = *RestorationViewFromName(FLAGS_sees);
+  options.training.view = view;
   options.training.halves = FLAGS_halves;
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;

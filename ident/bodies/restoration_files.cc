@@ -4,6 +4,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/bodies/tensor_folder.h"
+#include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
@@ -23,9 +24,11 @@ MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile
                            {Name(file.kind), file.settings, file.training, file.tensors});
 }
 
-Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
+Result<RestorationFile> ReadRestorationFile(const std::string& folder, const char* flag) {
+  TensorFolderKind named = kRestorationFolder;
+  named.flag = flag;
   Result<TensorFolder> read = ReadTensorFolder(
-      kRestorationFolder, folder, TrainedRestorationKinds(),
+      named, folder, TrainedRestorationKinds(),
       [](const std::string& name) { return RestorationKindFromName(name).has_value(); });
   if (!read.ok()) return read.error();
   TensorFolder& content = read.value();
@@ -38,12 +41,10 @@ namespace {
 using MadeRestoration = Result<std::unique_ptr<Restoration>>;
 
 Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
-  const std::string name = file.settings.value(kViewKey, Name(RestorationView::kPendulum));
-  const std::optional<RestorationView> view = RestorationViewFromName(name);
-  if (view) return *view;
-  return Error{
-      std::string(kViewKey) + " is " + Quoted(name) + "; it must be pendulum, neighbours or pose",
-      path};
+  RestorationView view = RestorationView::kPendulum;
+  const std::string name = file.settings.value(kViewKey, NameOf(view));
+  if (MaybeError error = ParseName(kViewKey, name, &view)) return Error{error->message, path};
+  return view;
 }
 
 MadeRestoration MakeWindow(const RestorationFile& file, const std::string& path,
@@ -116,11 +117,11 @@ Result<bool> LearnedAlone(const std::string& folder) {
   return file.value().training.value(kMostPeopleKey, 0) == 1;
 }
 
-Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder) {
+Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, const char* flag) {
   if (folder == Name(RestorationKind::kRigid)) {
     return std::unique_ptr<Restoration>(new RigidRestoration());
   }
-  const Result<RestorationFile> file = ReadRestorationFile(folder);
+  const Result<RestorationFile> file = ReadRestorationFile(folder, flag);
   if (!file.ok()) return file.error();
   return MakeRestoration(file.value(), folder);
 }

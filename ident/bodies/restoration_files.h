@@ -36,7 +36,9 @@ struct RestorationFile {
 MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file);
 
 // Errors: no such folder, a newer format, weights that are not those of the JSON (by their hash).
-Result<RestorationFile> ReadRestorationFile(const std::string& folder);
+// flag: which names the folder, for messages.
+Result<RestorationFile> ReadRestorationFile(const std::string& folder,
+                                            const char* flag = "--restoration");
 
 // The restoration a file describes. Errors: a kind that is no restoration, missing or misshapen
 // tensors by name.
@@ -48,6 +50,7 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
 Result<bool> LearnedAlone(const std::string& folder);
 
 // Both. "rigid" needs no folder: the name is enough.
-Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder);
+Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder,
+                                                     const char* flag = "--restoration");
 
 }  // namespace pushid

@@ -33,7 +33,7 @@ Cause CauseOf(const std::array<double, 4>& forces) {
   if (std::abs(forces[largest]) < kQuiet) return Cause::kNothing;
   if (largest == kPushed) return Cause::kPush;
   if (largest == kAnswer) return Cause::kOwn;
-  return forces[kOthers] > 0.0 ? Cause::kBehind : Cause::kInFront;
+  return forces[kOthers] > 0.0 ? Cause::kFromBehind : Cause::kFromInFront;
 }
 
 // The series that a cause is told by.
@@ -138,9 +138,9 @@ std::string Words(const PendulumRecording& recording, const Prediction& predicti
       return velocity.norm() < kStill ? "still" : "moves on without force";
     case Cause::kPush:
       return "pushed" + Forces(moment);
-    case Cause::kBehind:
+    case Cause::kFromBehind:
       return "pushed from behind" + by(-1.0) + Forces(moment);
-    case Cause::kInFront:
+    case Cause::kFromInFront:
       return "held up from in front" + by(1.0) + Forces(moment);
     case Cause::kOwn:
       return (moment.impulse * velocity.dot(u) < 0.0 ? "brakes" : "steps on") + Forces(moment);
@@ -186,7 +186,7 @@ ForceStory RichestStory(const PendulumRecording& recording, const Prediction& pr
     double by_others = 0.0;
     for (const StoryMoment& moment : story.moments) {
       causes.insert(moment.cause);
-      const bool others = moment.cause == Cause::kBehind || moment.cause == Cause::kInFront;
+      const bool others = moment.cause == Cause::kFromBehind || moment.cause == Cause::kFromInFront;
       if (others) by_others += std::abs(moment.impulse);
     }
     const std::pair<size_t, double> has{causes.size(), by_others};

@@ -17,7 +17,7 @@
 
 namespace pushid {
 
-enum class Cause { kNothing, kPush, kBehind, kInFront, kOwn };
+enum class Cause { kNothing, kPush, kFromBehind, kFromInFront, kOwn };
 
 struct StoryMoment {
   int from = 0, to = 0;  // frames, `to` is the next one's `from`

@@ -49,7 +49,7 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
       TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
                  progress, &trained);
   if (!network.ok()) return network.error();
-  trained.file.settings[kViewKey] = Name(options.view);
+  trained.file.settings[kViewKey] = NameOf(options.view);
   AddTensors("inputs", weights.inputs, &trained.file.tensors);
   AddTensors("network", network.value(), &trained.file.tensors);
   return trained;

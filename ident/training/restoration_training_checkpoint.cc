@@ -83,7 +83,7 @@ std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
   return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
-         Name(options.view) + (options.halves ? " halves " : " whole ") +
+         NameOf(options.view) + (options.halves ? " halves " : " whole ") +
          std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
          KeyOfSamples(training) + KeyOfSamples(held);
 }
@@ -97,6 +97,8 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
   for (const RestorationSample& sample : samples) {
     add(sample.person().first_pose);
     for (const auto& q : sample.person().q) add(q);
+    add(sample.person().push.velocity);
+    add(sample.person().push.place);
     for (const Pose& pose : sample.motion) add(pose);
   }
   return hash.Hex();

@@ -79,7 +79,7 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
     if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
   }
   trained.file.tensors = ToTensors(trainer.Best());
-  trained.file.settings = {{kViewKey, Name(options.view)},
+  trained.file.settings = {{kViewKey, NameOf(options.view)},
                            {kCvaeCoordinatesKey, Name(options.coordinates)},
                            {kCvaeHalvesKey, options.halves}};
   checkpoint.Remove();

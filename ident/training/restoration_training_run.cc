@@ -41,6 +41,16 @@ std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vecto
   return picked;
 }
 
+// The largest change of a free parameter relative to its value.
+double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
+  double largest = 0.0;
+  for (const Parameter p : before.table.Free()) {
+    const double from = before.parameters[p], to = after.parameters[p];
+    largest = std::max(largest, std::abs(to - from) / std::max(std::abs(from), 1e-12));
+  }
+  return largest;
+}
+
 // A restoration beside its baselines; siMLPe alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
@@ -101,26 +111,13 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                           });
 }
 
-namespace {
-
-// The largest change of a free parameter relative to its value.
-double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
-  double largest = 0.0;
-  for (const Parameter p : before.table.Free()) {
-    const double from = before.parameters[p], to = after.parameters[p];
-    largest = std::max(largest, std::abs(to - from) / std::max(std::abs(from), 1e-12));
-  }
-  return largest;
-}
-
-}  // namespace
-
 Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   RestorationRunOptions now = options;
   now.fit.body_weight = 0.0;
+  now.training.checkpoint.clear();  // one would be of one training, not of the whole
   std::optional<IdentifiedModel> model = FitTo(pendulums, among, now.fit);
   if (!model) return Error{"the pendulum's fit found no usable optimum"};
   Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
@@ -128,7 +125,6 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
   TrainedChain chain{std::move(*model), std::move(trained.value())};
   if (options.fit.body_weight <= 0.0) return chain;
   now.fit.body_weight = options.fit.body_weight;
-  now.training.checkpoint.clear();  // the first round's alone is kept
   for (bool moves = true; moves && chain.rounds < options.rounds; ++chain.rounds) {
     const auto restoration = MakeRestoration(chain.restoration.file, "");
     if (!restoration.ok()) return restoration.error();

@@ -42,12 +42,14 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress = nullptr);
 
+inline constexpr double kWholeTolerance = 0.01;
+
 // The pendulum fitted and a restoration trained on it; with options.fit.body_weight then as a
 // whole: the pendulum is fitted anew to recorded bodies too
 // (residuals/cost_functions/body_residual.h), by the restoration so far, which is then trained anew
 // on the new pendulums, until no free parameter moves by more than kWholeTolerance of its value, or
-// options.rounds times. Errors: those of either; a fit that finds no optimum.
-inline constexpr double kWholeTolerance = 0.01;
+// options.rounds times. It keeps no checkpoint. Errors: those of either; a fit that finds no
+// optimum.
 Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress = nullptr);

@@ -3,13 +3,14 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <tuple>
+
+#include "models/restoration/window_features.h"
 
 namespace pushid {
 namespace {
 
 constexpr std::array<int, 6> kLags = {0, -12, -6, 6, 12, 24};
-constexpr double kLagRate = 60.0;    // Hz
 constexpr double kFurthest = 2.0;    // m
 constexpr double kNearLength = 1.0;  // m
 
@@ -23,16 +24,14 @@ int QuarterOf(const Eigen::Vector2d& away) {
   return away.y() > 0.0 ? 2 : 3;
 }
 
-// The rod's tip in the heading's frame (x, y).
-Eigen::Vector2d Tip(const Body& body, const Vector4<double>& turned) {
-  return HipPosition(body, turned).head<2>();
-}
-
-// Velocity of the tip: that of the cart and of the rod's end.
-Eigen::Vector2d TipVelocity(const Body& body, const FramePath<Vector4<double>>& path, double frame,
-                            double dt) {
-  const double before = frame - 0.5, after = frame + 0.5;
-  return (Tip(body, path.At(after)) - Tip(body, path.At(before))) / dt;
+// Where the rod's tip goes (x, y).
+FramePath<Eigen::Vector2d> TipPath(const Body& body, const FramePath<Vector4<double>>& turned,
+                                   double dt) {
+  std::vector<Eigen::Vector2d> tips;
+  for (int t = 0; t < turned.num_frames(); ++t) {
+    tips.emplace_back(HipPosition(body, turned.At(t)).head<2>());
+  }
+  return {std::move(tips), dt};
 }
 
 // Indices of the nearest in each quarter; -1: nobody.
@@ -62,16 +61,17 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
   const RestorationInput& person = people[n];
   const double heading = Heading(person.first_pose);
   const auto nearest = Nearest(people, n, TurnAboutZ(-heading));
-  const FramePath<Vector4<double>> own = TurnedPath(person, heading);
-  const double frames_per_lag = 1.0 / (kLagRate * person.dt);
+  const auto own = TipPath(person.body, TurnedPath(person, heading), person.dt);
+  const double frames_per_lag = 1.0 / (kWindowLagRate * person.dt);
   const int frames = static_cast<int>(person.q.size());
   Eigen::MatrixXf inputs = Eigen::MatrixXf::Zero(kNeighbourInputs, frames);
   for (int quarter = 0; quarter < kNeighbourQuarters; ++quarter) {
     if (nearest[quarter] < 0) continue;
     const RestorationInput& other = people[nearest[quarter]];
     const FramePath<Vector4<double>> path = TurnedPath(other, heading);
+    const auto tip = TipPath(other.body, path, other.dt);
     const auto away_at = [&](double frame) -> Eigen::Vector2d {
-      return Tip(other.body, path.At(frame)) - Tip(person.body, own.At(frame));
+      return tip.At(frame) - own.At(frame);
     };
     const Eigen::Vector2d first = away_at(0.0);
     for (int t = 0; t < frames; ++t) {
@@ -83,8 +83,7 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
         const Eigen::Vector2d away = away_at(t + lag * frames_per_lag);
         add(away.x() - first.x()), add(away.y() - first.y()), add(Nearness(away));
       }
-      const Eigen::Vector2d velocity =
-          TipVelocity(other.body, path, t, person.dt) - TipVelocity(person.body, own, t, person.dt);
+      const Eigen::Vector2d velocity = tip.RateAt(t) - own.RateAt(t);
       add(velocity.x()), add(velocity.y());
       add(path.At(t)[2]), add(path.At(t)[3]);
     }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "models/restoration/neighbour_features.h"
+
 namespace pushid {
 namespace {
 
@@ -25,8 +27,20 @@ Eigen::MatrixXf PendulumInputs(const RestorationInput& person) {
   return inputs.cast<float>();
 }
 
+Eigen::MatrixXf PushInputs(const RestorationInput& person) {
+  const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
+  const Eigen::Vector3d velocity = turn * person.push.velocity;
+  const Eigen::Vector3d away = turn * (person.push.place - person.first_pose.col(0));
+  Eigen::Matrix<float, kPushInputs, 1> push;
+  push << velocity.head<2>().cast<float>(), static_cast<float>(person.push.duration),
+      away.head<2>().cast<float>();
+  return push.replicate(1, static_cast<int>(person.q.size()));
+}
+
+}  // namespace
+
 // Only the time differs from frame to frame.
-Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
+Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person) {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(-heading);
   const Vector4<double> first = TurnedPendulum(person.q[0], -heading);
@@ -47,18 +61,6 @@ Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
   return inputs;
 }
 
-Eigen::MatrixXf PushInputs(const RestorationInput& person) {
-  const Eigen::Matrix3d turn = TurnAboutZ(-Heading(person.first_pose));
-  const Eigen::Vector3d velocity = turn * person.push.velocity;
-  const Eigen::Vector3d away = turn * (person.push.place - person.first_pose.col(0));
-  Eigen::Matrix<float, kPushInputs, 1> push;
-  push << velocity.head<2>().cast<float>(), static_cast<float>(person.push.duration),
-      away.head<2>().cast<float>();
-  return push.replicate(1, static_cast<int>(person.q.size()));
-}
-
-}  // namespace
-
 int WindowInputRows(RestorationView view) {
   if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
   return kWindowPendulumInputs + kPersonInputs +
@@ -75,13 +77,13 @@ Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,
   Eigen::MatrixXf inputs(WindowInputRows(view), static_cast<int>(person.q.size()));
   switch (view) {
     case RestorationView::kPendulum:
-      inputs << PendulumInputs(person), PersonInputs(person);
+      inputs << PendulumInputs(person), WindowPersonInputs(person);
       break;
     case RestorationView::kNeighbours:
-      inputs << PendulumInputs(person), PersonInputs(person), NeighbourInputs(people, n);
+      inputs << PendulumInputs(person), WindowPersonInputs(person), NeighbourInputs(people, n);
       break;
     case RestorationView::kPose:
-      inputs << PersonInputs(person), PushInputs(person);
+      inputs << WindowPersonInputs(person), PushInputs(person);
       break;
   }
   return inputs;

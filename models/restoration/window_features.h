@@ -21,7 +21,6 @@
 #include <array>
 #include <vector>
 
-#include "models/restoration/neighbour_features.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/restoration_view.h"
 
@@ -56,6 +55,9 @@ void FillPendulumInputs(const FramePath<Value>& path, double dt, int frame, Rows
 
 int WindowInputRows(RestorationView view);
 int WindowOutputRows(RestorationView view);
+
+// The person's part, which no pendulum changes: a column per frame.
+Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person);
 
 // A column per frame, of person n.
 Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,

@@ -82,8 +82,7 @@ std::vector<WindowTangent::Joints> WindowTangent::At(const RestorationInput& per
                                                      const std::vector<int>& frames) const {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(heading);
-  const Eigen::MatrixXd inputs =
-      WindowInputs({person}, 0, RestorationView::kPendulum).cast<double>();
+  const Eigen::MatrixXd of_person = WindowPersonInputs(person).cast<double>();
   const auto path = TurnedPath(person, heading);
   const bool with = !derivatives.empty();
   const Eigen::Index columns = with ? derivatives.front().cols() : 0;
@@ -92,8 +91,9 @@ std::vector<WindowTangent::Joints> WindowTangent::At(const RestorationInput& per
            : FramePath<TangentBlock>({TangentBlock(4, 0)}, person.dt);
   std::vector<Joints> all;
   for (const int t : frames) {
-    Eigen::VectorXd x = inputs.col(t);
-    FillPendulumInputs(path, person.dt, t, x.head(kWindowPendulumInputs));  // in double precision
+    Eigen::VectorXd x(kWindowPendulumInputs + of_person.rows());
+    FillPendulumInputs(path, person.dt, t, x.head(kWindowPendulumInputs));
+    x.tail(of_person.rows()) = of_person.col(t);
     x = (x - mean_).cwiseQuotient(spread_);
     Eigen::MatrixXd dx = Eigen::MatrixXd::Zero(x.size(), columns);
     if (with) FillPendulumInputs(by_path, person.dt, t, dx.topRows(kWindowPendulumInputs));

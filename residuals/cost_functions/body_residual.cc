@@ -44,26 +44,15 @@ int BodyResidual::num_rows() const {
   return static_cast<int>(frames_.size()) * num_people() * kRows;
 }
 
-void BodyResidual::FrameRows(const WindowTangent::Joints& joints, int frame, int person,
-                             double weight, Eigen::VectorXd* residuals,
-                             RowMajorMatrix* rows) const {
+void BodyResidual::RowsOfFrame(const WindowTangent::Joints& joints, int frame, int person,
+                               double weight, Eigen::VectorXd* residuals,
+                               RowMajorMatrix* rows) const {
   const ResidualSigmas& sigmas = problem().sigmas;
   const double sigma = sigmas.hip * std::sqrt(static_cast<double>(kBodyJoints));
   const Eigen::Map<const Eigen::VectorXd> recorded(motions_[person][frame].data(), kRows);
   const Eigen::VectorXd r = (joints.positions - recorded) / sigma;
-  const double robust = sigmas.OfFrames();
-  const double w = RobustWeight<double>(r.squaredNorm(), robust);
-  *residuals = weight * w * r;
-  if (rows->cols() == 0) return;
-  *rows = (weight / sigma) * joints.derivatives;
-  if (robust <= 0.0) return;
-  // d(w r) = w dr + r (2 dw/ds) r' dr, as in FrameResidualWithJacobian.
-  const double squared_scale = robust * robust;
-  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
-  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
-  const Eigen::RowVectorXd along = r.transpose() * *rows;
-  *rows *= w;
-  *rows += (2.0 * slope) * r * along;
+  *rows = joints.derivatives / sigma;
+  *residuals = RobustlyWeighted(r, weight, sigmas.OfFrames(), rows);
 }
 
 RolloutStatus BodyResidual::Visit(double const* const* blocks, Derivatives derivatives,
@@ -85,7 +74,7 @@ RolloutStatus BodyResidual::Visit(double const* const* blocks, Derivatives deriv
     const auto joints = data_->restoration->At(person, by_path, frames_);
     for (size_t k = 0; k < frames_.size(); ++k) {
       const double weight = problem().weight * problem().recording->Weight(n, frames_[k]) * scale_;
-      FrameRows(joints[k], frames_[k], n, weight, &residuals, &rows);
+      RowsOfFrame(joints[k], frames_[k], n, weight, &residuals, &rows);
       visit({n, weight, kRows, residuals.data(), rows.data()});
     }
   }

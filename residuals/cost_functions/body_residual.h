@@ -45,8 +45,8 @@ class BodyResidual : public CondensedRows {
 
  private:
   // Residuals of a frame, and their rows where there are derivatives.
-  void FrameRows(const WindowTangent::Joints& joints, int frame, int person, double weight,
-                 Eigen::VectorXd* residuals, RowMajorMatrix* rows) const;
+  void RowsOfFrame(const WindowTangent::Joints& joints, int frame, int person, double weight,
+                   Eigen::VectorXd* residuals, RowMajorMatrix* rows) const;
 
   std::shared_ptr<const BodyData> data_;
   const std::vector<BodyMotion>& motions_;

@@ -7,9 +7,8 @@ namespace pushid {
 
 CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem,
                                    JacobianMethod method)
-    : CondensedRows(std::move(problem)), method_(method) {
-  if (method != JacobianMethod::kAutodiff) return;
-  oracle_ = MakeRolloutCost(std::make_shared<RolloutProblem>(this->problem()), method);
+    : CondensedRows(problem), method_(method) {
+  if (method == JacobianMethod::kAutodiff) oracle_ = MakeRolloutCost(std::move(problem), method);
 }
 
 RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives derivatives,

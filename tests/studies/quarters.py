@@ -160,7 +160,7 @@ def trained(setting, part, *flags):
 
 
 def chain(setting, part):
-    """The chain and siMLPe, trained on a part and judged on all else; siMLPe is given 12 frames and judged after them."""
+    """The chain and siMLPe, trained on a part and judged on all else; siMLPe is given 12 frames, which count as well."""
     judged = [e["id"] for e in recordings(setting) if e["id"] not in part]
     view = "--sees=neighbours" if setting == "groups" else "--sees=pendulum"
     return studies.on_recordings("pushid-evaluate", setting, f"--model={fitted(setting, part).path}",

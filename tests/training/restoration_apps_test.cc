@@ -166,6 +166,11 @@ TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
   const AppRun no_folder = RunApp("pushid-fit", {Recordings(), "--body_weight=1"});
   EXPECT_EQ(no_folder.exit_code, 1);
   EXPECT_TRUE(Contains(no_folder.err, "--body_restoration"));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--check"}),
+                      {"--body_restoration"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1",
+                                            "--body_restoration=" + Path("nowhere")}),
+                      {"--body_restoration names the folder"}));
   const AppRun rigid =
       RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--body_restoration=rigid"});
   EXPECT_EQ(rigid.exit_code, 1);
@@ -261,6 +266,7 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   refused(train, {"--out=" + Path("x"), "--kind=cvae", "--sees=neighbours"}, {"--kind=window"});
   refused(train, {"--out=" + Path("x"), "--kind=simlpe", "--sees=pose"}, {"--sees"});
   refused(train, {"--out=" + Path("x"), "--nohalves"}, {"--kind=cvae"});
+  refused(train, {"--out=" + Path("x"), "--coordinates=ldp"}, {"--coordinates", "--kind=cvae"});
   refused(train, {"--out=" + Path("x"), "--body_weight=1", "--sees=pose"}, {"--body_weight"});
   EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {Recordings(), "--body_weight=1"}),
                       {"--body_weight", "pushid-train-restoration --crossvalidate"}));

@@ -67,10 +67,10 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
   const std::vector<RestorationInput> people = {
       MovingPerson(StandingPose(), 80, 20),
       MovingPerson(Placed(StandingPose(), 0.0, {0.6, 0.0, 0.0}), 70, 20)};
-  for (const char* name : {"neighbours", "pose"}) {
-    const WindowWeights weights = RandomWindow(1, *RestorationViewFromName(name));
+  for (const RestorationView view : {RestorationView::kNeighbours, RestorationView::kPose}) {
+    const WindowWeights weights = RandomWindow(1, view);
     RestorationFile file;
-    file.settings["sees"] = name;
+    file.settings["sees"] = NameOf(view);
     AddTensors("inputs", weights.inputs, &file.tensors);
     AddTensors("network", weights.network, &file.tensors);
     ASSERT_FALSE(WriteRestorationFile(Path("v"), file));
@@ -90,7 +90,7 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
       << "draws repeat";
   WriteWindow();
   Replace("\"settings\": {", "\"settings\": {\"sees\": \"people\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "pendulum, neighbours or pose"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "must be one of pendulum, neighbours, pose"));
 }
 
 TEST_F(RestorationFilesTest, RigidNeedsNoFolder) {

@@ -31,7 +31,7 @@ TEST(ForceStoryTest, OfTheOneInTheMiddle) {
   EXPECT_EQ(story.moments[0].text, "still");
   EXPECT_GE(story.moments[0].to, 30) << "before the push";
   const StoryMoment& second = story.moments[1];
-  EXPECT_EQ(second.cause, Cause::kBehind);
+  EXPECT_EQ(second.cause, Cause::kFromBehind);
   EXPECT_TRUE(Contains(second.text, "pushed from behind by p00, up to "));
   EXPECT_GT(second.impulse, 0.0);
   // Whole, without gaps, as the forces say.
@@ -62,7 +62,7 @@ TEST(ForceStoryTest, ThePushedAndTheRichest) {
   const FormationRun run = RunFormation(ContactModel(), LineOf(3, 120.0), 200);
   const ForceStory pushed = StoryOf(run.recording, run.prediction, 0);
   EXPECT_TRUE(Has(pushed, Cause::kPush));
-  EXPECT_FALSE(Has(pushed, Cause::kBehind)) << "nobody stands there";
+  EXPECT_FALSE(Has(pushed, Cause::kFromBehind)) << "nobody stands there";
   const ForceStory richest = RichestStory(run.recording, run.prediction);
   EXPECT_EQ(richest.person, 1) << "the last has nobody in front";
   const FormationRun alone = RunFormation(ContactModel(), LineOf(1, 120.0), 60);

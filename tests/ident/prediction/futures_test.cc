@@ -71,8 +71,12 @@ TEST(Futures, OfTheTruthHoldWhatTheySay) {
   ASSERT_TRUE(summary.ok()) << summary.error().ToString();
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
     const std::string name = kFuturesMetrics[i].name;
-    if (name.find("inside90") == 0) EXPECT_NEAR(summary.value().mean[i], 0.9, 0.1) << name;
-    if (name.find("inside50") == 0) EXPECT_NEAR(summary.value().mean[i], 0.5, 0.12) << name;
+    if (name.find("inside90") == 0) {
+      EXPECT_NEAR(summary.value().mean[i], 0.9, 0.1) << name;
+    }
+    if (name.find("inside50") == 0) {
+      EXPECT_NEAR(summary.value().mean[i], 0.5, 0.12) << name;
+    }
   }
 }
 

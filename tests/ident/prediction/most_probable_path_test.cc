@@ -44,8 +44,12 @@ TEST(PathBetween, WhereTheModelGoesIsMostProbable) {
     end.state.q[0] += further;
     const auto found = PathBetween(model, body, 60.0, from, end, kFrames);
     ASSERT_TRUE(found.ok()) << found.error().ToString();
-    if (further == 0.0) EXPECT_LT(found.value().noise_action, 1.0);
-    if (further == 0.4) EXPECT_GT(found.value().noise_action, 1.0);
+    if (further == 0.0) {
+      EXPECT_LT(found.value().noise_action, 1.0);
+    }
+    if (further == 0.4) {
+      EXPECT_GT(found.value().noise_action, 1.0);
+    }
     EXPECT_GT(found.value().action(), before);
     before = found.value().action();
     EXPECT_EQ(found.value().states.At(0, 0).q, from.state.q);

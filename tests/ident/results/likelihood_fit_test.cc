@@ -64,7 +64,9 @@ TEST(InnovationFit, FindsPlantedNoiseAndGains) {
                                                 : study.parameters[id];
       ++free;
       covered += e.lower95 <= truth && truth <= e.upper95;
-      if (IsNoiseParameter(id)) EXPECT_NEAR(e.value, truth, 0.15 * truth) << e.name;
+      if (IsNoiseParameter(id)) {
+        EXPECT_NEAR(e.value, truth, 0.15 * truth) << e.name;
+      }
     }
     ASSERT_TRUE(result.likelihood);
     EXPECT_EQ(result.likelihood->parameters, 12);

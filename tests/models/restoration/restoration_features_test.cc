@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "models/restoration/cvae_features.h"
+#include "models/restoration/neighbour_features.h"
 #include "models/restoration/window_features.h"
 #include "tests/models/body_samples.h"
 
@@ -112,6 +113,8 @@ TEST(NeighbourFeaturesTest, NumbersByHand) {
   EXPECT_NEAR(at[4 + 3 * 3], 0.16, 1e-6);  // lag 6
   EXPECT_NEAR(at[4 + 3 * 6], 0.6, 1e-4);   // 1 cm a frame
   EXPECT_NEAR(at[4 + 3 * 6 + 2], people[1].q[10][2], 1e-6);
+  EXPECT_NEAR(inputs(4 + 3 * 6, 0), 0.6, 1e-4) << "at the ends as well";
+  EXPECT_NEAR(inputs(4 + 3 * 6, 29), 0.6, 1e-4);
   EXPECT_EQ(at.segment(26, 26).norm(), 0.0f) << "nobody behind";
   EXPECT_GT(at[2 * 26 + 1], 0.5) << "to the left";
   EXPECT_EQ(at.segment(3 * 26, 26).norm(), 0.0f) << "nobody to the right";

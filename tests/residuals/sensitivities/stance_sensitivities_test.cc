@@ -60,7 +60,9 @@ TEST(StanceSensitivities, EqualJetsThroughTheSwitch) {
         most = std::max(most, state.step);
       }
       (most > 0.9 ? stepped : stood) += 1;
-      if (most > 0.9) EXPECT_LT(recording.states[0].back().step, 0.5);
+      if (most > 0.9) {
+        EXPECT_LT(recording.states[0].back().step, 0.5);
+      }
       AddNoise(0.01, &random, &recording);
       const ParameterMap map = EveryParameterMap({});
       const auto problem = MakeRolloutProblem(recording, options, map, ResidualSigmas{}, 1.0, 0);
