@@ -16,12 +16,14 @@ using namespace pushid;
 
 // No flag names the files that the patterns find.
 MaybeError CheckFilesKept(const Manifest& manifest, const std::string& path) {
+  const OutputFiles outputs;
   for (const ManifestRecording& recording : manifest.recordings) {
     std::vector<std::string> files = recording.motion;
     files.push_back(recording.push_csv);
     for (const std::string& file : files) {
       if (file.empty()) continue;
-      if (MaybeError error = CheckNoOutput("--folder", ResolvePath(path, file))) return error;
+      const MaybeError error = outputs.CheckNotRead("--folder", ResolvePath(path, file));
+      if (error) return error;
     }
   }
   return std::nullopt;

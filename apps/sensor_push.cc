@@ -63,8 +63,9 @@ struct ReadSensors {
 
 Result<ReadSensors> Read(const SensorFlags& flags, const Recording& recorded) {
   ReadSensors read;
+  const OutputFiles outputs;
   for (SensorChoice sensor : flags.sensors) {
-    if (MaybeError error = CheckNoOutput("--sensors", sensor.file)) return *error;
+    if (MaybeError error = outputs.CheckNotRead("--sensors", sensor.file)) return *error;
     for (const RecordedPerson& person : recorded.people) FillFromMotion(person, &sensor);
     Result<SensorRecord> record = ReadSensor(sensor);
     if (!record.ok()) return record.error();

@@ -26,34 +26,34 @@ namespace pushid {
 inline constexpr double kContactOnset = 0.05;     // m, w above
 inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
 
-// Position (x, y) of the contact point: at a height of the body, which has the rod of frame 0
-// even where the rod moves.
 template <typename T>
-Eigen::Matrix<T, 2, 1> ContactPoint(const Body& body, const Vector4<T>& q, const T& height) {
-  using std::cos, std::sin;
+using Vector2 = Eigen::Matrix<T, 2, 1>;
+
+// Position (x, y) of the contact point: at a height of the body, which has the rod of frame 0
+// even where the rod moves. Q: of the state, a constant (double) at frame 0.
+template <typename T, typename Q>
+Vector2<T> ContactPoint(const Body& body, const Vector4<Q>& q, const Angles<Q>& angles,
+                        const T& height) {
   const T reach = height * body.rod_length;
-  return {q[0] + reach * sin(q[2]), q[1] - reach * cos(q[2]) * sin(q[3])};
+  return {q[0] + reach * angles.s_th, q[1] - reach * angles.c_th * angles.s_ph};
 }
 
 template <typename T>
-Eigen::Matrix<T, 2, 1> ContactVelocity(const Body& body, const PendulumState<T>& state,
-                                       const T& height) {
-  using std::cos, std::sin;
+Vector2<T> ContactVelocity(const Body& body, const Angles<T>& angles, const Vector4<T>& qd,
+                           const T& height) {
   const T reach = height * body.rod_length;
-  const T s_th = sin(state.q[2]), c_th = cos(state.q[2]);
-  const T s_ph = sin(state.q[3]), c_ph = cos(state.q[3]);
-  return {state.qd[0] + reach * c_th * state.qd[2],
-          state.qd[1] + reach * (s_th * s_ph * state.qd[2] - c_th * c_ph * state.qd[3])};
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  return {qd[0] + reach * c_th * qd[2],
+          qd[1] + reach * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3])};
 }
 
 // A horizontal force at the contact point as a generalized force (virtual work).
 template <typename T>
-Vector4<T> ContactGeneralizedForce(const Body& body, const Vector4<T>& q, const T& height,
+Vector4<T> ContactGeneralizedForce(const Body& body, const Angles<T>& angles, const T& height,
                                    const T& fx, const T& fy) {
-  using std::cos, std::sin;
   const T reach = height * body.rod_length;
-  return {fx, fy, reach * (fx * cos(q[2]) + fy * sin(q[2]) * sin(q[3])),
-          -reach * fy * cos(q[2]) * cos(q[3])};
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  return {fx, fy, reach * (fx * c_th + fy * s_th * s_ph), -reach * fy * c_th * c_ph};
 }
 
 template <typename T>
@@ -62,9 +62,6 @@ T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
   constexpr double kTiny = 1e-12;  // m^2: a derivative also where two points coincide
   return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
 }
-
-template <typename T>
-using Vector2 = Eigen::Matrix<T, 2, 1>;
 
 // The load x, m, of two points at the distance d that stood at r0 from each other; not positive
 // without any.
@@ -78,18 +75,11 @@ T ContactLoad(const ParameterSet<T>& p, const T& d, const Vector2<T>& r0) {
   return free - d;
 }
 
-// From j's contact point to n's.
-template <typename T>
-Vector2<T> BetweenContactPoints(const Pair& pair, const Vector4<T>& q_n, const Vector4<T>& q_j,
-                                const T& height) {
-  return ContactPoint<T>(pair.body_n, q_n, height) - ContactPoint<T>(pair.body_j, q_j, height);
-}
-
-// At frame 0.
+// From j's contact point to n's at frame 0.
 template <typename T>
 Vector2<T> BetweenFirstContactPoints(const Pair& pair, const T& height) {
-  return BetweenContactPoints<T>(pair, pair.q0_n.template cast<T>(), pair.q0_j.template cast<T>(),
-                                 height);
+  return ContactPoint(pair.body_n, pair.q0_n, Angles<double>(pair.q0_n), height) -
+         ContactPoint(pair.body_j, pair.q0_j, Angles<double>(pair.q0_j), height);
 }
 
 // The load of two people.
@@ -97,7 +87,9 @@ template <typename T>
 T LoadBetween(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
               const Vector4<T>& q_j) {
   const T& height = p[kContactHeight];
-  const T d = ContactDistance<T>(BetweenContactPoints(pair, q_n, q_j, height), p[kContactKappa]);
+  const Vector2<T> r = ContactPoint(pair.body_n, q_n, Angles<T>(q_n), height) -
+                       ContactPoint(pair.body_j, q_j, Angles<T>(q_j), height);
+  const T d = ContactDistance<T>(r, p[kContactKappa]);
   // Free distances are never larger than the contact distance.
   if (RealPart(d) >= RealPart(p[kContactDistance])) return T(0.0);
   return ContactLoad<T>(p, d, BetweenFirstContactPoints(pair, height));
@@ -126,16 +118,18 @@ struct ContactTerm {
   static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
                   const PendulumState<T>& j, PairForce<T>* force) {
     const T& height = p[kContactHeight];
-    const Vector2<T> r = BetweenContactPoints(pair, n.q, j.q, height);
+    const Angles<T> of_n(n.q), of_j(j.q);
+    const Vector2<T> r =
+        ContactPoint(pair.body_n, n.q, of_n, height) - ContactPoint(pair.body_j, j.q, of_j, height);
     // Free distances are never larger than the contact distance.
     if (RealPart(ContactDistance(r, p[kContactKappa])) >= RealPart(p[kContactDistance])) return;
-    const Vector2<T> v =
-        ContactVelocity(pair.body_n, n, height) - ContactVelocity(pair.body_j, j, height);
+    const Vector2<T> v = ContactVelocity(pair.body_n, of_n, n.qd, height) -
+                         ContactVelocity(pair.body_j, of_j, j.qd, height);
     const Vector2<T> r0 = BetweenFirstContactPoints(pair, height);
     const Vector2<T> f = ContactForce<kSpring, kDamping, T>(p, r, v, r0);
     if (RealPart(f[0]) == 0.0 && RealPart(f[1]) == 0.0) return;
-    force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.q, height, f[0], f[1]);
-    force->on_j += ContactGeneralizedForce<T>(pair.body_j, j.q, height, T(-f[0]), T(-f[1]));
+    force->on_n += ContactGeneralizedForce<T>(pair.body_n, of_n, height, f[0], f[1]);
+    force->on_j += ContactGeneralizedForce<T>(pair.body_j, of_j, height, T(-f[0]), T(-f[1]));
     force->acts = true;
   }
 };

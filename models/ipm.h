@@ -177,11 +177,15 @@ PendulumState<T> Step(const PendulumState<T>& state, const Vector4<T>& qdd, doub
 }
 
 template <typename T, typename L>
-Vector3<T> HipPosition(const BodyOf<L>& body, const Vector4<T>& q) {
-  using std::cos, std::sin;
+Vector3<T> HipPosition(const BodyOf<L>& body, const Angles<T>& angles, const Vector4<T>& q) {
   const L l = body.rod_length;
-  return {q[0] + l * sin(q[2]), q[1] - l * cos(q[2]) * sin(q[3]),
-          body.cart_height + l * cos(q[2]) * cos(q[3])};
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  return {q[0] + l * s_th, q[1] - l * c_th * s_ph, body.cart_height + l * c_th * c_ph};
+}
+
+template <typename T, typename L>
+Vector3<T> HipPosition(const BodyOf<L>& body, const Vector4<T>& q) {
+  return HipPosition(body, Angles<T>(q), q);
 }
 
 // The generalized force whose acceleration is qdd: M qdd + C + G.

@@ -96,7 +96,8 @@ class PairFinder {
       const Vector4<double> q(RealPart(t[0]), RealPart(t[1]), RealPart(t[2]), RealPart(t[3]));
       cart_[n] = q.head<2>();
       if (!terms_.Contact()) continue;
-      point_[n] = ContactPoint<double>(scene_->people[n].body, q, parameters_[kContactHeight]);
+      point_[n] =
+          ContactPoint(scene_->people[n].body, q, Angles<double>(q), parameters_[kContactHeight]);
       lean_squared = std::max(lean_squared, (point_[n] - cart_[n]).squaredNorm());
     }
     grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean_squared)));

@@ -26,9 +26,10 @@ template <int kColumns>
 FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumState<double>& state,
                                  const MeasuredFrame& measured, const ResidualSigmas& sigmas,
                                  Eigen::Matrix<double, kFrameResiduals, kColumns>* jacobian) {
-  const FrameVector<double> r = RawFrameResidual(body, state, measured, sigmas);
+  const Angles<double> angles(state.q);
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  const FrameVector<double> r = RawFrameResidual(body, state, angles, measured, sigmas);
   const double l = body.rod_length;
-  const auto [s_th, c_th, s_ph, c_ph] = Angles<double>(state.q);
   Eigen::Matrix<double, kFrameResiduals, kColumns>& j = *jacobian;
   j.setZero();
   j(0, 0) = j(1, 1) = 1.0 / sigmas.hip;

@@ -56,17 +56,18 @@ struct MeasuredFrame {
 template <typename T>
 using FrameVector = Eigen::Matrix<T, kFrameResiduals, 1>;
 
-// r before the robust weight.
+// r before the robust weight. angles: of the state.
 // body: with the lengths of that frame (BodyNow, where the rod moves).
 template <typename T, typename L>
 FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
-                                const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
+                                const Angles<T>& angles, const MeasuredFrame& measured,
+                                const ResidualSigmas& sigmas) {
   FrameVector<T> r;
   if (sigmas.loss == FrameLoss::kLdp) {
     for (int i = 0; i < 2; ++i) r[i] = (state.q[i] - measured.state.q[i]) / sigmas.hip;
     r[2] = state.qd[3] / sigmas.rate;
   } else {
-    r.template head<3>() = (HipPosition(body, state.q) - measured.hip) / T(sigmas.hip);
+    r.template head<3>() = (HipPosition(body, angles, state.q) - measured.hip) / T(sigmas.hip);
   }
   for (int i = 0; i < 2; ++i) {
     r[3 + i] = (state.qd[i] - measured.state.qd[i]) / sigmas.velocity;
@@ -121,7 +122,7 @@ void CorrectForRobustLoss(const Residual& residual, double weight, double robust
 template <typename T, typename L>
 FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
                              const MeasuredFrame& measured, const ResidualSigmas& sigmas) {
-  FrameVector<T> r = RawFrameResidual(body, state, measured, sigmas);
+  FrameVector<T> r = RawFrameResidual(body, state, Angles<T>(state.q), measured, sigmas);
   if (sigmas.loss == FrameLoss::kLdp) {
     for (T& one : r) one *= measured.weight * RobustWeight<T>(one * one, sigmas.robust);
     return r;

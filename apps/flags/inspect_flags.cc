@@ -21,7 +21,7 @@ Result<InspectFlags> InspectFlagsFromCommandLine(const std::vector<std::string>&
     if (files.size() > 1) {
       return Error{"--svg_out draws one file, not " + std::to_string(files.size())};
     }
-    if (MaybeError error = CheckNoOutput("the command line", files[0])) return *error;
+    if (MaybeError error = OutputFiles().CheckNotRead("the command line", files[0])) return *error;
     if (MaybeError error = CheckOutputFiles({flags.svg_out})) return *error;
   }
   if (FLAGS_mapping.empty()) return flags;

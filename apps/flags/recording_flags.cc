@@ -102,12 +102,13 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   // Pushes may be written again where they were read; a motion cannot be had back.
   const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
   if (!manifest.ok()) return manifest.error();
+  const OutputFiles outputs;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;
     if (!entry.mapping.empty()) files.push_back(entry.mapping);
     for (const std::string& file : files) {
       const MaybeError error =
-          CheckNoOutput("recording " + entry.id, ResolvePath(entry.manifest, file));
+          outputs.CheckNotRead("recording " + entry.id, ResolvePath(entry.manifest, file));
       if (error) return *error;
     }
   }

@@ -20,22 +20,6 @@ constexpr const char* kInputs[] = {
     "poses_from", "sensor",   "masses",   "sensors", "mapping",   "generator",
     "plan",       "flagfile", "formation"};
 
-struct NamedPath {
-  std::string name, path;
-  std::string help;  // of the flag
-};
-
-std::vector<NamedPath> Outputs() {
-  std::vector<gflags::CommandLineFlagInfo> flags;
-  gflags::GetAllFlags(&flags);
-  std::vector<NamedPath> outputs;
-  for (const gflags::CommandLineFlagInfo& flag : flags) {
-    if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
-    outputs.push_back({"--" + flag.name, flag.current_value, flag.description});
-  }
-  return outputs;
-}
-
 // Through symbolic and hard links too; a file need not exist.
 bool Same(const std::string& a, const std::string& b) {
   std::error_code failed;
@@ -62,19 +46,19 @@ constexpr OutputKind kKinds[] = {{"svg_out", "(SVG", ".svg"},
                                  {"csv_out", nullptr, ".csv"},
                                  {"json_out", nullptr, ".json"}};
 
-bool Writes(const NamedPath& output, const OutputKind& kind) {
-  return EndsWith(output.name, kind.flag) ||
-         (kind.help != nullptr && output.help.find(kind.help) != std::string::npos);
+// name, help: of the flag.
+bool Writes(const std::string& name, const std::string& help, const OutputKind& kind) {
+  return EndsWith(name, kind.flag) ||
+         (kind.help != nullptr && help.find(kind.help) != std::string::npos);
 }
 
 // A page under the name of a picture, say.
-MaybeError CheckKind(const NamedPath& output) {
+MaybeError CheckKind(const std::string& name, const std::string& path, const std::string& help) {
   for (const OutputKind& kind : kKinds) {
-    if (!Writes(output, kind) || EndsWith(output.path, kind.ending)) continue;
+    if (!Writes(name, help, kind) || EndsWith(path, kind.ending)) continue;
     for (const OutputKind& other : kKinds) {
-      if (!EndsWith(output.path, other.ending) || Writes(output, other)) continue;
-      return Error{output.name + " writes " + kind.ending + ", but " + output.path + " ends in " +
-                   other.ending};
+      if (!EndsWith(path, other.ending) || Writes(name, help, other)) continue;
+      return Error{name + " writes " + kind.ending + ", but " + path + " ends in " + other.ending};
     }
   }
   return std::nullopt;
@@ -82,12 +66,29 @@ MaybeError CheckKind(const NamedPath& output) {
 
 }  // namespace
 
+OutputFiles::OutputFiles() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
+    files_.push_back({"--" + flag.name, flag.current_value, flag.description});
+  }
+}
+
+MaybeError OutputFiles::CheckNotRead(const std::string& reader, const std::string& path) const {
+  for (const NamedPath& output : files_) {
+    if (Same(output.path, path)) return BothName(reader, output.name, path);
+  }
+  return std::nullopt;
+}
+
 MaybeError CheckOutputs() {
-  const std::vector<NamedPath> outputs = Outputs();
-  for (size_t i = 0; i < outputs.size(); ++i) {
+  const OutputFiles outputs;
+  const auto& files = outputs.files_;
+  for (size_t i = 0; i < files.size(); ++i) {
     for (size_t k = 0; k < i; ++k) {
-      if (!Same(outputs[i].path, outputs[k].path)) continue;
-      return BothName(outputs[k].name, outputs[i].name, outputs[i].path);
+      if (!Same(files[i].path, files[k].path)) continue;
+      return BothName(files[k].name, files[i].name, files[i].path);
     }
   }
   for (const char* input : kInputs) {
@@ -97,18 +98,11 @@ MaybeError CheckOutputs() {
     // A formation may be a word as well as a file.
     if (flag.name == "formation" && !fs::is_regular_file(flag.current_value)) continue;
     for (const std::string& path : ManifestPaths(flag.current_value)) {
-      if (MaybeError error = CheckNoOutput("--" + flag.name, path)) return error;
+      if (MaybeError error = outputs.CheckNotRead("--" + flag.name, path)) return error;
     }
   }
-  for (const NamedPath& output : outputs) {
-    if (MaybeError error = CheckKind(output)) return error;
-  }
-  return std::nullopt;
-}
-
-MaybeError CheckNoOutput(const std::string& reader, const std::string& path) {
-  for (const NamedPath& output : Outputs()) {
-    if (Same(output.path, path)) return BothName(reader, output.name, path);
+  for (const auto& [name, path, help] : files) {
+    if (MaybeError error = CheckKind(name, path, help)) return error;
   }
   return std::nullopt;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/text_ends.h"
@@ -20,7 +21,21 @@ inline bool IsOutputFlag(const std::string& name) {
 // Between the flags, as they are given. RunApp asks for it before anything is done.
 MaybeError CheckOutputs();
 
-// For an input that no flag names: `reader` says what does ("--sensors", "the command line").
-MaybeError CheckNoOutput(const std::string& reader, const std::string& path);
+// The files that the output flags name.
+class OutputFiles {
+ public:
+  OutputFiles();
+
+  // For an input that no flag names: `reader` says what does ("--sensors", "the command line").
+  MaybeError CheckNotRead(const std::string& reader, const std::string& path) const;
+
+ private:
+  friend MaybeError CheckOutputs();
+  struct NamedPath {
+    std::string name, path;
+    std::string help;  // of the flag
+  };
+  std::vector<NamedPath> files_;
+};
 
 }  // namespace pushid

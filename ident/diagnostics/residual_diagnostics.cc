@@ -159,19 +159,18 @@ Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
     l.parameters.push_back(problem.options().table[f.parameter].name);
     l.units.push_back(problem.options().table[f.parameter].unit);
   }
-  const Covariance covariance = CovarianceAt(problem, point);
-  for (int g = 0; g < static_cast<int>(covariance.moves.cols()); ++g) {
+  for (int g = 0; g < static_cast<int>(uncertainty.left_out.size()); ++g) {
     std::vector<double> change, in_errors;
     for (int i = 0; i < problem.map().num_shared(); ++i) {
       const Transform transform = fitted[i].transform;
-      const double move = covariance.moves(i, g);
+      const double move = uncertainty.moves(i, g);
       const double error = std::sqrt(std::max(0.0, uncertainty.covariance(i, i)));
       change.push_back(ToNatural(transform, point.shared[i] + move) -
                        ToNatural(transform, point.shared[i]));
       const bool known = uncertainty.estimates[i].status != EstimateStatus::kUnidentifiable;
       in_errors.push_back(known && error > 0.0 ? move / error : 0.0);
     }
-    l.recordings.push_back(problem.recordings()[covariance.recordings[g]].id);
+    l.recordings.push_back(problem.recordings()[uncertainty.left_out[g]].id);
     l.change.push_back(change);
     l.in_errors.push_back(in_errors);
   }

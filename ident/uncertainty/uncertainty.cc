@@ -302,6 +302,8 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   u.clustered_by = clusters.by;
   u.two_way = clusters.two_way;
   u.clustered = spread.clustered.size() > 0;
+  u.moves = c.moves;
+  u.left_out = c.recordings;
   u.condition_number = c.directions.Condition();
   u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;

@@ -112,6 +112,9 @@ struct Uncertainty {
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
   Eigen::MatrixXd correlation;      // of that covariance
+  // One column for each of the recordings `left_out`: what leaving it out would move.
+  Eigen::MatrixXd moves;
+  std::vector<int> left_out;
   std::vector<NullDirection> null_directions;
   // Sentences of directions in which priors and demands decide (held_directions.h).
   std::vector<std::string> held_directions;

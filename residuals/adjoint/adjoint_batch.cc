@@ -170,7 +170,8 @@ Vector4<double> AdjointGradient::Batch::StepBack(const Walker& walker,
   SelfForce::Jacobian jacobian;
   NetForceJacobian(walker.scene(), options_, walker.self, p, walker.person, step, state, before,
                    &jacobian);
-  const Matrix4<double> rigid = InverseDynamicsJacobian(body, state, walker.acceleration[step]);
+  const Matrix4<double> rigid =
+      InverseDynamicsJacobian(body, Angles<double>(state.q), state.qd, walker.acceleration[step]);
   jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
   jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
   s.tail<4>() = g;

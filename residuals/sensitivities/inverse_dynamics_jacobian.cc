@@ -7,11 +7,11 @@
 namespace pushid {
 
 // Written out: automatic derivatives of these four rows took a tenth of a Jacobian.
-Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
-                                        const Vector4<double>& a) {
-  const auto [s_th, c_th, s_ph, c_ph] = Angles<double>(state.q);
+Matrix4<double> InverseDynamicsJacobian(const Body& body, const Angles<double>& angles,
+                                        const Vector4<double>& qd, const Vector4<double>& a) {
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const double ml = body.point_mass() * body.rod_length, l = body.rod_length;
-  const double thd = state.qd[2], phd = state.qd[3], both = thd * thd + phd * phd;
+  const double thd = qd[2], phd = qd[3], both = thd * thd + phd * phd;
   const double s2 = 2.0 * s_th * c_th, c2 = c_th * c_th - s_th * s_th;
   const double s_s = s_th * s_ph, s_c = s_th * c_ph, c_s = c_th * s_ph, c_c = c_th * c_ph;
   Matrix4<double> by;  // rows x, y, theta, phi; by theta, phi and their rates

@@ -8,36 +8,34 @@ namespace {
 
 // A person's contact point by [x, y, theta, phi, height], and its velocity by these and the rates.
 struct PointJacobian {
+  Angles<double> angles;
   Eigen::Vector2d place, velocity;
   Eigen::Matrix<double, 2, 8> place_by_state, velocity_by_state;
   Eigen::Vector2d place_by_height, velocity_by_height;
 };
 
+// Written out: automatic derivatives of these took as long as all that contact does.
 PointJacobian PointOf(const Body& body, const PendulumState<double>& state, double height) {
-  using Jet = ceres::Jet<double, 5>;  // theta, phi, thetad, phid, height
-  PendulumState<Jet> jets;
-  for (int i = 0; i < 2; ++i) {
-    jets.q[i] = Jet(state.q[i]);
-    jets.qd[i] = Jet(state.qd[i]);
-    jets.q[2 + i] = Jet(state.q[2 + i], i);
-    jets.qd[2 + i] = Jet(state.qd[2 + i], 2 + i);
-  }
-  const Jet h(height, 4);
-  const Vector2<Jet> place = ContactPoint<Jet>(body, jets.q, h);
-  const Vector2<Jet> velocity = ContactVelocity(body, jets, h);
+  const double l = body.rod_length, reach = height * l;
   PointJacobian point;
+  point.angles = Angles<double>(state.q);
+  const auto& [s_th, c_th, s_ph, c_ph] = point.angles;
+  const double thd = state.qd[2], phd = state.qd[3];
+  point.place = ContactPoint(body, state.q, point.angles, height);
+  point.velocity = ContactVelocity(body, point.angles, state.qd, height);
+  Eigen::Matrix2d turning;  // of the point by [theta, phi], and of its velocity by their rates
+  turning << reach * c_th, 0.0, reach * s_th * s_ph, -reach * c_th * c_ph;
   point.place_by_state.setZero();
+  point.place_by_state.leftCols<2>().setIdentity();
+  point.place_by_state.middleCols<2>(2) = turning;
   point.velocity_by_state.setZero();
-  for (int i = 0; i < 2; ++i) {
-    point.place[i] = place[i].a;
-    point.velocity[i] = velocity[i].a;
-    point.place_by_state(i, i) = point.velocity_by_state(i, 4 + i) = 1.0;
-    point.place_by_state.row(i).segment<2>(2) = place[i].v.head<2>().transpose();
-    point.velocity_by_state.row(i).segment<2>(2) = velocity[i].v.head<2>().transpose();
-    point.velocity_by_state.row(i).segment<2>(6) = velocity[i].v.segment<2>(2).transpose();
-    point.place_by_height[i] = place[i].v[4];
-    point.velocity_by_height[i] = velocity[i].v[4];
-  }
+  point.velocity_by_state.middleCols<2>(2) << -reach * s_th * thd, 0.0,
+      reach * (c_th * s_ph * thd + s_th * c_ph * phd),
+      reach * (s_th * c_ph * thd + c_th * s_ph * phd);
+  point.velocity_by_state.middleCols<2>(4).setIdentity();
+  point.velocity_by_state.rightCols<2>() = turning;
+  point.place_by_height << l * s_th, -l * c_th * s_ph;
+  point.velocity_by_height << l * c_th * thd, l * (s_th * s_ph * thd - c_th * c_ph * phd);
   return point;
 }
 
@@ -62,8 +60,7 @@ ForceJacobian ForceOf(const Pair& pair, const ParameterSet<double>& p, const Poi
     r[i] = Jet(n.place[i] - j.place[i], i);
     v[i] = Jet(n.velocity[i] - j.velocity[i], 2 + i);
   }
-  const Vector2<Jet> r0 = ContactPoint<Jet>(pair.body_n, pair.q0_n.cast<Jet>(), height) -
-                          ContactPoint<Jet>(pair.body_j, pair.q0_j.cast<Jet>(), height);
+  const Vector2<Jet> r0 = BetweenFirstContactPoints(pair, height);
   const Vector2<Jet> f = ContactForce<kSpring, kDamping, Jet>(parameters, r, v, r0);
   ForceJacobian result;
   for (int i = 0; i < 2; ++i) {
@@ -76,14 +73,17 @@ ForceJacobian ForceOf(const Pair& pair, const ParameterSet<double>& p, const Poi
 }
 
 // The generalized force of (fx, fy) on one person by [fx, fy, theta, phi, height].
-Eigen::Matrix<double, 4, 5> GeneralizedByForce(const Body& body, const Vector4<double>& q,
+Eigen::Matrix<double, 4, 5> GeneralizedByForce(const Body& body, const Angles<double>& angles,
                                                double height, const Eigen::Vector2d& f) {
-  using Jet = ceres::Jet<double, 5>;
-  const Vector4<Jet> at{Jet(q[0]), Jet(q[1]), Jet(q[2], 2), Jet(q[3], 3)};
-  const Vector4<Jet> force =
-      ContactGeneralizedForce<Jet>(body, at, Jet(height, 4), Jet(f[0], 0), Jet(f[1], 1));
+  const double l = body.rod_length, reach = height * l;
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  const double on_theta = f[0] * c_th + f[1] * s_th * s_ph, on_phi = -f[1] * c_th * c_ph;
   Eigen::Matrix<double, 4, 5> jacobian;
-  for (int row = 0; row < 4; ++row) jacobian.row(row) = force[row].v.transpose();
+  jacobian << 1.0, 0.0, 0.0, 0.0, 0.0,  //
+      0.0, 1.0, 0.0, 0.0, 0.0,          //
+      reach * c_th, reach * s_th * s_ph, reach * (f[1] * c_th * s_ph - f[0] * s_th),
+      reach * f[1] * s_th * c_ph, l * on_theta,  //
+      0.0, -reach * c_th * c_ph, reach * f[1] * s_th * c_ph, reach * f[1] * c_th * s_ph, l * on_phi;
   return jacobian;
 }
 
@@ -107,8 +107,9 @@ PairJacobian ContactJacobian(const Pair& pair, const ParameterSet<double>& p,
   jacobian.by_parameter.setZero();
   for (int side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1.0 : -1.0;
-    const Eigen::Matrix<double, 4, 5> q = GeneralizedByForce(
-        side == 0 ? pair.body_n : pair.body_j, side == 0 ? n.q : j.q, height, sign * f.force);
+    const Eigen::Matrix<double, 4, 5> q =
+        GeneralizedByForce(side == 0 ? pair.body_n : pair.body_j, (side == 0 ? at_n : at_j).angles,
+                           height, sign * f.force);
     auto by_states = jacobian.by_states.middleRows<4>(4 * side);
     by_states.noalias() = sign * (q.leftCols<2>() * f_by_states);
     by_states.middleCols<2>(8 * side + 2) += q.middleCols<2>(2);

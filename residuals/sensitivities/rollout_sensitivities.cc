@@ -253,7 +253,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
       }
       const Body now_body = BodyNow(body, state.rod, 0.0);
-      const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, state, a);
+      const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, force.angles, state.qd, a);
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
       const auto now = sensitivities->At(t, n);

@@ -79,8 +79,8 @@ class RolloutSensitivities {
 };
 
 // d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
-Matrix4<double> InverseDynamicsJacobian(const Body& body, const PendulumState<double>& state,
-                                        const Vector4<double>& a);
+Matrix4<double> InverseDynamicsJacobian(const Body& body, const Angles<double>& angles,
+                                        const Vector4<double>& qd, const Vector4<double>& a);
 
 // d(M a + C + G)/dl at fixed acceleration a.
 Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,

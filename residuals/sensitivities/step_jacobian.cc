@@ -22,7 +22,7 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   const Vector4<double> a = forces_.AccelerationOf(person, force);
   SelfForce::Jacobian jacobian;
   NetForceJacobian(scene_, options_, self, p, person, frame, state, state.qd, &jacobian);
-  const Matrix4<double> rigid = InverseDynamicsJacobian(body, state, a);
+  const Matrix4<double> rigid = InverseDynamicsJacobian(body, force.angles, state.qd, a);
   Eigen::Matrix<double, 4, 8> of_force = jacobian.by_state;
   of_force.middleCols<2>(2) -= rigid.leftCols<2>();
   of_force.middleCols<2>(6) -= rigid.rightCols<2>();

@@ -117,7 +117,8 @@ TEST(FrameResidual, RobustCostIsPseudoHuber) {
       sigmas.robust = d;
       const PendulumState<double> state = RandomState(magnitude, &random);
       const MeasuredFrame measured = Measure(RandomState(magnitude, &random));
-      const double s = RawFrameResidual(kBody, state, measured, sigmas).squaredNorm();
+      const double s =
+          RawFrameResidual(kBody, state, Angles<double>(state.q), measured, sigmas).squaredNorm();
       const double cost = 0.5 * FrameResidual(kBody, state, measured, sigmas).squaredNorm();
       // (sqrt(1 + x) - 1) without its cancellation.
       const double x = s / (d * d);
@@ -134,10 +135,12 @@ TEST(FrameResidual, WithoutRobustScaleItIsPlain) {
   const PendulumState<double> state = RandomState(1.0, &random);
   const MeasuredFrame measured = Measure(RandomState(1.0, &random));
   EXPECT_EQ(FrameResidual(kBody, state, measured, sigmas),
-            RawFrameResidual(kBody, state, measured, sigmas));
+            RawFrameResidual(kBody, state, Angles<double>(state.q), measured, sigmas));
   sigmas.robust = 1e9;  // so wide a scale is plain least squares too
   const FrameVector<double> wide = FrameResidual(kBody, state, measured, sigmas);
-  EXPECT_LT((wide - RawFrameResidual(kBody, state, measured, sigmas)).norm(), 1e-12);
+  EXPECT_LT(
+      (wide - RawFrameResidual(kBody, state, Angles<double>(state.q), measured, sigmas)).norm(),
+      1e-12);
 }
 
 // A frame's weight scales what it contributes, after the robust weight; at 0 nothing is left.
