@@ -12,7 +12,7 @@
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
-#include "ident/bodies/simlpe_files.h"
+#include "ident/bodies/peer_files.h"
 #include "ident/prediction/input_warnings.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"
@@ -42,9 +42,9 @@ Result<std::optional<BodyEvaluation>> Bodies(const EvaluateFlags& flags,
                      ObservedFrames());
   }
   if (!flags.peer.empty()) {
-    const Result<SimlpeWeights> simlpe = LoadSimlpe(flags.peer);
-    if (!simlpe.ok()) return simlpe.error();
-    for (const BodyRecording& body : bodies.value()) ScoreSimlpe(simlpe.value(), body, &scores);
+    const Result<std::unique_ptr<Peer>> peer = LoadPeer(flags.peer);
+    if (!peer.ok()) return peer.error();
+    for (const BodyRecording& body : bodies.value()) ScorePeer(*peer.value(), body, &scores);
   }
   return std::optional<BodyEvaluation>(SummarizeAll(bodies.value(), scores));
 }

@@ -10,7 +10,7 @@ namespace pushid {
 struct EvaluateFlags {
   std::string json_out;          // scores
   RestorationFlags restoration;  // whole bodies too
-  std::string peer;              // folder of a siMLPe beside the restoration
+  std::string peer;              // folder of a peer beside the restoration
   bool per_recording = true;     // a line for every recording
 };
 Result<EvaluateFlags> EvaluateFlagsFromCommandLine();

@@ -14,8 +14,11 @@
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
 DEFINE_string(
     kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name,
-    "what is trained: window (fast, default), cvae (LDP's chain), or simlpe (siMLPe, which "
-    "continues 12 given frames, for --peer of pushid-evaluate)");
+    "what is trained: window (fast, default), cvae (LDP's chain), or a peer for --peer of "
+    "pushid-evaluate: simlpe (siMLPe, which continues 12 given frames), mrt (MRT, which continues "
+    "20 given frames of a whole group)");
+DEFINE_string(mrt_size, pushid::NameOf(pushid::RestorationTrainingOptions{}.mrt_size),
+              "mrt: small (0.3 million weights), or published (the published widths, 5 million)");
 DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
 DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
@@ -57,13 +60,23 @@ namespace pushid {
 namespace {
 
 // What goes with which kind.
-MaybeError CheckView(RestorationKind kind, RestorationView view) {
+MaybeError CheckKind(RestorationKind kind, RestorationView view) {
   if (view != RestorationView::kPendulum && !RowOf(kind).follows_pendulum) {
     return Error{"--sees says what follows pendulums, and --kind=" + FLAGS_kind +
                  " continues recorded bodies"};
   }
   if (view == RestorationView::kNeighbours && kind != RestorationKind::kWindow) {
     return Error{"--sees=neighbours goes with --kind=window"};
+  }
+  if (FLAGS_mrt_size != NameOf(RestorationTrainingOptions{}.mrt_size) &&
+      kind != RestorationKind::kMrt) {
+    return Error{"--mrt_size goes with --kind=mrt"};
+  }
+  if (ObservedFrames() > 0 && !RowOf(kind).follows_pendulum) {
+    return Error{
+        "--observed says what a pendulum is predicted from; a peer is always given the "
+        "frames that --kind=" +
+        FLAGS_kind + " takes"};
   }
   const bool chain = kind == RestorationKind::kCvae;
   if (!FLAGS_halves && !chain) return Error{"--nohalves goes with --kind=cvae"};
@@ -90,7 +103,9 @@ MaybeError CheckFlags() {
   }
   RestorationView view;
   if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return error;
-  if (MaybeError error = CheckView(*kind, view)) return error;
+  MrtSize size;
+  if (MaybeError error = ParseName("--mrt_size", FLAGS_mrt_size, &size)) return error;
+  if (MaybeError error = CheckKind(*kind, view)) return error;
   if (FLAGS_crossvalidate == 0) {
     if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
   } else if (FLAGS_crossvalidate < 2) {
@@ -147,6 +162,9 @@ Result<RestorationRunOptions> RunOptions() {
   options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
   options.training.view = view;
   options.training.halves = FLAGS_halves;
+  if (MaybeError error = ParseName("--mrt_size", FLAGS_mrt_size, &options.training.mrt_size)) {
+    return *error;
+  }
   options.training.effort = FLAGS_effort;
   options.training.seed = FLAGS_seed;
   options.training.num_threads = FLAGS_num_threads;

@@ -57,8 +57,9 @@ std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, i
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
                       BodyScores* scores, int observed) {
-  const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies) {
-    (*scores)[name].push_back(ScoreBodies(recording, bodies));
+  const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies,
+                       int first_frame = 1) {
+    (*scores)[name].push_back(ScoreBodies(recording, bodies, first_frame));
   };
   const std::vector<RestorationInput> recorded = RecordedPeople(recording, observed);
   add("true_pendulum", RestoreBodies(restoration, options, recorded));
@@ -69,14 +70,16 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   if (!predicted.ok() || !predicted.value().status.ok) {
     const std::string failure =
         predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;
-    for (const char* name : {"restoration", "rigid"}) {
-      (*scores)[name].push_back(Failed(recording, failure));
-    }
+    std::vector<const char*> names = {"restoration", "rigid"};
+    if (observed > 0) names.push_back("restoration_after_given");
+    for (const char* name : names) (*scores)[name].push_back(Failed(recording, failure));
     return;
   }
   const Prediction& prediction = predicted.value();
   const std::vector<RestorationInput> people = PredictedPeople(recording, prediction);
-  add("restoration", RestoreBodies(restoration, options, people));
+  const std::vector<BodyMotion> restored = RestoreBodies(restoration, options, people);
+  add("restoration", restored);
+  if (observed > 0) add("restoration_after_given", restored, observed);
   add("rigid", RigidRestoration().Restore(people));
 }
 

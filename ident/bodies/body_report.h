@@ -11,7 +11,7 @@ namespace pushid {
 // Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (result_json.h): to the
 // means, groups and recordings at the top (of the restoration, or of the generator), to
 // baselines.static and baselines.constant_velocity, and as new entries baselines.rigid (and
-// siMLPe's), true_pendulum and recorded.
+// peers'), true_pendulum and recorded.
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
 nlohmann::ordered_json MeanJson(const BodyMean& mean);

@@ -106,7 +106,7 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
     return restoration;
   }
   return Error{"the kind is " + Quoted(Name(file.kind)) + "; known are " + known +
-                   " (simlpe is named by --peer)",
+                   " (a peer is named by --peer)",
                path};
 }
 

@@ -1,10 +1,6 @@
 // ident: samples to tensors, epochs, checkpoints.
 #include "ident/training/restoration_training.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "ident/training/restoration_training_checkpoint.h"
 #include "ident/training/restoration_training_kinds.h"
 #include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
@@ -62,24 +58,13 @@ Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const Regressio
                                 const RestorationTrainingOptions& options,
                                 const TrainingProgress& progress, TrainedRestoration* trained) {
   RegressionOptions regression;
-  regression.epochs = std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
+  regression.epochs = EpochsOf(epochs, options);
   regression.seed = options.seed;
   regression.num_threads = options.num_threads;
   RegressionTrainer trainer(learnt, judged, regression);
-  Checkpoint checkpoint(options.checkpoint, key, options.checkpoint_seconds);
-  std::string state;
-  trained->resumed = checkpoint.Load(&state, &trained->curve) && trainer.Resume(state);
-  if (!trained->resumed) trained->curve.clear();
-  while (!trainer.Done()) {
-    trained->curve.push_back(trainer.RunEpoch());
-    if (progress) {
-      progress(trained->curve.back(),
-               static_cast<double>(trained->curve.back().epoch) / regression.epochs);
-    }
-    if (!checkpoint.Due()) continue;
-    if (MaybeError error = checkpoint.Save(trainer.State(), trained->curve)) return *error;
+  if (MaybeError error = RunEpochs(&trainer, regression.epochs, key, options, progress, trained)) {
+    return *error;
   }
-  checkpoint.Remove();
   return trainer.Best();
 }
 
@@ -97,6 +82,7 @@ constexpr Trainer kTrainers[] = {
     {RestorationKind::kWindow, TrainWindow},
     {RestorationKind::kCvae, TrainCvae},
     {RestorationKind::kSimlpe, TrainSimlpe},
+    {RestorationKind::kMrt, TrainMrt},
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_data.h"
 #include "models/restoration/cvae_features.h"
+#include "models/restoration/mrt_network.h"
 #include "models/restoration/regression_trainer.h"
 #include "models/restoration/restoration_view.h"
 
@@ -18,6 +19,7 @@ struct RestorationTrainingOptions {
   RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
   bool halves = true;                                   // of kCvae: lower, then upper body
+  MrtSize mrt_size = MrtSize::kSmall;                   // of kMrt
   double effort = 1.0;                                  // multiplies the number of steps
   uint64_t seed = 1;
   int num_threads = 1;

@@ -84,8 +84,8 @@ std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const RestorationTrainingOptions& options) {
   return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
-         KeyOfSamples(training) + KeyOfSamples(held);
+         NameOf(options.mrt_size) + " " + std::to_string(options.effort) + " " +
+         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
 }
 
 std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/training/restoration_training_checkpoint.h"
 #include "ident/training/restoration_training_kinds.h"
 #include "models/restoration/cvae_trainer.h"
 
@@ -67,22 +66,16 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
   cvae.num_threads = options.num_threads;
   CvaeTrainer trainer(std::move(learnt), std::move(judged), scalings, cvae);
   TrainedRestoration trained;
-  Checkpoint checkpoint(options.checkpoint, KeyOfTraining(training, held, options),
-                        options.checkpoint_seconds);
-  std::string state;
-  trained.resumed = checkpoint.Load(&state, &trained.curve) && trainer.Resume(state);
-  if (!trained.resumed) trained.curve.clear();
-  while (!trainer.Done()) {
-    trained.curve.push_back(trainer.RunRound());
-    if (progress) progress(trained.curve.back(), trainer.ShareDone());
-    if (!checkpoint.Due() || trainer.Done()) continue;
-    if (MaybeError error = checkpoint.Save(trainer.State(), trained.curve)) return *error;
+  if (MaybeError error = RunRounds(
+          &trainer, [&trainer] { return trainer.RunRound(); },
+          [&trainer](const TrainingPoint&) { return trainer.ShareDone(); },
+          KeyOfTraining(training, held, options), options, progress, &trained)) {
+    return *error;
   }
   trained.file.tensors = ToTensors(trainer.Best());
   trained.file.settings = {{kViewKey, NameOf(options.view)},
                            {kCvaeCoordinatesKey, Name(options.coordinates)},
                            {kCvaeHalvesKey, options.halves}};
-  checkpoint.Remove();
   return trained;
 }
 

@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "ident/bodies/body_data.h"
-#include "ident/bodies/simlpe_files.h"
+#include "ident/bodies/peer_files.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/recording_effect.h"
 #include "ident/validation/crossvalidation.h"
@@ -51,15 +51,15 @@ double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after
   return largest;
 }
 
-// A restoration beside its baselines; siMLPe alone.
+// A restoration beside its baselines; a peer alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
   BodyScores scores;
-  if (file.kind == RestorationKind::kSimlpe) {
-    const Result<SimlpeWeights> simlpe = MakeSimlpe(file, "");
-    if (!simlpe.ok()) return simlpe.error();
-    ScoreSimlpe(simlpe.value(), recording, &scores);
+  if (!RowOf(file.kind).follows_pendulum) {
+    const auto peer = MakePeer(file, "");
+    if (!peer.ok()) return peer.error();
+    ScorePeer(*peer.value(), recording, &scores);
     return scores;
   }
   const auto restoration = MakeRestoration(file, "");
@@ -118,7 +118,8 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
   RestorationRunOptions now = options;
   now.fit.body_weight = 0.0;
   now.training.checkpoint.clear();  // one would be of one training, not of the whole
-  std::optional<IdentifiedModel> model = FitTo(pendulums, among, now.fit);
+  std::optional<IdentifiedModel> model = IdentifiedModel();  // a peer has no pendulum
+  if (RowOf(options.training.kind).follows_pendulum) model = FitTo(pendulums, among, now.fit);
   if (!model) return Error{"the pendulum's fit found no usable optimum"};
   Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
   if (!trained.ok()) return trained.error();

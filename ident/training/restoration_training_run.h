@@ -28,7 +28,7 @@ struct RestorationRunOptions {
 
 // A pendulum's model and the restoration of its bodies, learned from the same recordings.
 struct TrainedChain {
-  IdentifiedModel model;
+  IdentifiedModel model;  // empty beside a peer
   TrainedRestoration restoration;
   int rounds = 0;  // of training as a whole
 };
@@ -44,8 +44,8 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
 
 inline constexpr double kWholeTolerance = 0.01;
 
-// The pendulum fitted and a restoration trained on it; with options.fit.body_weight then as a
-// whole: the pendulum is fitted anew to recorded bodies too
+// The pendulum fitted and a restoration trained on it (a peer: alone, without a pendulum); with
+// options.fit.body_weight then as a whole: the pendulum is fitted anew to recorded bodies too
 // (residuals/cost_functions/body_residual.h), by the restoration so far, which is then trained anew
 // on the new pendulums, until no free parameter moves by more than kWholeTolerance of its value, or
 // options.rounds times. It keeps no checkpoint. Errors: those of either; a fit that finds no

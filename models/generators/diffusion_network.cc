@@ -9,13 +9,6 @@ namespace {
 constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody
 constexpr int kTaps = 3;
 
-Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values) {
-  Eigen::MatrixXf result(layer.weights.rows(), values.cols());
-  result.noalias() = layer.weights * values;
-  result.colwise() += layer.bias;
-  return result;
-}
-
 void ApplySilu(Eigen::MatrixXf* values) {
   auto v = values->array();
   v /= 1.0f + (-v).exp();

@@ -5,6 +5,13 @@
 
 namespace pushid {
 
+Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf result(layer.weights.rows(), values.cols());
+  result.noalias() = layer.weights * values;
+  result.colwise() += layer.bias;
+  return result;
+}
+
 void ApplyElu(Eigen::MatrixXf* values) {
   auto v = values->array();
   // Without a branch: exp is vectorized.

@@ -15,6 +15,9 @@ struct DenseLayer {
   Eigen::VectorXf bias;
 };
 
+// A column per sample.
+Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values);
+
 struct DenseNetwork {
   std::vector<DenseLayer> layers;  // ELU between them
 

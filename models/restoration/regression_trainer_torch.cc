@@ -1,8 +1,8 @@
 // models: the trainer of dense networks, in LibTorch.
 #include <vector>
 
+#include "models/restoration/epochs_torch.h"
 #include "models/restoration/regression_trainer.h"
-#include "models/restoration/support_torch.h"
 
 namespace pushid {
 namespace {
@@ -45,18 +45,9 @@ torch::Tensor Loss(const torch::Tensor& output, const torch::Tensor& target,
 struct RegressionTrainer::Torch {
   RegressionOptions options;
   torch::Tensor inputs, targets, weights, held_inputs, held_targets, held_weights;
-  std::shared_ptr<Network> network, best;
-  std::unique_ptr<torch::optim::AdamW> optimizer;
-  int epoch = 0, best_epoch = 0;
-  double best_loss = 1e30;
+  Epochs<Network> epochs;
 
   int64_t BatchesPerEpoch() const { return (inputs.size(0) + options.batch - 1) / options.batch; }
-  void KeepBest() {
-    torch::NoGradGuard no_grad;
-    for (size_t i = 0; i < network->parameters().size(); ++i) {
-      best->parameters()[i].copy_(network->parameters()[i]);
-    }
-  }
 };
 
 RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
@@ -73,19 +64,15 @@ RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
   t.held_weights = ToTensor(validation.weights);
   const int in = static_cast<int>(training.inputs.rows());
   const int out = static_cast<int>(training.targets.rows());
-  t.network = std::make_shared<Network>(in, out, options);
-  t.best = std::make_shared<Network>(in, out, options);
-  t.KeepBest();
-  t.optimizer = std::make_unique<torch::optim::AdamW>(
-      t.network->parameters(),
-      torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+  auto network = std::make_shared<Network>(in, out, options);
+  t.epochs.Start(std::move(network), std::make_shared<Network>(in, out, options),
+                 options.learning_rate, options.weight_decay);
 }
 
 RegressionTrainer::~RegressionTrainer() = default;
 
 bool RegressionTrainer::Done() const {
-  return torch_->epoch >= torch_->options.epochs ||
-         torch_->epoch - torch_->best_epoch >= torch_->options.patience;
+  return torch_->epochs.Done(torch_->options.epochs, torch_->options.patience);
 }
 
 TrainingPoint RegressionTrainer::RunEpoch() {
@@ -93,74 +80,31 @@ TrainingPoint RegressionTrainer::RunEpoch() {
   const int64_t batches = t.BatchesPerEpoch();
   const torch::Tensor order = torch::randperm(t.inputs.size(0));
   double sum = 0.0;
-  t.network->train();
+  t.epochs.network->train();
   for (int64_t b = 0; b < batches; ++b) {
-    const double done = (t.epoch + static_cast<double>(b) / batches) / t.options.epochs;
-    SetLearningRate(t.optimizer.get(), t.options.learning_rate * OneCycle(done));
+    const double done = (t.epochs.epoch + static_cast<double>(b) / batches) / t.options.epochs;
+    SetLearningRate(t.epochs.optimizer.get(), t.options.learning_rate * OneCycle(done));
     const torch::Tensor rows = order.slice(0, b * t.options.batch, (b + 1) * t.options.batch);
     torch::Tensor x = t.inputs.index_select(0, rows);
     x = x + t.options.input_noise * torch::randn_like(x);
-    const torch::Tensor loss = Loss(t.network->forward(x), t.targets.index_select(0, rows),
+    const torch::Tensor loss = Loss(t.epochs.network->forward(x), t.targets.index_select(0, rows),
                                     t.weights.index_select(0, rows));
-    t.optimizer->zero_grad();
-    loss.backward();
-    t.optimizer->step();
+    t.epochs.Step(loss);
     sum += loss.item<double>();
   }
-  ++t.epoch;
+  ++t.epochs.epoch;
   torch::NoGradGuard no_grad;
-  t.network->eval();
+  t.epochs.network->eval();
   const double held =
-      Loss(t.network->forward(t.held_inputs), t.held_targets, t.held_weights).item<double>();
-  if (held < t.best_loss) {
-    t.best_loss = held;
-    t.best_epoch = t.epoch;
-    t.KeepBest();
-  }
-  return {t.epoch, sum / static_cast<double>(batches), held};
+      Loss(t.epochs.network->forward(t.held_inputs), t.held_targets, t.held_weights).item<double>();
+  t.epochs.Judge(held);
+  return {t.epochs.epoch, sum / static_cast<double>(batches), held};
 }
 
-DenseNetwork RegressionTrainer::Best() const { return torch_->best->Weights(); }
+DenseNetwork RegressionTrainer::Best() const { return torch_->epochs.best->Weights(); }
 
-std::string RegressionTrainer::State() const {
-  torch::serialize::OutputArchive archive, network, best, optimizer;
-  torch_->network->save(network);
-  torch_->best->save(best);
-  torch_->optimizer->save(optimizer);
-  archive.write("network", network);
-  archive.write("best", best);
-  archive.write("optimizer", optimizer);
-  archive.write("counts",
-                torch::tensor({static_cast<double>(torch_->epoch),
-                               static_cast<double>(torch_->best_epoch), torch_->best_loss},
-                              torch::kFloat64));
-  archive.write("random", at::detail::getDefaultCPUGenerator().get_state());
-  return Archived(archive);
-}
+std::string RegressionTrainer::State() const { return torch_->epochs.State(); }
 
-bool RegressionTrainer::Resume(const std::string& state) {
-  try {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, network, best, optimizer;
-    archive.load_from(stream);
-    archive.read("network", network);
-    archive.read("best", best);
-    archive.read("optimizer", optimizer);
-    torch_->network->load(network);
-    torch_->best->load(best);
-    torch_->optimizer->load(optimizer);
-    torch::Tensor counts, random;
-    archive.read("counts", counts);
-    archive.read("random", random);
-    auto generator = at::detail::getDefaultCPUGenerator();
-    generator.set_state(random);
-    torch_->epoch = static_cast<int>(counts[0].item<double>());
-    torch_->best_epoch = static_cast<int>(counts[1].item<double>());
-    torch_->best_loss = counts[2].item<double>();
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
-}
+bool RegressionTrainer::Resume(const std::string& state) { return torch_->epochs.Resume(state); }
 
 }  // namespace pushid

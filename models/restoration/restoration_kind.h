@@ -1,7 +1,8 @@
 // models: the kinds of restoration, one row each.
 //
-// A new kind is a value and a row here, its maker in ident/bodies/restoration_files.cc, which turns
-// a file's tensors into it, and its trainer in ident/training/restoration_training.cc.
+// A new kind is a value and a row here, its maker in ident/bodies/restoration_files.cc (of a peer:
+// peer_files.cc), which turns a file's tensors into it, and its trainer in
+// ident/training/restoration_training.cc.
 #pragma once
 
 #include <optional>
@@ -10,14 +11,14 @@
 
 namespace pushid {
 
-enum class RestorationKind { kRigid, kWindow, kCvae, kSimlpe };
+enum class RestorationKind { kRigid, kWindow, kCvae, kSimlpe, kMrt };
 
 struct RestorationKindRow {
   RestorationKind kind;
   const char* name;  // in files and on the command line
   const char* what;
   bool trained;           // it has weights, and stands in a folder
-  bool follows_pendulum;  // otherwise it continues recorded bodies, to compare with
+  bool follows_pendulum;  // otherwise it is a peer (peer.h), which continues recorded bodies
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {
@@ -27,12 +28,15 @@ inline constexpr RestorationKindRow kRestorationKinds[] = {
     {RestorationKind::kCvae, "cvae", "LDP's chain", true, true},
     {RestorationKind::kSimlpe, "simlpe",
      "siMLPe, which continues 12 given frames, for --peer of pushid-evaluate", true, false},
+    {RestorationKind::kMrt, "mrt",
+     "MRT, which continues 20 given frames of a whole group, for --peer of pushid-evaluate", true,
+     false},
 };
 
 const RestorationKindRow& RowOf(RestorationKind kind);
 inline const char* Name(RestorationKind kind) { return RowOf(kind).name; }
 std::optional<RestorationKind> RestorationKindFromName(std::string_view name);
-// Of those that can be trained, for messages: "window, cvae or simlpe".
+// Of those that can be trained, for messages: "window, cvae, simlpe or mrt".
 std::string TrainedRestorationKinds();
 
 }  // namespace pushid

@@ -1,39 +1,20 @@
 // models: cosine transform, dense layers, and on.
 #include "models/restoration/simlpe.h"
 
-#include <cmath>
+#include "models/restoration/cosine_transform.h"
 
 namespace pushid {
-namespace {
-
-using Transform = Eigen::Matrix<double, kGivenFrames, kGivenFrames>;
-
-// Orthonormal DCT-II: row k of the matrix is coefficient k.
-const Transform& CosineTransform() {
-  static const Transform transform = [] {
-    Transform d;
-    for (int k = 0; k < kGivenFrames; ++k) {
-      for (int t = 0; t < kGivenFrames; ++t) {
-        d(k, t) = std::sqrt((k == 0 ? 1.0 : 2.0) / kGivenFrames) *
-                  std::cos(M_PI * (t + 0.5) * k / kGivenFrames);
-      }
-    }
-    return d;
-  }();
-  return transform;
-}
-
-}  // namespace
 
 Eigen::VectorXf SimlpeInput(const BodyMotion& motion, int last) {
   const Eigen::Matrix3d turn = TurnAboutZ(-Heading(motion[last]));
   const Eigen::Vector3d origin = motion[last].col(0);
-  Eigen::Matrix<double, kGivenFrames, 3 * kBodyJoints> seen;
-  for (int t = 0; t < kGivenFrames; ++t) {
-    const Pose pose = turn * (motion[last - kGivenFrames + 1 + t].colwise() - origin);
+  static const Eigen::MatrixXd transform = CosineTransform(kSimlpeGiven);
+  Eigen::Matrix<double, kSimlpeGiven, 3 * kBodyJoints> seen;
+  for (int t = 0; t < kSimlpeGiven; ++t) {
+    const Pose pose = turn * (motion[last - kSimlpeGiven + 1 + t].colwise() - origin);
     seen.row(t) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), pose.size());
   }
-  seen = (CosineTransform() * seen).eval();
+  seen = (transform * seen).eval();
   return Eigen::Map<const Eigen::VectorXd>(seen.data(), seen.size()).cast<float>();
 }
 
@@ -48,8 +29,10 @@ Eigen::VectorXf SimlpeTarget(const BodyMotion& motion, int last) {
   return target;
 }
 
-BodyMotion ContinueMotion(const SimlpeWeights& weights, const BodyMotion& given, int frames) {
-  BodyMotion motion(given.begin(), given.begin() + kGivenFrames);
+namespace {
+
+BodyMotion Continued(const SimlpeWeights& weights, const BodyMotion& given, int frames) {
+  BodyMotion motion(given.begin(), given.begin() + kSimlpeGiven);
   while (static_cast<int>(motion.size()) < frames) {
     const int last = static_cast<int>(motion.size()) - 1;
     const Eigen::MatrixXf output =
@@ -63,6 +46,27 @@ BodyMotion ContinueMotion(const SimlpeWeights& weights, const BodyMotion& given,
     }
   }
   return motion;
+}
+
+}  // namespace
+
+std::vector<BodyMotion> SimlpePeer::Continue(const std::vector<BodyMotion>& people,
+                                             int frames) const {
+  std::vector<BodyMotion> continued;
+  for (const BodyMotion& given : people) continued.push_back(Continued(weights_, given, frames));
+  return continued;
+}
+
+void AddTensors(const SimlpeWeights& weights, TensorList* tensors) {
+  AddTensors("inputs", weights.inputs, tensors);
+  AddTensors("network", weights.network, tensors);
+}
+
+SimlpeWeights TakeSimlpe(TensorReader* reader) {
+  SimlpeWeights weights;
+  weights.inputs = TakeScaling("inputs", kSimlpeInputs, reader);
+  weights.network = TakeNetwork("network", 3, kSimlpeInputs, kSimlpeOutputs, reader);
+  return weights;
 }
 
 }  // namespace pushid

@@ -1,19 +1,22 @@
-// models: siMLPe, a motion forecaster to compare with: no pendulum and no push, only the motion
-// so far. In the manner of siMLPe (Guo et al., Back to MLP, WACV 2023): the cosine transform over
-// time of 12 given frames, fully connected layers, 6 frames predicted as displacements from the
-// last given one; again and again on its own output until all frames are there. Smaller than the
-// published network: dense layers over all coefficients at once, as many as the window network has.
+// models: siMLPe, a peer that sees every person alone. In the manner of siMLPe (Guo et al., Back to
+// MLP, WACV 2023): the cosine transform over time of 12 given frames, fully connected layers, 6
+// frames predicted as displacements from the last given one. Smaller than the published network:
+// dense layers over all coefficients at once, as many as the window network has.
 //
-// Joints are seen against the hip of the last given frame and in its heading, at 60 Hz.
+// Joints are seen against the hip of the last given frame and in its heading.
 #pragma once
 
-#include "models/restoration/body.h"
+#include <utility>
+
 #include "models/restoration/dense_network.h"
+#include "models/restoration/peer.h"
+#include "models/restoration/restoration_kind.h"
+#include "models/restoration/tensors.h"
 
 namespace pushid {
 
-inline constexpr int kGivenFrames = 12, kSimlpeFrames = 6;
-inline constexpr int kSimlpeInputs = 3 * kBodyJoints * kGivenFrames;
+inline constexpr int kSimlpeGiven = 12, kSimlpeFrames = 6;
+inline constexpr int kSimlpeInputs = 3 * kBodyJoints * kSimlpeGiven;
 inline constexpr int kSimlpeOutputs = 3 * kBodyJoints * kSimlpeFrames;
 
 struct SimlpeWeights {
@@ -26,7 +29,19 @@ Eigen::VectorXf SimlpeInput(const BodyMotion& motion, int last);
 // Of the frames [last + 1, last + 6].
 Eigen::VectorXf SimlpeTarget(const BodyMotion& motion, int last);
 
-// The first 12 frames as given, the rest predicted; `frames` in all.
-BodyMotion ContinueMotion(const SimlpeWeights& weights, const BodyMotion& given, int frames);
+class SimlpePeer : public Peer {
+ public:
+  explicit SimlpePeer(SimlpeWeights weights) : weights_(std::move(weights)) {}
+  std::string_view name() const override { return Name(RestorationKind::kSimlpe); }
+  int given_frames() const override { return kSimlpeGiven; }
+  std::vector<BodyMotion> Continue(const std::vector<BodyMotion>& people,
+                                   int frames) const override;
+
+ private:
+  SimlpeWeights weights_;
+};
+
+void AddTensors(const SimlpeWeights& weights, TensorList* tensors);
+SimlpeWeights TakeSimlpe(TensorReader* reader);
 
 }  // namespace pushid

@@ -233,12 +233,46 @@ TEST_F(RestorationAppTest, CrossValidatesAfterFramesThatWereSeen) {
                       observed, "--json_out=" + Path("cv.json")})
                   .exit_code,
               0);
-    return Json(Path("cv.json"))["mean"]["MPJPE_m"].get<double>();
+    const auto json = Json(Path("cv.json"));
+    const double all = json["mean"]["MPJPE_m"];
+    const auto after = json["baselines"].find("restoration_after_given");
+    EXPECT_EQ(after != json["baselines"].end(), observed == "--observed=20");
+    if (after != json["baselines"].end()) {
+      // Frames that were seen err as well: their bodies are restored, not copied.
+      EXPECT_GT((*after)["mean"]["MPJPE_m"].get<double>(), all);
+    }
+    return all;
   };
   EXPECT_LT(error("--observed=20"), error("--seed=1"));
   EXPECT_TRUE(Refused(RunApp("pushid-train-restoration",
                              {Recordings(), model_, "--observed=20", "--out=" + Path("o")}),
                       {"--observed goes with --crossvalidate"}));
+}
+
+// Peers know no pendulum, and are compared over all frames and over those that they are not given.
+TEST_F(RestorationAppTest, PeersAreTrainedAndComparedWith) {
+  for (const std::string kind : {"simlpe", "mrt"}) {
+    const AppRun run = Train("p", {"--kind=" + kind, "--effort=0.05"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const AppRun evaluate =
+        RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=rigid", "--quiet",
+                                   "--peer=" + Path("p"), "--json_out=" + Path("scores.json")});
+    ASSERT_EQ(evaluate.exit_code, 0) << evaluate.err;
+    const AppRun validated = RunApp("pushid-train-restoration",
+                                    {Recordings(), model_, "--crossvalidate=2", "--kind=" + kind,
+                                     "--effort=0.05", "--quiet", "--json_out=" + Path("cv.json")});
+    ASSERT_EQ(validated.exit_code, 0) << validated.err;
+    for (const char* file : {"scores.json", "cv.json"}) {
+      const auto baselines = Json(Path(file))["baselines"];
+      const double all = baselines[kind]["mean"]["MPJPE_m"];
+      const double after = baselines[kind + "_after_given"]["mean"]["MPJPE_m"];
+      EXPECT_GT(all, 0.0) << kind << " " << file;
+      EXPECT_GT(after, all) << kind << " " << file << ": given frames have no error";
+    }
+    const AppRun as_restoration =
+        RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("p")});
+    EXPECT_TRUE(Refused(as_restoration, {kind, "--peer"}));
+  }
 }
 
 TEST_F(RestorationAppTest, TheCvaeTrainsAndIsUsed) {
@@ -265,6 +299,9 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   refused(train, {"--out=" + Path("x"), "--sees=people"}, {"--sees", "neighbours"});
   refused(train, {"--out=" + Path("x"), "--kind=cvae", "--sees=neighbours"}, {"--kind=window"});
   refused(train, {"--out=" + Path("x"), "--kind=simlpe", "--sees=pose"}, {"--sees"});
+  refused(train, {"--out=" + Path("x"), "--mrt_size=published"}, {"--mrt_size", "--kind=mrt"});
+  refused(train, {"--out=" + Path("x"), "--kind=mrt", "--mrt_size=big"}, {"--mrt_size", "small"});
+  refused(train, {"--crossvalidate=2", "--kind=mrt", "--observed=20"}, {"--observed", "mrt"});
   refused(train, {"--out=" + Path("x"), "--nohalves"}, {"--kind=cvae"});
   refused(train, {"--out=" + Path("x"), "--coordinates=ldp"}, {"--coordinates", "--kind=cvae"});
   refused(train, {"--out=" + Path("x"), "--body_weight=1", "--sees=pose"}, {"--body_weight"});

@@ -103,10 +103,10 @@ TEST_F(RestorationFilesTest, WhatIsWrongIsNamed) {
   EXPECT_TRUE(Contains(ErrorOf(Path("nowhere")), "pushid-train-restoration"));
   WriteWindow();
   Replace("\"window\"", "\"wndow\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "'wndow'; it must be window, cvae or simlpe"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "'wndow'; it must be window, cvae, simlpe or mrt"));
   WriteWindow();
   Replace("\"window\"", "\"simlpe\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "simlpe is named by --peer"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "a peer is named by --peer"));
   WriteWindow();
   Replace("\"format\": 1", "\"format\": 9");
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "format 9"));

@@ -20,7 +20,7 @@ TEST(SimlpeTest, AStandingBodyHasOnlyTheMeanCoefficient) {
   ASSERT_EQ(input.size(), kSimlpeInputs);
   for (int joint = 0; joint < kBodyJoints; ++joint) {
     for (int i = 0; i < 3; ++i) {
-      const int column = kGivenFrames * (3 * joint + i);
+      const int column = kSimlpeGiven * (3 * joint + i);
       const double place = StandingPose()(i, joint) - StandingPose()(i, 0);
       EXPECT_NEAR(input[column], std::sqrt(12.0) * place, 1e-5);
       EXPECT_LT(input.segment<11>(column + 1).norm(), 1e-5);
@@ -56,7 +56,7 @@ TEST(SimlpeTest, ContinuesItsOwnOutput) {
   }
   weights.network.layers = {layer};
   const BodyMotion given(12, Placed(StandingPose(), 0.4, {0, 0, 0}));
-  const BodyMotion motion = ContinueMotion(weights, given, 27);
+  const BodyMotion motion = SimlpePeer(weights).Continue({given}, 27)[0];
   ASSERT_EQ(motion.size(), 27u);
   EXPECT_EQ(motion[11], given[11]);
   for (int t = 12; t < 27; ++t) {

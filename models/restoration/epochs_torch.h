@@ -1,0 +1,93 @@
+// models: training by epochs that keeps the best one, in LibTorch: what the trainers of windows, of
+// siMLPe and of MRT share. Included by *_torch.cc files alone.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "models/restoration/support_torch.h"
+
+namespace pushid {
+
+// Network: a module; `best` has the weights of the epoch with the least held-out loss.
+template <typename Network>
+struct Epochs {
+  std::shared_ptr<Network> network, best;
+  std::unique_ptr<torch::optim::AdamW> optimizer;
+  int epoch = 0, best_epoch = 0;
+  double best_loss = 1e30;
+
+  // Both networks are of one shape.
+  void Start(std::shared_ptr<Network> to_train, std::shared_ptr<Network> to_keep, double rate,
+             double weight_decay) {
+    network = std::move(to_train), best = std::move(to_keep);
+    KeepBest();
+    optimizer = std::make_unique<torch::optim::AdamW>(
+        network->parameters(), torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
+  }
+
+  // patience: epochs without a better one.
+  bool Done(int epochs, int patience) const {
+    return epoch >= epochs || epoch - best_epoch >= patience;
+  }
+
+  void Step(const torch::Tensor& loss) {
+    optimizer->zero_grad();
+    loss.backward();
+    optimizer->step();
+  }
+
+  void Judge(double held_loss) {
+    if (held_loss >= best_loss) return;
+    best_loss = held_loss;
+    best_epoch = epoch;
+    KeepBest();
+  }
+
+  std::string State() const {
+    torch::serialize::OutputArchive archive, of_network, of_best, of_optimizer;
+    network->save(of_network);
+    best->save(of_best);
+    optimizer->save(of_optimizer);
+    archive.write("network", of_network);
+    archive.write("best", of_best);
+    archive.write("optimizer", of_optimizer);
+    archive.write("judged",
+                  torch::tensor({static_cast<double>(best_epoch), best_loss}, torch::kFloat64));
+    WriteProgress(epoch, &archive);
+    return Archived(archive);
+  }
+
+  // False when the state is not one of this training.
+  bool Resume(const std::string& state) {
+    try {
+      std::istringstream stream(state);
+      torch::serialize::InputArchive archive, of_network, of_best, of_optimizer;
+      archive.load_from(stream);
+      archive.read("network", of_network);
+      archive.read("best", of_best);
+      archive.read("optimizer", of_optimizer);
+      torch::Tensor judged;
+      archive.read("judged", judged);
+      network->load(of_network);
+      best->load(of_best);
+      optimizer->load(of_optimizer);
+      best_epoch = static_cast<int>(judged[0].item<double>());
+      best_loss = judged[1].item<double>();
+      epoch = ReadProgress(&archive);
+      return true;
+    } catch (const std::exception&) {
+      return false;
+    }
+  }
+
+ private:
+  void KeepBest() {
+    torch::NoGradGuard no_grad;
+    for (size_t i = 0; i < network->parameters().size(); ++i) {
+      best->parameters()[i].copy_(network->parameters()[i]);
+    }
+  }
+};
+
+}  // namespace pushid
