@@ -1,6 +1,6 @@
 // ident: what the peers learn from: windows of the true motions for siMLPe, whole groups for MRT.
 #include <algorithm>
-#include <cmath>
+#include <map>
 
 #include "ident/bodies/peer_files.h"
 #include "ident/training/restoration_training_kinds.h"

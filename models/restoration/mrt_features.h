@@ -25,8 +25,8 @@ struct MrtView {
                            // first, then the next person's
   Eigen::MatrixXf places;  // kMrtPlaceRows x people: where a hip is from the asked one's, x and y
                            // in m; exp(-distance^2 / m^2); sine and cosine of the way it faces
-  Eigen::VectorXf query;  // the asked one's last pose from its hip (the hip: its height), and its
-                          // last displacement, both in m
+  Eigen::VectorXf query;   // the asked one's last pose from its hip (the hip: its height), and its
+                           // last displacement, both in m
 
   int num_people() const { return static_cast<int>(places.cols()); }
 };

@@ -70,12 +70,11 @@ AskedBatch Asked(const std::vector<MrtGroup>& groups, const std::vector<Window>&
   return {BatchOf(views), torch::stack(ways), torch::tensor(weights)};
 }
 
+// A person's own tokens are among everybody's too, but another encoder reads them.
 void AddNoise(double size, MrtBatch* batch) {
-  const torch::Tensor noise = size * torch::randn_like(batch->all);
-  // A person's own tokens are among everybody's, but are read by another encoder.
-  batch->own = batch->own + size * torch::randn_like(batch->own);
-  batch->all = batch->all + noise;
-  batch->query = batch->query + size * torch::randn_like(batch->query);
+  for (torch::Tensor* part : {&batch->all, &batch->own, &batch->query}) {
+    *part = *part + size * torch::randn_like(*part);
+  }
 }
 
 torch::Tensor Loss(const torch::Tensor& ways, const AskedBatch& batch) {

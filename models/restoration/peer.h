@@ -2,9 +2,9 @@
 // motion so far. It is given everybody's first frames and continues them, again and again from its
 // own output, until all frames are there.
 //
-// Peers see recordings at 60 Hz, the rate of the published ones: a third of a second and a second
-// of those (20 frames and 60) is what they are given and asked for in LDP's comparison, and the
-// shortest published group has 43 frames.
+// Peers see recordings at 60 Hz, the rate of the published ones. There MRT's task in LDP's
+// comparison, 20 frames given and 60 to predict, fits 34 of the 49 published groups; shorter ones
+// are predicted to their end (the shortest has 43 frames), and so are longer ones, on and on.
 #pragma once
 
 #include <string_view>
