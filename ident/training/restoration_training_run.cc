@@ -163,7 +163,7 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     validation.training_seconds.push_back(Now() - before);
     validation.rounds.push_back(chain.value().rounds);
     IdentifiedModel& model = chain.value().model;
-    if (options.observed > 0) {
+    if (options.observed > 0 && RowOf(options.training.kind).follows_pendulum) {
       model.recording_effect = FitRecordingEffect(model, Picked(pendulums, train));
       if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
     }

@@ -21,7 +21,8 @@ struct RestorationRunOptions {
   int inner_folds = 4;     // of the out-of-fold predictions
   double held_out = 0.15;  // share of the recordings that stop the training early
   bool predicted_pendulums = true, mirrored = true;
-  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h)
+  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h);
+                     // a peer is shown those that it takes
   // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
   std::vector<BodyRecording> more;
 };

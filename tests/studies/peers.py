@@ -1,10 +1,10 @@
 """Forecasters without a pendulum and a push beside the chain of physics and bodies, cross-validated on the same folds.
 
-groups    MRT, siMLPe and the chain on all groups, five folds (models/restoration/README.md); an hour
+groups    MRT, siMLPe and the chain on all groups, five folds (models/restoration/README.md); three quarters of an hour
 sizes     what an epoch of MRT costs in its two sizes (models/restoration/README.md); five minutes
 
-Peers are given everybody's first frames; the chain the first one and the push, and with --observed as many as MRT. Times are
-those of one core. Needs pushid-train-restoration, which is built where LibTorch is found.
+Peers are given everybody's first frames; the chain the first one and the push, and with --observed as many as MRT. Times
+are those of one core. Needs pushid-train-restoration, which is built where LibTorch is found.
 """
 import json
 import os
@@ -15,7 +15,7 @@ import studies
 from studies import number, with_error
 
 HEADER = ["held out, 5 folds", "given", "frames that count", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m",
-          "FSE, cm a frame", "training, s a fold"]
+          "FSE, cm a frame", "training, s a fold (median)"]
 
 
 def cells(name, given, frames, summary, seconds=None):
@@ -27,12 +27,12 @@ def cells(name, given, frames, summary, seconds=None):
 
 
 def crossvalidate(model, *flags):
-    return studies.on_recordings("pushid-train-restoration", "groups", f"--model={model}", "--crossvalidate=5", "--quiet",
-                                 *flags).json
+    return studies.on_recordings("pushid-train-restoration", "groups", f"--model={model}", "--crossvalidate=5",
+                                 "--quiet", *flags).json
 
 
 def seconds(found):
-    return statistics.mean(found["run"]["training_seconds"])
+    return statistics.median(found["run"]["training_seconds"])
 
 
 def groups():
@@ -48,7 +48,7 @@ def groups():
         rows.append(cells(title, given, "all", found["baselines"][kind], seconds(found)))
         rows.append(cells(title, given, "after those", found["baselines"][f"{kind}_after_given"]))
     rows.append(cells(physics, "1 frame, the push", "all", first, seconds(first)))
-    rows.append(cells(physics, "20 frames, the push", "all", seen, seconds(seen)))
+    rows.append(cells(physics, "20 frames, the push", "all", seen))  # trained as before
     rows.append(cells(physics, "20 frames, the push", "after those", still["restoration_after_given"]))
     return studies.table(HEADER, rows)
 
@@ -59,7 +59,8 @@ def sizes():
     for size in ("small", "published"):
         folder = os.path.join(studies.KEPT, f"mrt_{size}")
         out = studies.on_recordings("pushid-train-restoration", "groups", f"--model={model}", "--kind=mrt",
-                                    f"--mrt_size={size}", "--effort=0.05", f"--out={folder}", "--quiet", out=None, keep=False)
+                                    f"--mrt_size={size}", "--effort=0.05", f"--out={folder}", "--quiet", out=None,
+                                    keep=False)
         with open(os.path.join(folder, "restoration.json"), encoding="utf-8") as file:
             written = json.load(file)
         weights = sum(t["rows"] * t["columns"] for t in written["tensors"] if not t["name"].startswith("scaling"))
@@ -67,7 +68,8 @@ def sizes():
         took = float(re.search(r", ([0-9.]+) s;", out.text)[1])
         rows.append([f"`--mrt_size={size}`", f"{weights / 1e6:.2f} million", number(took / len(curve), 2),
                      number(curve[-1]["held_out_loss"])])
-    return studies.table(["", "weights", "s an epoch", f"held-out distance of joints after {len(curve)} epochs, m"], rows)
+    return studies.table(["", "weights", "s an epoch", f"held-out distance of joints after {len(curve)} epochs, m"],
+                         rows)
 
 
 if __name__ == "__main__":
