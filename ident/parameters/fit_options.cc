@@ -50,10 +50,10 @@ std::string NetworkViolation(const FitOptions& o) {
   if (o.ensemble > 1 && large) {
     return "--ensemble is for small networks; this one is trained by its gradient";
   }
-  if (large && (o.model.interaction.Any() || pooled)) {
+  if (large && o.model.interaction.drive) {
     return LearnedName(*network) +
-           " is trained by its gradient, which knows no people who touch and no pooled "
-           "parameters; choose a smaller network, or --interaction=none --pool=none";
+           " is trained by its gradient, which does not know --interaction=drive; choose a smaller "
+           "network, or leave drive out";
   }
   if (o.ensemble > 1 && pooled) {
     return "--ensemble does not go together with --pool: its members share all parameters";

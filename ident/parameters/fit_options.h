@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -106,8 +107,11 @@ struct FitOptions {
   // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.h).
   // PoolParameters gives it to the pooled parameters.
   std::optional<double> pooling_sigma;
+  // Where deviations start, by unit, one for each pooled parameter in the table's order, on the
+  // fitted scale; of units not named: zero. Set where a fit goes on from another.
+  std::map<std::string, std::vector<double>> start_deviations;
 
-  // The self-force network of `model` (whose weights are the start): standard deviation of the
+  // What is learned in `model` (whose weights are the start): standard deviation of the
   // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
   // none.
   double network_prior = 1.0;

@@ -28,7 +28,9 @@ FitPoint FitProblem::NominalPoint() const {
     const PendulumRecording& recording = recordings_[i];
     if (map_.num_deviations > 0) {
       for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
-        point.unit[unit].assign(map_.num_deviations, 0.0);
+        const auto start = options_.start_deviations.find(unit);
+        const bool known = start != options_.start_deviations.end();
+        point.unit[unit] = known ? start->second : std::vector<double>(map_.num_deviations, 0.0);
       }
     }
     if (recording.initial_velocity != InitialVelocity::kFree) continue;

@@ -36,8 +36,8 @@ class FitProblem {
   // How often a recording counts.
   int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
-  // Shared values at the table's nominal values, no deviations, velocities as the scenes hold them,
-  // weights as the options' network holds them.
+  // Shared values at the table's nominal values, deviations where the options start them,
+  // velocities as the scenes hold them, weights as the options' network holds them.
   FitPoint NominalPoint() const;
 
   // The point whose Flat() is `row`, weights excepted where it has none; none where sizes differ.

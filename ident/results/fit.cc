@@ -8,7 +8,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/results/weighted_solve.h"
-#include "ident/solver/large_network_stage.h"
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/few_clusters.h"
 #include "models/cart_damping.h"
@@ -245,7 +244,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   FitResult result;
   result.options = options;
   if (NeedsGradientTraining(options)) {
-    const Result<FitOptions> trained = TrainLargeNetwork(recordings, options, progress);
+    const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, options, progress);
     if (trained.ok()) return Fit(recordings, trained.value(), progress);
     result.message = trained.error().ToString();
     return result;

@@ -91,12 +91,12 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   return std::nullopt;
 }
 
-// What the preset pools by name may have been fixed since, or not act any more; and some networks
-// cannot be trained beside deviations of units.
+// What the preset pools by name may have been fixed since, or not act any more; and the members of
+// an ensemble share all parameters.
 void PoolOnlyFree(FitOptions* options) {
   if (PoolsAllOrNone(options->pool)) return;
   std::string free;
-  if (NeedsGradientTraining(*options) || options->ensemble > 1) options->pool.clear();
+  if (options->ensemble > 1) options->pool.clear();
   std::stringstream names(options->pool);
   for (std::string name; std::getline(names, name, ',');) {
     if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;

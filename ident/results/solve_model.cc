@@ -2,7 +2,6 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit.h"
 #include "ident/results/weighted_solve.h"
-#include "ident/solver/large_network_stage.h"
 #include "ident/solver/likelihood_solve.h"
 
 namespace pushid {
@@ -11,11 +10,9 @@ Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
                                FitOptions options) {
   if (MaybeError error = PrepareFit(recordings, &options)) return *error;
   const FitOptions prepared = options;
-  if (NeedsGradientTraining(options)) {
-    const Result<FitOptions> trained = TrainLargeNetwork(recordings, prepared, nullptr);
-    if (!trained.ok()) return trained.error();
-    options = trained.value();
-  }
+  const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, prepared);
+  if (!trained.ok()) return trained.error();
+  options = trained.value();
   const Solution solution = SolveAsAsked(recordings, &options).solution;
   if (solution.best >= 0) EstimateNoise(recordings, solution.Best().to, &options);
   const FitProblem problem(recordings, options);

@@ -8,6 +8,7 @@
 
 #include "ident/problem/behaviour.h"
 #include "ident/problem/pooling_spread.h"
+#include "ident/solver/large_network_stage.h"
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/data_weight.h"
 
@@ -53,7 +54,7 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* opt
 // On the way an optimum need not be exact; a network that stops learning in time must not be
 // stopped before.
 FitOptions Roughly(FitOptions options) {
-  if (options.early_stopping > 0.0) return options;
+  if (options.early_stopping > 0.0 && !options.hold_network) return options;
   options.function_tolerance = std::max(kRough, options.function_tolerance);
   return options;
 }
@@ -200,6 +201,17 @@ WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, 
   solved.solution = std::move(by_steps.solution);
   solved.weights_settled = by_steps.stays;
   return solved;
+}
+
+Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
+                                           const FitOptions& options,
+                                           const SolveProgress& progress) {
+  if (!NeedsGradientTraining(options)) return options;
+  FittedPhysics physics{PhysicsAlone(options), {}};
+  const Solution solution = SolveAsAsked(recordings, &physics.options, progress).solution;
+  if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
+  physics.point = solution.Best().to;
+  return TrainLargeNetwork(recordings, options, physics, progress);
 }
 
 }  // namespace pushid

@@ -7,13 +7,17 @@
 namespace pushid {
 namespace {
 
-// What counts, with the weight it has in the cost of a fit.
-std::vector<AdjointRecording> Counted(const FitProblem& problem, const std::vector<int>& counts) {
+// What counts, with the weight it has in the cost of a fit, and the parameters of its people.
+std::vector<AdjointRecording> Counted(const FitProblem& problem, const FitPoint& point,
+                                      const std::vector<int>& counts) {
   std::vector<AdjointRecording> counted;
   for (size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0) continue;
-    const int recording = static_cast<int>(i);
-    counted.push_back({&problem.recordings()[i], problem.Weight(recording, 0), 0});
+    const PendulumRecording& recording = problem.recordings()[i];
+    counted.push_back({&recording, problem.Weight(static_cast<int>(i), 0), 0});
+    for (const std::string& unit : PoolingUnits(recording, problem.map().pool_by)) {
+      counted.back().held.push_back(problem.Parameters(point, unit));
+    }
   }
   return counted;
 }
@@ -29,21 +33,45 @@ ParameterMap MapBesideNetwork(const FitOptions& options, const ParameterSet<doub
   return map;
 }
 
+// The deviations of a fit's pooled parameters, as another fit found them; what that did not pool
+// does not deviate.
+std::map<std::string, std::vector<double>> DeviationsOf(const FitPoint& point,
+                                                        const ParameterMap& found,
+                                                        const ParameterMap& wanted) {
+  std::map<std::string, std::vector<double>> deviations;
+  for (const auto& [unit, values] : point.unit) {
+    std::vector<double>& of_unit = deviations[unit];
+    of_unit.assign(wanted.num_deviations, 0.0);
+    for (const FittedParameter& to : wanted.fitted) {
+      for (const FittedParameter& from : found.fitted) {
+        const bool same = from.parameter == to.parameter;
+        if (same && from.deviation >= 0 && to.deviation >= 0) {
+          of_unit[to.deviation] = values[from.deviation];
+        }
+      }
+    }
+  }
+  return deviations;
+}
+
 }  // namespace
 
 FitOptions PhysicsAlone(FitOptions options) {
+  const ModelOptions whole = options.model;
   options.model.learned = nullptr;
-  options.table[kRodLift].free = false;  // no rod moves
+  options.model.interaction.learned = false;
+  options.early_stopping = 0.0;  // physics does not learn by heart
+  for (ParameterSpec& spec : options.table.specs) {
+    const bool of_network = Acts(spec.id, whole) && !Acts(spec.id, options.model);
+    if (of_network) spec.free = spec.pooled = false;
+  }
   return options;
 }
 
 Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
-                                     const FitOptions& options, const SolveProgress& progress) {
-  const FitOptions physics = PhysicsAlone(options);
-  const FitProblem problem(recordings, physics);
-  const Solution solution = Solve(problem, progress);
-  if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
-
+                                     const FitOptions& options, const FittedPhysics& physics,
+                                     const SolveProgress& progress) {
+  const FitProblem problem(recordings, physics.options);
   LargeNetworkFit fit;
   EarlyStoppingSplit split{std::vector<int>(recordings.size(), 1), {}};
   if (options.early_stopping > 0.0) {
@@ -51,16 +79,16 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
     if (!made.ok()) return made.error();
     split = made.value();
   }
-  fit.training = Counted(problem, split.training);
-  fit.held_out = Counted(problem, split.held_out);
+  fit.training = Counted(problem, physics.point, split.training);
+  fit.held_out = Counted(problem, physics.point, split.held_out);
   fit.model = options.model;
-  fit.map = MapBesideNetwork(options, problem.Parameters(solution.Best().to, ""));
+  fit.map = MapBesideNetwork(options, problem.Parameters(physics.point, ""));
   for (const FittedParameter& f : fit.map.fitted) {
     fit.shared.push_back(ToFitted(f.transform, options.table[f.parameter].nominal));
   }
   fit.shared_prior = SharedPriors(options.table, fit.map);
   fit.options.fit_shared = true;
-  fit.sigmas = options.sigmas;
+  fit.sigmas = physics.options.sigmas;
   fit.options.weight_sigma = options.network_prior;
   fit.options.max_iterations = options.max_iterations;
   const Result<LargeNetworkSolution> trained =
@@ -77,7 +105,13 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   held.horizons = {0};
   const ParameterSet<double> learned =
       fit.map.Apply<double>(trained.value().shared.data(), nullptr);
-  for (ParameterSpec& spec : held.table.specs) spec.nominal = learned[spec.id];
+  for (ParameterSpec& spec : held.table.specs) {
+    spec.nominal = learned[spec.id];
+    spec.pooling_sigma = physics.options.table[spec.id].pooling_sigma;
+  }
+  held.sigmas = physics.options.sigmas;
+  held.start_deviations = DeviationsOf(physics.point, problem.map(), held.table.Map());
+  held.effective_weight = physics.options.effective_weight;
   return held;
 }
 

@@ -1,4 +1,4 @@
-// residuals: rollouts side by side, forwards and backwards.
+// residuals: rollouts side by side. adjoint_batch_backward.cc goes back over them.
 #include "residuals/adjoint/adjoint_batch.h"
 
 #include <algorithm>
@@ -9,6 +9,11 @@ namespace {
 int Frames(const AdjointRecording& r) {
   const int frames = r.recording->num_frames();
   return r.horizon > 0 ? std::min(r.horizon, frames) : frames;
+}
+
+// In place of the map's values; null: these.
+const ParameterSet<double>* Held(const AdjointRecording& r, int person) {
+  return r.held.empty() ? nullptr : &r.held[r.held.size() == 1 ? 0 : person];
 }
 
 LockstepColumns ColumnsOf(const std::vector<AdjointRecording>& all,
@@ -33,13 +38,15 @@ AdjointGradient::Batch::Batch(const std::vector<AdjointRecording>& all,
                               const ResidualSigmas& sigmas, const VectorKernels& kernels)
     : options_(options), sigmas_(sigmas), columns_(ColumnsOf(all, recordings)) {
   std::vector<double> masses;
+  std::vector<const Scene*> scenes;
   for (int index : recordings) {
     const AdjointRecording& r = all[index];
     const std::vector<SelfForce> self = SelfForces(r.recording->scene, options);
     const int place = static_cast<int>(horizon_.size()), frames = Frames(r);
     horizon_.push_back(frames);
+    scenes.push_back(&r.recording->scene);
     for (int n = 0; n < r.recording->num_people(); ++n) {
-      walkers_.push_back({r.recording, index, place, n, r.weight, self[n],
+      walkers_.push_back({r.recording, index, place, n, r.weight, self[n], Held(r, n),
                           std::vector<PendulumState<double>>(frames),
                           std::vector<Vector4<double>>(frames)});
       if (frames > 0) walkers_.back().path[0] = r.recording->scene.people[n].start;
@@ -49,19 +56,45 @@ AdjointGradient::Batch::Batch(const std::vector<AdjointRecording>& all,
   const LearnedTerms& network = *options_.learned;
   if (network.shape.any()) network_.emplace(network.shape, kernels, columns_, masses);
   if (network.rod.moves()) rod_.emplace(network.rod, kernels, columns_);
+  if (options_.interaction.Any()) others_.emplace(options_, scenes, kernels);
+  now_.states.resize(walkers_.size());
 }
 
-double AdjointGradient::Batch::Forward(const ParameterSet<double>& p, const double* weights,
-                                       std::vector<RolloutStatus>* status) {
+double AdjointGradient::Batch::Forward(const ParameterMap& map, const double* shared,
+                                       const double* weights, std::vector<RolloutStatus>* status) {
   end_ = horizon_;
+  now_.parameters.clear();
+  ParameterMap own = map;
+  for (const Walker& walker : walkers_) {
+    own.values = walker.held == nullptr ? map.values : *walker.held;
+    now_.parameters.push_back(own.Apply<double>(shared, nullptr));
+  }
   if (network_) network_->Start(weights);
   if (rod_) rod_->Start(weights + options_.learned->rod_at());
+  if (others_) others_->Start(weights);
   for (int step = 0; step < columns_.num_steps(); ++step) {
+    SetStates(step);
     SetForces(step);
-    SetRodVelocities(p, step);
-    Step(p, step, status);
+    SetReceived(step);
+    SetRodVelocities(step);
+    Step(step, status);
   }
-  return Cost(p[kRodLift]);
+  return Cost();
+}
+
+void AdjointGradient::Batch::SetStates(int step) {
+  if (!others_) return;
+  for (int column = 0; column < columns_.active(step); ++column) {
+    const Walker& walker = walkers_[column];
+    if (Going(walker, step)) now_.states[column] = walker.path[step];
+  }
+}
+
+void AdjointGradient::Batch::SetReceived(int step) {
+  if (!others_) return;
+  std::vector<bool> going;
+  for (int end : end_) going.push_back(step + 1 < end);
+  others_->Forward(now_, going, &received_);
 }
 
 void AdjointGradient::Batch::SetForces(int step) {
@@ -83,7 +116,7 @@ void AdjointGradient::Batch::SetForces(int step) {
   network_->Forward(step, inputs_, &forces_);
 }
 
-void AdjointGradient::Batch::SetRodVelocities(const ParameterSet<double>& p, int step) {
+void AdjointGradient::Batch::SetRodVelocities(int step) {
   const int people = columns_.active(step);
   rod_velocities_.setZero(people);
   if (!rod_) return;
@@ -93,7 +126,8 @@ void AdjointGradient::Batch::SetRodVelocities(const ParameterSet<double>& p, int
     const Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
     const PendulumState<double>& state = walker.path[step];
-    Vector4<double> force = walker.self.Total(p, state, walker.VelocityBefore(step));
+    Vector4<double> force =
+        walker.self.Total(Parameters(column), state, walker.VelocityBefore(step));
     force += forces_.col(column);
     force.tail<2>() -= walker.self.hold;
     SetRodInputs<double>(state.q[2] - walker.self.posture[0], state.q[3] - walker.self.posture[1],
@@ -103,15 +137,16 @@ void AdjointGradient::Batch::SetRodVelocities(const ParameterSet<double>& p, int
   rod_->Forward(step, rod_inputs_, &rod_velocities_);
 }
 
-void AdjointGradient::Batch::Step(const ParameterSet<double>& p, int step,
-                                  std::vector<RolloutStatus>* status) {
+void AdjointGradient::Batch::Step(int step, std::vector<RolloutStatus>* status) {
+  Received<double> received;
   for (int column = 0; column < columns_.active(step); ++column) {
     Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
     const PendulumState<double>& state = walker.path[step];
+    if (others_) received.part[0] = received_.col(column);
     const Vector4<double> force =
-        NetForceAt<double>(walker.scene(), options_, walker.self, p, walker.person, step, state,
-                           walker.VelocityBefore(step), {}, forces_.col(column))
+        NetForceAt<double>(walker.scene(), options_, walker.self, Parameters(column), walker.person,
+                           step, state, walker.VelocityBefore(step), received, forces_.col(column))
             .Total();
     walker.acceleration[step] = Acceleration(BodyNow(walker.body(), state.rod, 0.0), state, force);
     PendulumState<double>& next = walker.path[step + 1];
@@ -128,9 +163,11 @@ void AdjointGradient::Batch::Step(const ParameterSet<double>& p, int step,
   }
 }
 
-double AdjointGradient::Batch::Cost(double lift) const {
+double AdjointGradient::Batch::Cost() const {
   double cost = 0.0;
-  for (const Walker& walker : walkers_) {
+  for (size_t column = 0; column < walkers_.size(); ++column) {
+    const Walker& walker = walkers_[column];
+    const double lift = now_.parameters[column][kRodLift];
     for (int t = 1; t < end_[walker.place]; ++t) {
       const PendulumState<double>& state = walker.path[t];
       const FrameVector<double> r =
@@ -140,107 +177,6 @@ double AdjointGradient::Batch::Cost(double lift) const {
     }
   }
   return cost;
-}
-
-double AdjointGradient::Batch::AddResidual(const Walker& walker, int frame, double lift,
-                                           Adjoint* adjoint) const {
-  Eigen::Matrix<double, kFrameResiduals, 10> jacobian;
-  const FrameVector<double> r = MovingRodResidualWithJacobian(
-      walker.body(), lift, walker.path[frame], walker.Measured(frame), sigmas_, &jacobian);
-  const Eigen::Matrix<double, 10, 1> gradient =
-      walker.weight * walker.weight * (jacobian.transpose() * r);
-  adjoint->state += gradient.head<8>();
-  adjoint->rod += gradient[8];
-  return gradient[9];
-}
-
-Vector4<double> AdjointGradient::Batch::StepBack(const Walker& walker,
-                                                 const ParameterSet<double>& p, int step,
-                                                 const Eigen::VectorXd* by_rod, Adjoint* adjoint,
-                                                 ParameterSet<double>* by_parameter) const {
-  const double dt = walker.scene().dt;
-  const PendulumState<double>& state = walker.path[step];
-  const Vector4<double>& before = walker.VelocityBefore(step);
-  const Body body = BodyNow(walker.body(), state.rod, 0.0);
-  State& s = adjoint->state;
-  Eigen::Map<Eigen::Matrix<double, kNumParameters, 1>> sum(by_parameter->data());
-
-  const Vector4<double> g = s.tail<4>() + dt * s.head<4>();
-  const Vector4<double> f = dt * (InverseMassMatrix(body, state.q) * g);
-  SelfForce::Jacobian jacobian;
-  NetForceJacobian(walker.scene(), options_, walker.self, p, walker.person, step, state, before,
-                   &jacobian);
-  const Matrix4<double> rigid =
-      InverseDynamicsJacobian(body, Angles<double>(state.q), state.qd, walker.acceleration[step]);
-  jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
-  jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
-  s.tail<4>() = g;
-  s += jacobian.by_state.transpose() * f;
-  sum += jacobian.by_parameter.transpose() * f;
-  Eigen::Vector2d by_previous = jacobian.by_previous.cwiseProduct(f.head<2>());
-  Vector4<double> by_network = Vector4<double>::Zero();
-  if (ForcesAt(walker.scene(), options_.push, walker.person, step) == ActiveForces::kAll) {
-    by_network = f;
-  }
-
-  if (by_rod != nullptr) {
-    adjoint->rod -= f.dot(InverseDynamicsByRod(body, state, walker.acceleration[step]));
-    adjoint->rod += (*by_rod)[RodShape::kRodInput] / kNetworkRod;
-    const Vector4<double> seen =
-        by_rod->segment<4>(RodShape::kForceInputs) / (kNetworkAcceleration * walker.body().mass);
-    walker.self.TotalJacobian(p, state, before, &jacobian);
-    s.tail<6>() += by_rod->head<6>().cwiseProduct(MotionInputScales());
-    s += jacobian.by_state.transpose() * seen;
-    sum += jacobian.by_parameter.transpose() * seen;
-    by_previous += jacobian.by_previous.cwiseProduct(seen.head<2>());
-    by_network += seen;
-  }
-
-  s.segment<2>(4) += adjoint->owed;
-  adjoint->owed.setZero();
-  if (walker.self.cart_derivative) {
-    if (step > 0) {
-      adjoint->owed = by_previous;
-    } else {
-      s.segment<2>(4) += by_previous;
-    }
-  }
-  return by_network;
-}
-
-void AdjointGradient::Batch::Backward(const ParameterSet<double>& p,
-                                      ParameterSet<double>* by_parameter, double* by_weight) {
-  std::vector<Adjoint> adjoints(walkers_.size());  // of the frame after the step
-  Eigen::VectorXd by_rod;
-  for (int step = columns_.num_steps() - 1; step >= 0; --step) {
-    const int people = columns_.active(step);
-    rod_velocities_.setZero(people);
-    for (int column = 0; column < people; ++column) {
-      const Walker& walker = walkers_[column];
-      if (!Going(walker, step)) continue;
-      (*by_parameter)[kRodLift] += AddResidual(walker, step + 1, p[kRodLift], &adjoints[column]);
-      rod_velocities_[column] = walker.scene().dt * adjoints[column].rod;
-    }
-    if (rod_) rod_->Backward(step, rod_velocities_, &rod_inputs_);
-
-    forces_.setZero(4, people);
-    for (int column = 0; column < people; ++column) {
-      if (!Going(walkers_[column], step)) continue;
-      if (rod_) by_rod = rod_inputs_.col(column);
-      forces_.col(column) = StepBack(walkers_[column], p, step, rod_ ? &by_rod : nullptr,
-                                     &adjoints[column], by_parameter);
-    }
-    if (!network_) continue;
-    network_->Backward(step, forces_, &inputs_);
-    for (int column = 0; column < people; ++column) {
-      const auto u = inputs_.col(column);
-      adjoints[column].state.tail<6>() += u.head<6>().cwiseProduct(MotionInputScales());
-      if (u.size() > kMotionInputs) adjoints[column].rod += u[kMotionInputs] / kNetworkRod;
-    }
-  }
-  if (by_weight == nullptr) return;
-  if (network_) network_->AddWeightGradient(by_weight);
-  if (rod_) rod_->AddWeightGradient(by_weight + options_.learned->rod_at());
 }
 
 }  // namespace pushid

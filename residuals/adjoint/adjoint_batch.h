@@ -8,6 +8,7 @@
 #include "residuals/adjoint/adjoint_gradient.h"
 #include "residuals/adjoint/network_lockstep.h"
 #include "residuals/adjoint/rod_lockstep.h"
+#include "residuals/adjoint/touching_people.h"
 
 namespace pushid {
 
@@ -18,12 +19,12 @@ class AdjointGradient::Batch {
         const ModelOptions& options, const ResidualSigmas& sigmas, const VectorKernels& kernels);
 
   // Returns the cost, and what became of the batch's recordings.
-  double Forward(const ParameterSet<double>& p, const double* weights,
+  double Forward(const ParameterMap& map, const double* shared, const double* weights,
                  std::vector<RolloutStatus>* status);
 
-  // After Forward, with the same arguments. by_parameter: of natural values; adds to both.
-  void Backward(const ParameterSet<double>& p, ParameterSet<double>* by_parameter,
-                double* by_weight);
+  // After Forward. by_parameter: of natural values, the sum over all people; adds to both.
+  // by_weight may be null.
+  void Backward(ParameterSet<double>* by_parameter, double* by_weight);
 
  private:
   using State = Eigen::Matrix<double, 8, 1>;
@@ -34,6 +35,11 @@ class AdjointGradient::Batch {
     // What the backward difference of the cart's velocity hands to the frame before.
     Eigen::Vector2d owed = Eigen::Vector2d::Zero();
   };
+  // d(cost)/d(force) of what a step back does not know itself: of the own network's, and of what
+  // others do.
+  struct ForceAdjoint {
+    Vector4<double> network = Vector4<double>::Zero(), received = Vector4<double>::Zero();
+  };
 
   // One column of the lockstep.
   struct Walker {
@@ -41,6 +47,7 @@ class AdjointGradient::Batch {
     int index, place, person;  // of the recording among all, in the batch; of the person in it
     double weight;
     SelfForce self;
+    const ParameterSet<double>* held;  // in place of the map's values; null: these
     std::vector<PendulumState<double>> path;
     std::vector<Vector4<double>> acceleration;
 
@@ -53,18 +60,24 @@ class AdjointGradient::Batch {
   };
 
   bool Going(const Walker& walker, int step) const { return step + 1 < end_[walker.place]; }
-  // What the networks answer to the states of a step.
+  const ParameterSet<double>& Parameters(int column) const { return now_.parameters[column]; }
+  void SetStates(int step);
+  // What the networks answer to the states of a step, and what people do to each other there.
   void SetForces(int step);
-  void SetRodVelocities(const ParameterSet<double>& p, int step);
-  void Step(const ParameterSet<double>& p, int step, std::vector<RolloutStatus>* status);
-  double Cost(double lift) const;
+  void SetReceived(int step);
+  void SetRodVelocities(int step);
+  void Step(int step, std::vector<RolloutStatus>* status);
+  double Cost() const;
   // Adds the residual of a frame to its adjoint; returns its part of d(cost)/d(lift).
-  double AddResidual(const Walker& walker, int frame, double lift, Adjoint* adjoint) const;
-  // A walker's step back but for the networks. by_rod: the adjoint of what the rod's law saw; null
-  // where it is constant. Returns the adjoint of the force of the network.
-  Vector4<double> StepBack(const Walker& walker, const ParameterSet<double>& p, int step,
-                           const Eigen::VectorXd* by_rod, Adjoint* adjoint,
-                           ParameterSet<double>* by_parameter) const;
+  double AddResidual(int column, int frame, Adjoint* adjoint) const;
+  // A walker's step back but for networks and others. by_rod: the adjoint of what the rod's law
+  // saw; null where it is constant.
+  ForceAdjoint StepBack(int column, int step, const Eigen::VectorXd* by_rod, Adjoint* adjoint,
+                        ParameterSet<double>* by_parameter) const;
+  // Adds the residuals of the frame after a step, and goes back through the rods' laws.
+  void RodBack(int step, std::vector<Adjoint>* adjoints, ParameterSet<double>* by_parameter);
+  // From the adjoints of a step's forces, forces_ and received_, to those of its states.
+  void ForcesBack(int step, std::vector<Adjoint>* adjoints, ParameterSet<double>* by_parameter);
 
   const ModelOptions options_;
   const ResidualSigmas sigmas_;
@@ -73,7 +86,10 @@ class AdjointGradient::Batch {
   LockstepColumns columns_;
   std::optional<NetworkLockstep> network_;  // none: no force
   std::optional<RodLockstep> rod_;          // none: constant
+  std::optional<TouchingPeople> others_;    // none: nobody does anything to another
+  PeopleNow now_;                           // states: only where people touch
   Eigen::MatrixXd inputs_, forces_, rod_inputs_;
+  Eigen::MatrixXd received_, by_state_;  // from others; backwards the adjoints of both sides
   Eigen::RowVectorXd rod_velocities_;
 };
 

@@ -16,17 +16,27 @@ constexpr int kPeopleTogether = 64;
 MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
                             const ModelOptions& options, const ParameterMap& map) {
   if (options.learned == nullptr) return Error{"the adjoint gradient needs a network"};
-  if (options.interaction.Any() || options.interaction.drive) {
+  if (options.interaction.drive) {
     return Error{
-        "the adjoint gradient does not know forces between people; use recordings of single "
-        "people with no interaction, or a network small enough for Gauss-Newton"};
+        "the adjoint gradient does not know --interaction=drive, which remembers what others did; "
+        "leave drive out, or use a network small enough for Gauss-Newton"};
+  }
+  if (options.stance != Stance::kSlide) {
+    return Error{
+        "the adjoint gradient is for feet that slide; leave --stance=threshold out, or use a "
+        "network small enough for Gauss-Newton"};
   }
   if (map.num_deviations > 0) {
     return Error{
         "the adjoint gradient has no deviations by subject or setting; fit them without the "
-        "network first and pool nothing here"};
+        "network first and hold them here"};
   }
   for (const AdjointRecording& r : recordings) {
+    const size_t people = static_cast<size_t>(r.recording->num_people());
+    if (r.held.size() > 1 && r.held.size() != people) {
+      return Error{"recording '" + r.recording->id + "' has " + std::to_string(people) +
+                   " people, but held values of " + std::to_string(r.held.size())};
+    }
     if (r.recording->initial_velocity == InitialVelocity::kFree) {
       return Error{"recording '" + r.recording->id +
                    "' has a free initial velocity, which the adjoint gradient does not fit; make "
@@ -80,18 +90,19 @@ int AdjointGradient::num_weights() const { return num_weights_; }
 
 AdjointCost AdjointGradient::Evaluate(const double* shared, const double* weights,
                                       double* by_shared, double* by_weight) {
-  const ParameterSet<double> p = map_.Apply<double>(shared, nullptr);
   ParameterSet<double> by_parameter{};
   AdjointCost result;
   result.status.resize(num_recordings_);
   if (by_weight != nullptr) std::fill_n(by_weight, num_weights_, 0.0);
   for (const auto& batch : batches_) {
-    result.cost += batch->Forward(p, weights, &result.status);
+    result.cost += batch->Forward(map_, shared, weights, &result.status);
     if (by_shared == nullptr && by_weight == nullptr) continue;
-    batch->Backward(p, &by_parameter, by_weight);
+    batch->Backward(&by_parameter, by_weight);
   }
   if (by_shared == nullptr) return result;
   std::fill_n(by_shared, map_.num_shared(), 0.0);
+  // What is fitted is the same of everybody, and so are the slopes.
+  const ParameterSet<double> p = map_.Apply<double>(shared, nullptr);
   for (const ColumnEntry& entry : map_.Entries(p, -1)) {
     by_shared[entry.column] += entry.derivative * by_parameter[entry.parameter];
   }

@@ -11,6 +11,7 @@
 // moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v (rod_lockstep.h) to s, F_self
 // and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
+// What people do to each other: touching_people.h.
 // One gradient costs about as much as three rollouts, whatever the number of weights.
 //
 //   auto gradient = AdjointGradient::Create({{&recording, weight}}, options, map, sigmas);
@@ -18,7 +19,7 @@
 //   const AdjointCost cost = gradient.value().Evaluate(shared, weights, by_shared, by_weight);
 //
 // Shared parameters (on the fitted scale) and weights only: deviations of units and free initial
-// velocities are few and belong to Gauss-Newton. No people touch.
+// velocities are few and belong to Gauss-Newton. Deviations may be held (AdjointRecording::held).
 #pragma once
 
 #include <memory>
@@ -34,6 +35,9 @@ struct AdjointRecording {
   const PendulumRecording* recording = nullptr;  // must outlive the gradient
   double weight = 1.0;                           // on every residual
   int horizon = 0;                               // at most that many frames; 0 means all
+  // Values of what is not fitted, in place of the map's: of each person, or one for all. What two
+  // people share is taken from the first. Empty: the map's.
+  std::vector<ParameterSet<double>> held = {};
 };
 
 struct AdjointCost {
@@ -46,8 +50,8 @@ struct AdjointCost {
 
 class AdjointGradient {
  public:
-  // Fails, in words, on interaction between people, deviations, free initial velocities, and where
-  // options have no network. map.num_weights: that of the network's.
+  // Fails, in words, on drive, feet that stand and step, deviations, free initial velocities, and
+  // where options have no network. map.num_weights: that of the network's.
   static Result<AdjointGradient> Create(const std::vector<AdjointRecording>& recordings,
                                         const ModelOptions& options, const ParameterMap& map,
                                         const ResidualSigmas& sigmas,
@@ -61,7 +65,8 @@ class AdjointGradient {
 
   // The same numbers again give the same bits. by_shared and by_weight: overwritten; null where
   // not wanted. One call at a time: everything that a rollout leaves behind is kept in the object
-  // (8 kB a person and frame for lstm:256:32, 17 for its gradient).
+  // (8 kB a person and frame for lstm:256:32, 17 for its gradient; 17 kB for each of two people and
+  // frame in which they touch for an interaction network:512-512).
   AdjointCost Evaluate(const double* shared, const double* weights, double* by_shared,
                        double* by_weight);
 

@@ -6,29 +6,6 @@
 namespace pushid {
 namespace {
 
-// The gate by [q of n, q of j] and by the contact's parameters.
-struct GateJacobian {
-  double gate = 0.0;
-  Eigen::Matrix<double, 1, 8> by_places;
-  Eigen::Matrix<double, 1, kContactParameters> by_parameter;
-};
-
-GateJacobian GateOf(const Pair& pair, const ParameterSet<double>& p, const Vector4<double>& q_n,
-                    const Vector4<double>& q_j) {
-  using Jet = ceres::Jet<double, 8 + kContactParameters>;
-  Vector4<Jet> n, j;
-  for (int i = 0; i < 4; ++i) {
-    n[i] = Jet(q_n[i], i);
-    j[i] = Jet(q_j[i], 4 + i);
-  }
-  ParameterSet<Jet> parameters;
-  for (int i = 0; i < kContactParameters; ++i) {
-    parameters[kContactStiffness + i] = Jet(p[kContactStiffness + i], 8 + i);
-  }
-  const Jet gate = PairGate<Jet>(pair, parameters, n, j);
-  return {gate.a, gate.v.head<8>().transpose(), gate.v.tail<kContactParameters>().transpose()};
-}
-
 using Output = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
 // d(output)/d(inputs), and into by_weight, scaled, d(output)/d(weights).
@@ -54,31 +31,30 @@ Output Backward(const PairShape& shape, const double* weights, const PairLayers<
   return back;  // not reached: the inputs are the first layer's
 }
 
-// d(u)/d[q, qd of n], d(u)/d[q, qd of j], as columns of by_states.
-Eigen::Matrix<double, 4, 16> ByStates(const Output& by_input) {
-  Eigen::Matrix<double, 4, 16> by_states;
-  const auto input = [&by_input](int i, double unit) { return by_input.col(i) / unit; };
-  for (int i = 0; i < 2; ++i) {
-    by_states.col(i) = input(i, kPairDistance);
-    by_states.col(4 + i) = input(2 + i, kNetworkSpeed);
-    by_states.col(2 + i) = input(4 + 2 * i, kNetworkAngle);
-    by_states.col(10 + i) = input(5 + 2 * i, kNetworkAngle);
-    by_states.col(6 + i) = input(8 + i, kNetworkRate);
-    by_states.col(8 + i) = -by_states.col(i);
-    by_states.col(12 + i) = -by_states.col(4 + i);
-    by_states.col(14 + i) = -by_states.col(6 + i);
-  }
-  return by_states;
-}
-
 }  // namespace
+
+GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
+                              const Vector4<double>& q_n, const Vector4<double>& q_j) {
+  using Jet = ceres::Jet<double, 8 + kContactParameters>;
+  Vector4<Jet> n, j;
+  for (int i = 0; i < 4; ++i) {
+    n[i] = Jet(q_n[i], i);
+    j[i] = Jet(q_j[i], 4 + i);
+  }
+  ParameterSet<Jet> parameters;
+  for (int i = 0; i < kContactParameters; ++i) {
+    parameters[kContactStiffness + i] = Jet(p[kContactStiffness + i], 8 + i);
+  }
+  const Jet gate = PairGate<Jet>(pair, parameters, n, j);
+  return {gate.a, gate.v.head<8>().transpose(), gate.v.tail<kContactParameters>().transpose()};
+}
 
 void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const Pair& pair,
                             const ParameterSet<double>& p, const PendulumState<double>& n,
                             const PendulumState<double>& j, PairJacobian* jacobian,
                             PairByWeight* by_weight) {
   if (by_weight != nullptr) by_weight->setZero(8, shape.num_weights());
-  const GateJacobian gate = GateOf(pair, p, n.q, j.q);
+  const GateJacobian gate = PairGateJacobian(pair, p, n.q, j.q);
   if (!(gate.gate > 0.0)) return;
   PairLayers<double> layers;
   Output unwanted(4, 0);
@@ -90,7 +66,7 @@ void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const
                                 ? Backward(shape, weights, layers, 0.0, unwanted)
                                 : Backward(shape, weights, layers, scale * gate.gate,
                                            by_weight->middleRows<4>(4 * side));
-    const Eigen::Matrix<double, 4, 16> own = scale * gate.gate * ByStates(by_input);
+    const Eigen::Matrix<double, 4, 16> own = scale * gate.gate * PairInputsByStates(by_input);
     auto by_states = jacobian->by_states.middleRows<4>(4 * side);
     by_states.leftCols<8>() += side == 0 ? own.leftCols<8>() : own.rightCols<8>();
     by_states.rightCols<8>() += side == 0 ? own.rightCols<8>() : own.leftCols<8>();

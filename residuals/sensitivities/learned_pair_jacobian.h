@@ -12,6 +12,33 @@
 
 namespace pushid {
 
+// The gate by [q of n, q of j] and by the contact's parameters.
+struct GateJacobian {
+  double gate = 0.0;
+  Eigen::Matrix<double, 1, 8> by_places;
+  Eigen::Matrix<double, 1, kContactParameters> by_parameter;
+};
+GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
+                              const Vector4<double>& q_n, const Vector4<double>& q_j);
+
+// From derivatives by u of n, who meets j, to those by [q, qd] of n, then of j.
+template <typename Rows>
+Eigen::Matrix<double, Rows::RowsAtCompileTime, 16> PairInputsByStates(const Rows& by_input) {
+  Eigen::Matrix<double, Rows::RowsAtCompileTime, 16> by_states;
+  const auto input = [&by_input](int i, double unit) { return by_input.col(i) / unit; };
+  for (int i = 0; i < 2; ++i) {
+    by_states.col(i) = input(i, kPairDistance);
+    by_states.col(4 + i) = input(2 + i, kNetworkSpeed);
+    by_states.col(2 + i) = input(4 + 2 * i, kNetworkAngle);
+    by_states.col(10 + i) = input(5 + 2 * i, kNetworkAngle);
+    by_states.col(6 + i) = input(8 + i, kNetworkRate);
+    by_states.col(8 + i) = -by_states.col(i);
+    by_states.col(12 + i) = -by_states.col(4 + i);
+    by_states.col(14 + i) = -by_states.col(6 + i);
+  }
+  return by_states;
+}
+
 // d(force on n, force on j) / d(weights).
 using PairByWeight = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
 

@@ -57,12 +57,23 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   EXPECT_FALSE(tail.pooling_sigma);
   for (const GivenOptions& given :
        {GivenOptions{{"fix", "tail_time"}}, GivenOptions{{"push_tail", "none"}},
-        GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}},
-        GivenOptions{{"self_force", "lstm:64"}}}) {
+        GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}}}) {
     const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
     ASSERT_TRUE(made.ok()) << made.error().ToString();
     EXPECT_FALSE(AnyPooled(made.value().table)) << given[0].first;
   }
+  // A large network is trained beside what units differ in.
+  for (const auto& [preset, option, value] :
+       {std::tuple("tail", "self_force", "lstm:64"),
+        {"group", "interaction", "spring,damping,network:64-64"}}) {
+    const Result<FitOptions> made = MakeFitOptions({{"preset", preset}, {option, value}});
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    EXPECT_TRUE(NeedsGradientTraining(made.value()));
+    EXPECT_TRUE(AnyPooled(made.value().table)) << preset;
+  }
+  EXPECT_TRUE(Contains(
+      Complaint({{"preset", "group"}, {"interaction", "spring,damping,drive,network:64-64"}}),
+      "does not know --interaction=drive"));
   EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
 }
 

@@ -13,6 +13,7 @@
 #include "ident/results/fit.h"
 #include "ident/results/fit_setup.h"
 #include "ident/results/result_json.h"
+#include "ident/solver/large_network_stage.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -81,6 +82,44 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
   ASSERT_TRUE(learned.contact_takeover.has_value());
   EXPECT_GT(learned.contact_takeover->rms_force, 0.1);
   EXPECT_TRUE(Contains(NetworkText(learned), "it acts like stiffness "));
+}
+
+// One of too many weights for a Jacobian learns by its gradient, beside what people differ in; the
+// physical parameters are fitted again after it, and the file keeps all of it.
+TEST(LearnedInteraction, LargeOnesLearnByTheirGradient) {
+  Rows rows;
+  rows.options.max_iterations = 100;
+  rows.options.pool_by = PoolBy::kSubject;
+  rows.options.table[kMu].pooled = true;
+  const double without = rows.HeldOutAde(rows.Fitted({}));
+  const PairShape large{{48, 32}};
+  ASSERT_GT(large.num_weights(), kMostGaussNewtonWeights);
+  const FitResult learned = rows.Fitted(large);
+  ASSERT_TRUE(learned.ok()) << learned.message;
+  EXPECT_GT(without, 0.002);
+  EXPECT_LT(rows.HeldOutAde(learned), 0.3 * without);
+  EXPECT_TRUE(Contains(NetworkText(learned), "interaction network:48-32 (2228 weights"));
+  const nlohmann::ordered_json json = ToJson({learned, {}, {}, {}, {}}, RunInfo{});
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(rows.HeldOutAde(read.value().fit), rows.HeldOutAde(learned));
+}
+
+// Where contact is learned alone, its parameters act through the network's gate and nothing else:
+// the first of the three steps is without them.
+TEST(LearnedInteraction, LargeOnesLearnWithoutContact) {
+  Rows rows;
+  rows.options.max_iterations = 20;
+  FitOptions options = rows.With({{48, 32}});
+  options.model.interaction.spring = options.model.interaction.damping = false;
+  FreeTerms(&options);
+  options.table[kContactDamping].free = options.table[kContactStiffness].free = false;
+  options.table[kContactDistance].free = true;
+  ASSERT_FALSE(PrepareFit(rows.training, &options));
+  EXPECT_FALSE(PhysicsAlone(options).table[kContactDistance].free);
+  const FitResult learned = Fit(rows.training, options);
+  ASSERT_TRUE(learned.ok()) << learned.message;
+  EXPECT_NE(learned.parameters[kContactDistance], options.table[kContactDistance].nominal);
 }
 
 TEST(LearnedInteraction, ThePenaltyGivesContactItsMeaningBack) {

@@ -216,7 +216,7 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
   EXPECT_NE(complaint().find("each of 1 shared"), std::string::npos);
   fit.map.fitted.clear();
   fit.model.interaction.drive = true;
-  EXPECT_NE(complaint().find("forces between people"), std::string::npos);
+  EXPECT_NE(complaint().find("--interaction=drive"), std::string::npos);
   fit.model.interaction.drive = false;
   fit.model.learned =
       std::make_shared<const LearnedTerms>(LearnedTerms{kShape, std::vector<double>(3)});

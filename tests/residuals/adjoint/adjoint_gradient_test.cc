@@ -2,10 +2,8 @@
 // several recordings of several people, in three regimes.
 #include "residuals/adjoint/adjoint_gradient.h"
 
-#include <ceres/problem.h>
-
 #include "residuals/autodiff_force_law.h"
-#include "tests/residuals/residual_samples.h"
+#include "tests/residuals/adjoint/gradients.h"
 
 namespace pushid {
 namespace {
@@ -70,57 +68,6 @@ std::vector<PendulumRecording> SomeRecordings(const ModelOptions& options, const
   }
   recordings[1].weight = {std::vector<double>(40, 0.5), {}};
   return recordings;
-}
-
-struct Gradient {
-  double cost = 0.0;
-  std::vector<double> shared, weights;
-};
-
-// Ceres' own sum over blocks of RolloutResidual.
-Gradient ByForwardSensitivities(const std::vector<AdjointRecording>& recordings,
-                                const ModelOptions& options, const ParameterMap& map,
-                                std::vector<double> shared, std::vector<double> weights) {
-  ceres::Problem problem;
-  for (const AdjointRecording& r : recordings) {
-    problem.AddResidualBlock(new RolloutResidual(MakeRolloutProblem(*r.recording, options, map, {},
-                                                                    r.weight, r.horizon)),
-                             nullptr, shared.data(), weights.data());
-  }
-  ceres::Problem::EvaluateOptions evaluate;
-  evaluate.parameter_blocks = {shared.data(), weights.data()};
-  std::vector<double> flat;
-  Gradient result;
-  EXPECT_TRUE(problem.Evaluate(evaluate, &result.cost, nullptr, &flat, nullptr));
-  result.shared.assign(flat.begin(), flat.begin() + map.num_shared());
-  result.weights.assign(flat.begin() + map.num_shared(), flat.end());
-  return result;
-}
-
-Gradient ByAdjoint(AdjointGradient* adjoint, const std::vector<double>& shared,
-                   const std::vector<double>& weights) {
-  Gradient result{0.0, std::vector<double>(adjoint->num_shared(), NAN),
-                  std::vector<double>(adjoint->num_weights(), NAN)};
-  const AdjointCost cost =
-      adjoint->Evaluate(shared.data(), weights.data(), result.shared.data(), result.weights.data());
-  EXPECT_TRUE(cost.ok());
-  result.cost = cost.cost;
-  return result;
-}
-
-// relative: to the largest entry, as rounding is.
-void ExpectSameVector(const std::vector<double>& actual, const std::vector<double>& expected,
-                      double relative, const char* name) {
-  ASSERT_EQ(actual.size(), expected.size());
-  double largest = 0.0;
-  for (double value : expected) largest = std::max(largest, std::abs(value));
-  for (size_t i = 0; i < actual.size(); ++i) {
-    // Written so that NaN on either side is wrong.
-    if (std::abs(actual[i] - expected[i]) <= relative * largest) continue;
-    ADD_FAILURE() << std::setprecision(17) << "by " << name << " " << i << ": " << actual[i]
-                  << ", expected " << expected[i] << ", the largest is " << largest;
-    return;
-  }
 }
 
 class AdjointTwins : public testing::TestWithParam<Regime> {};
@@ -305,9 +252,12 @@ TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(complaint(options, map), "");
   EXPECT_NE(complaint({}, map).find("needs a network"), std::string::npos);
-  ModelOptions touching = options;
-  touching.interaction.spring = true;
-  EXPECT_NE(complaint(touching, map).find("forces between people"), std::string::npos);
+  ModelOptions driven = options;
+  driven.interaction.spring = driven.interaction.drive = true;
+  EXPECT_NE(complaint(driven, map).find("--interaction=drive"), std::string::npos);
+  ModelOptions standing = options;
+  standing.stance = Stance::kThreshold;
+  EXPECT_NE(complaint(standing, map).find("feet that slide"), std::string::npos);
   EXPECT_NE(complaint(options, EveryParameterMap({kMu})).find("deviations"), std::string::npos);
   made[0].initial_velocity = InitialVelocity::kFree;
   EXPECT_NE(complaint(options, map).find("'freely' has a free initial velocity"),

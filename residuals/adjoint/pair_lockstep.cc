@@ -1,0 +1,97 @@
+// residuals: learned interactions in lockstep, forwards and backwards.
+#include "residuals/adjoint/pair_lockstep.h"
+
+#include <algorithm>
+
+namespace pushid {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
+
+PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
+    : kernels_(kernels), right_(kernels, PackedMatrix::kRight), inputs_(PairShape::kInputs, 0) {
+  const PackedMatrix empty(kernels, PackedMatrix::kLeft);
+  std::vector<int> sizes = shape.hidden;
+  sizes.push_back(4);
+  int width = PairShape::kInputs, at = 0;
+  for (int rows : sizes) {
+    layers_.push_back({rows, width, at, empty, empty, Columns(rows, 0), Columns(rows, 0)});
+    at += rows * (width + 1);
+    width = rows;
+  }
+}
+
+void PairLockstep::Start(const double* weights) {
+  weights_ = weights;
+  first_ = {0};
+  for (Layer& layer : layers_) {
+    const double* w = weights + layer.at;
+    const int stride = layer.width + 1;
+    layer.weights.Pack(w, layer.rows, layer.width, stride, 1);
+    layer.transposed.Pack(w, layer.width, layer.rows, 1, stride);
+  }
+}
+
+void PairLockstep::Grow() {
+  const Eigen::Index total = first_.back(), had = inputs_.cols();
+  if (total <= had) return;
+  const Eigen::Index now = std::max(total, 2 * had);  // so that few steps copy what there is
+  inputs_.conservativeResize(Eigen::NoChange, now);
+  for (Layer& layer : layers_) {
+    layer.values.conservativeResize(Eigen::NoChange, now);
+    layer.back.resize(Eigen::NoChange, now);
+  }
+}
+
+void PairLockstep::Forward(const Columns& inputs, Columns* outputs) {
+  const int step = static_cast<int>(first_.size()) - 1, n = static_cast<int>(inputs.cols());
+  first_.push_back(first_.back() + n);
+  outputs->setZero(4, n);
+  if (n == 0) return;
+  Grow();
+  At(inputs_, step) = inputs;
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    auto below = At(Below(i), step), values = At(layer.values, step);
+    values.colwise() = PairLayer(weights_ + layer.at, layer.rows, layer.width).col(layer.width);
+    right_.Pack(below.data(), n, layer.width, layer.width, 1);
+    AddProduct(layer.weights, right_, values.data(), layer.rows);
+    if (!IsOutput(i)) kernels_.tanh(values.data(), values.size());
+  }
+  *outputs = At(layers_.back().values, step);
+}
+
+void PairLockstep::Backward(int step, const Columns& outputs, Columns* inputs) {
+  const int n = first_[step + 1] - first_[step];
+  *inputs = outputs;
+  if (n == 0) return;
+  for (size_t i = layers_.size(); i-- > 0;) {
+    Layer& layer = layers_[i];
+    auto back = At(layer.back, step);
+    back = *inputs;
+    if (!IsOutput(i)) back.array() *= 1.0 - At(layer.values, step).array().square();
+    inputs->setZero(layer.width, n);
+    right_.Pack(back.data(), n, layer.rows, layer.rows, 1);
+    AddProduct(layer.transposed, right_, inputs->data(), layer.width);
+  }
+}
+
+void PairLockstep::AddWeightGradient(double* gradient) {
+  const int total = first_.back();
+  if (total == 0) return;
+  PackedMatrix left(kernels_, PackedMatrix::kLeft);
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    const Layer& layer = layers_[i];
+    left.Pack(Below(i).data(), layer.width, total, 1, layer.width);
+    right_.Pack(layer.back.data(), layer.rows, total, 1, layer.rows);
+    RowMajor own = RowMajor::Zero(layer.rows, layer.width);
+    AddProduct(left, right_, own.data(), layer.width);
+    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.width + 1);
+    by_weight.leftCols(layer.width) += own;
+    by_weight.col(layer.width) += layer.back.leftCols(total).rowwise().sum();
+  }
+}
+
+}  // namespace pushid
