@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "datasets/files/number_text.h"
+
 namespace pushid {
 namespace {
 
@@ -118,9 +120,7 @@ bool LineReader::Next(std::string_view* line) {
 
 bool LineReader::NextNonBlank(std::string_view* line) {
   while (Next(line)) {
-    for (char c : *line) {
-      if (c != ' ' && c != '\t' && c != '\r') return true;
-    }
+    if (!Trimmed(*line).empty()) return true;
   }
   return false;
 }

@@ -37,6 +37,7 @@ $(sed -n 's/^stat::peak_rss_mb: *//p' "$log") MB at most, nothing found"
     return 1
   else
     echo "$target: FOUND SOMETHING, see $log and build/fuzz/findings" >&2
+    grep -aE 'pushid::|^SUMMARY|^Base64' "$log" | head -n 20 >&2
     return 1
   fi
 }

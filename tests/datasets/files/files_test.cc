@@ -128,6 +128,17 @@ TEST_F(InputFileTest, HashesAreThoseOfXxhsum) {
   EXPECT_EQ(reader.HashHex(), hash.Hex());
 }
 
+// What the other readers take for blank (IsBlank), and no less.
+TEST_F(InputFileTest, BlankLinesArePassedOver) {
+  LineReader reader;
+  ASSERT_FALSE(reader.Open(WriteText("a.txt", "\v\n \t\f\r\n\na\n\v")));
+  std::string_view line;
+  ASSERT_TRUE(reader.NextNonBlank(&line));
+  EXPECT_EQ(line, "a");
+  EXPECT_EQ(reader.line_number(), 4);
+  EXPECT_FALSE(reader.NextNonBlank(&line));
+}
+
 TEST_F(InputFileTest, EndlessLineIsRefused) {
   LineReader reader;
   ASSERT_FALSE(reader.Open("/dev/zero"));

@@ -50,6 +50,14 @@ TEST_F(TrajectoriesTest, Text) {
   EXPECT_EQ(one.value().positions[0].size(), 2u);
 }
 
+// Of vertical tabs and form feeds too; such a line once ended the program.
+TEST_F(TrajectoriesTest, BlankLines) {
+  const Result<PointMotion> read = ReadTrajectoryText(
+      WriteText("crowd.txt", "# framerate: 8\n\v\v\n1 0 1 2\n\f\n \t\r\n1 1 1 3\n\v"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(read.value().num_frames(), 2);
+}
+
 TEST_F(TrajectoriesTest, UnitsAsPeopleWriteThem) {
   for (const char* unit : {"x/cm", "x[cm]", "x(cm)", "in cm"}) {
     const std::string text = std::string("# framerate: 8\n# id frame ") + unit + "\n1 0 50 0\n";
