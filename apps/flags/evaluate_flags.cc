@@ -9,8 +9,7 @@
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_string(peer, "",
               "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe or "
-              "--kind=mrt) "
-              "to compare with");
+              "--kind=mrt) to compare with");
 DEFINE_bool(per_recording, pushid::EvaluateFlags{}.per_recording,
             "print a line for every recording");
 

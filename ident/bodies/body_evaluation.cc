@@ -7,17 +7,14 @@
 #include "ident/results/model_rollout.h"
 
 namespace pushid {
-namespace {
 
-BodyScore Failed(const BodyRecording& recording, const std::string& failure) {
+BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure) {
   BodyScore score;
   score.id = recording.pendulum.id;
   score.frames = recording.num_frames();
   score.failure = failure;
   return score;
 }
-
-}  // namespace
 
 std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
                                       const PostprocessOptions& options,
@@ -72,7 +69,7 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
         predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;
     std::vector<const char*> names = {"restoration", "rigid"};
     if (observed > 0) names.push_back("restoration_after_given");
-    for (const char* name : names) (*scores)[name].push_back(Failed(recording, failure));
+    for (const char* name : names) (*scores)[name].push_back(FailedBodies(recording, failure));
     return;
   }
   const Prediction& prediction = predicted.value();

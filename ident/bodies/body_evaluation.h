@@ -33,6 +33,9 @@ std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
 std::vector<BodyMotion> StaticBodies(const BodyRecording& recording, int observed = 0);
 std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, int observed = 0);
 
+// The score of a recording whose bodies could not be predicted.
+BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure);
+
 // By the names above; the scores in the order of the calls.
 using BodyScores = std::map<std::string, std::vector<BodyScore>>;
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,

@@ -1,9 +1,7 @@
 // ident: peers as files, and their scores.
 #include "ident/bodies/peer_files.h"
 
-#include <filesystem>
-
-#include "datasets/files/number_text.h"
+#include "ident/bodies/kind_makers.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_features.h"
 #include "models/restoration/mrt_network.h"
@@ -27,12 +25,7 @@ MadePeer MakeMrt(const RestorationFile& file, const std::string& path, TensorRea
   return std::unique_ptr<Peer>(new MrtPeer(TakeMrt(size, reader)));
 }
 
-struct PeerMaker {
-  RestorationKind kind;
-  MadePeer (*make)(const RestorationFile& file, const std::string& path, TensorReader* reader);
-};
-
-constexpr PeerMaker kPeerMakers[] = {
+constexpr KindMaker<Peer> kPeerMakers[] = {
     {RestorationKind::kSimlpe, MakeSimlpe},
     {RestorationKind::kMrt, MakeMrt},
 };
@@ -40,20 +33,8 @@ constexpr PeerMaker kPeerMakers[] = {
 }  // namespace
 
 Result<std::unique_ptr<Peer>> MakePeer(const RestorationFile& file, const std::string& folder) {
-  const std::string path = (std::filesystem::path(folder) / "restoration.json").string();
-  std::string known;
-  for (const PeerMaker& maker : kPeerMakers) {
-    known += (known.empty() ? "--kind=" : " or --kind=") + std::string(Name(maker.kind));
-    if (maker.kind != file.kind) continue;
-    TensorReader reader(file.tensors);
-    MadePeer peer = maker.make(file, path, &reader);
-    if (peer.ok() && !reader.problem().empty()) {
-      return Error{reader.problem() + "; train again with this version", path};
-    }
-    return peer;
-  }
-  return Error{
-      "the kind is " + Quoted(Name(file.kind)) + "; --peer takes what " + known + " trained", path};
+  return MakeByKind(kPeerMakers, file, RestorationJsonFile(folder),
+                    "what follows a pendulum is named by --restoration");
 }
 
 Result<std::unique_ptr<Peer>> LoadPeer(const std::string& folder) {
@@ -75,11 +56,9 @@ void ScorePeer(const Peer& peer, const BodyRecording& recording, BodyScores* sco
   for (const BodyMotion& body : recording.bodies) people.push_back(AtPeerRate(body, dt));
   const int at_rate = static_cast<int>(people.front().size());
   if (at_rate <= given + 1) {
-    BodyScore failed;
-    failed.id = recording.pendulum.id;
-    failed.frames = frames;
-    failed.failure = "shorter than the " + std::to_string(given) + " frames that " + name +
-                     " is given, and two more";
+    const BodyScore failed =
+        FailedBodies(recording, "shorter than the " + std::to_string(given) + " frames that " +
+                                    name + " is given, and two more");
     for (const std::string& key : {name, after_given}) (*scores)[key].push_back(failed);
     return;
   }

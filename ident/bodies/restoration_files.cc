@@ -3,6 +3,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
+#include "ident/bodies/kind_makers.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
@@ -78,36 +79,20 @@ MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
   return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(layout, reader), draws));
 }
 
-struct Maker {
-  RestorationKind kind;
-  MadeRestoration (*make)(const RestorationFile& file, const std::string& path,
-                          TensorReader* reader);
-};
-
-constexpr Maker kMakers[] = {
+constexpr KindMaker<Restoration> kMakers[] = {
     {RestorationKind::kWindow, MakeWindow},
     {RestorationKind::kCvae, MakeCvae},
 };
 
 }  // namespace
 
+std::string RestorationJsonFile(const std::string& folder) {
+  return JsonFileOf(kRestorationFolder, folder);
+}
+
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder) {
-  const std::string path = JsonFileOf(kRestorationFolder, folder);
-  std::string known;
-  for (const Maker& maker : kMakers) {
-    known += (known.empty() ? "" : " and ") + std::string(Name(maker.kind));
-    if (maker.kind != file.kind) continue;
-    TensorReader reader(file.tensors);
-    MadeRestoration restoration = maker.make(file, path, &reader);
-    if (restoration.ok() && !reader.problem().empty()) {
-      return Error{reader.problem() + "; train again with this version", path};
-    }
-    return restoration;
-  }
-  return Error{"the kind is " + Quoted(Name(file.kind)) + "; known are " + known +
-                   " (a peer is named by --peer)",
-               path};
+  return MakeByKind(kMakers, file, RestorationJsonFile(folder), "a peer is named by --peer");
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {

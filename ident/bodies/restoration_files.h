@@ -34,6 +34,8 @@ struct RestorationFile {
   TensorList tensors;
 };
 
+std::string RestorationJsonFile(const std::string& folder);
+
 // The JSON comes last: without it the folder is no restoration.
 MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file);
 

@@ -29,7 +29,9 @@ FitPoint FitProblem::NominalPoint() const {
     if (map_.num_deviations > 0) {
       for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
         const auto start = options_.start_deviations.find(unit);
-        const bool known = start != options_.start_deviations.end();
+        // Of options that pool something else since, those starts mean other parameters.
+        const bool known = start != options_.start_deviations.end() &&
+                           static_cast<int>(start->second.size()) == map_.num_deviations;
         point.unit[unit] = known ? start->second : std::vector<double>(map_.num_deviations, 0.0);
       }
     }

@@ -19,9 +19,11 @@ double Now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Those of the positions, or none where nothing was made.
 template <typename Value>
 std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
   std::vector<Value> picked;
+  if (from.empty()) return picked;
   for (int k : positions) picked.push_back(from[k]);
   return picked;
 }
@@ -30,15 +32,6 @@ std::vector<int> All(const std::vector<BodyRecording>& recordings) {
   std::vector<int> all(recordings.size());
   std::iota(all.begin(), all.end(), 0);
   return all;
-}
-
-template <typename Value>
-std::vector<Value> PickedValues(const std::vector<Value>& from, const std::vector<int>& positions) {
-  std::vector<Value> picked;
-  for (int k : positions) {
-    if (k < static_cast<int>(from.size())) picked.push_back(from[k]);
-  }
-  return picked;
 }
 
 // The largest change of a free parameter relative to its value.
@@ -95,13 +88,12 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
         "two are the least"};
   }
   auto training =
-      MakeSamples(recordings, Picked(among, learnt), PickedValues(paths, learnt), options.mirrored);
+      MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);
   for (RestorationSample& sample :
        MakeSamples(options.more, All(options.more), {}, options.mirrored)) {
     training.push_back(std::move(sample));
   }
-  const auto held =
-      MakeSamples(recordings, Picked(among, judged), PickedValues(paths, judged), false);
+  const auto held = MakeSamples(recordings, Picked(among, judged), Picked(paths, judged), false);
   return TrainRestoration(training, held, options.training,
                           [&](const TrainingPoint& point, double done) {
                             if (!progress) return;

@@ -175,33 +175,21 @@ Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
 }
 
 std::string DiffusionTrainer::State() const {
-  torch::serialize::OutputArchive archive, module, mean, optimizer;
-  torch_->module->save(module);
-  torch_->mean->save(mean);
-  torch_->optimizer->save(optimizer);
-  archive.write("module", module);
-  archive.write("mean", mean);
-  archive.write("optimizer", optimizer);
+  torch::serialize::OutputArchive archive;
+  WritePart("module", *torch_->module, &archive);
+  WritePart("mean", *torch_->mean, &archive);
+  WritePart("optimizer", *torch_->optimizer, &archive);
   WriteProgress(torch_->step, &archive);
   return Archived(archive);
 }
 
 bool DiffusionTrainer::Resume(const std::string& state) {
-  try {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, mean, optimizer;
-    archive.load_from(stream);
-    archive.read("module", module);
-    archive.read("mean", mean);
-    archive.read("optimizer", optimizer);
-    torch_->module->load(module);
-    torch_->mean->load(mean);
-    torch_->optimizer->load(optimizer);
-    torch_->step = ReadProgress(&archive);
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
+  return Unarchived(state, [this](torch::serialize::InputArchive* archive) {
+    ReadPart("module", archive, torch_->module.get());
+    ReadPart("mean", archive, torch_->mean.get());
+    ReadPart("optimizer", archive, torch_->optimizer.get());
+    torch_->step = ReadProgress(archive);
+  });
 }
 
 }  // namespace pushid

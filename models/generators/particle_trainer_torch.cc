@@ -179,45 +179,29 @@ Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames)
 }
 
 std::string ParticleTrainer::State() const {
-  torch::serialize::OutputArchive archive, module, drift, noise, critic, critics;
-  torch_->module->save(module);
-  torch_->drift->save(drift);
-  torch_->noise->save(noise);
-  archive.write("module", module);
-  archive.write("drift", drift);
-  archive.write("noise", noise);
+  torch::serialize::OutputArchive archive;
+  WritePart("module", *torch_->module, &archive);
+  WritePart("drift", *torch_->drift, &archive);
+  WritePart("noise", *torch_->noise, &archive);
   if (torch_->critic) {
-    torch_->critic->save(critic);
-    torch_->critics->save(critics);
-    archive.write("critic", critic);
-    archive.write("critics", critics);
+    WritePart("critic", *torch_->critic, &archive);
+    WritePart("critics", *torch_->critics, &archive);
   }
   WriteProgress(torch_->step, &archive);
   return Archived(archive);
 }
 
 bool ParticleTrainer::Resume(const std::string& state) {
-  try {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, module, drift, noise, critic, critics;
-    archive.load_from(stream);
-    archive.read("module", module);
-    archive.read("drift", drift);
-    archive.read("noise", noise);
+  return Unarchived(state, [this](torch::serialize::InputArchive* archive) {
+    ReadPart("module", archive, torch_->module.get());
+    ReadPart("drift", archive, torch_->drift.get());
+    ReadPart("noise", archive, torch_->noise.get());
     if (torch_->critic) {
-      archive.read("critic", critic);
-      archive.read("critics", critics);
-      torch_->critic->load(critic);
-      torch_->critics->load(critics);
+      ReadPart("critic", archive, torch_->critic.get());
+      ReadPart("critics", archive, torch_->critics.get());
     }
-    torch_->module->load(module);
-    torch_->drift->load(drift);
-    torch_->noise->load(noise);
-    torch_->step = ReadProgress(&archive);
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
+    torch_->step = ReadProgress(archive);
+  });
 }
 
 }  // namespace pushid

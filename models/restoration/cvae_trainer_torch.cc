@@ -102,13 +102,14 @@ std::array<int64_t, 4> CvaeTrainer::NumParameters() const {
 
 std::string CvaeTrainer::State() const {
   const Torch& t = *torch_;
-  torch::serialize::OutputArchive archive, lower, upper, best_lower, best_upper, optimizer;
-  t.lower->save(lower), t.best_lower->save(best_lower);
-  if (t.upper) t.upper->save(upper), t.best_upper->save(best_upper);
-  t.optimizer->save(optimizer);
-  archive.write("lower", lower), archive.write("upper", upper);
-  archive.write("best_lower", best_lower), archive.write("best_upper", best_upper);
-  archive.write("optimizer", optimizer);
+  torch::serialize::OutputArchive archive;
+  WritePart("lower", *t.lower, &archive);
+  WritePart("best_lower", *t.best_lower, &archive);
+  if (t.upper) {
+    WritePart("upper", *t.upper, &archive);
+    WritePart("best_upper", *t.best_upper, &archive);
+  }
+  WritePart("optimizer", *t.optimizer, &archive);
   archive.write("counts",
                 torch::tensor({static_cast<double>(t.stage), static_cast<double>(t.step),
                                static_cast<double>(t.rounds), t.best_loss,
@@ -123,40 +124,35 @@ std::string CvaeTrainer::State() const {
 
 bool CvaeTrainer::Resume(const std::string& state) {
   Torch& t = *torch_;
-  try {
-    std::istringstream stream(state);
-    torch::serialize::InputArchive archive, lower, upper, best_lower, best_upper, optimizer;
-    archive.load_from(stream);
-    archive.read("lower", lower), archive.read("upper", upper);
-    archive.read("best_lower", best_lower), archive.read("best_upper", best_upper);
-    archive.read("optimizer", optimizer);
-    t.lower->load(lower), t.best_lower->load(best_lower);
-    if (t.upper) t.upper->load(upper), t.best_upper->load(best_upper);
+  return Unarchived(state, [&t](torch::serialize::InputArchive* archive) {
     Tensor counts, random;
-    archive.read("counts", counts);
-    archive.read("random", random);
+    archive->read("counts", counts);
+    archive->read("random", random);
+    ReadPart("lower", archive, t.lower.get());
+    ReadPart("best_lower", archive, t.best_lower.get());
+    if (t.upper) {
+      ReadPart("upper", archive, t.upper.get());
+      ReadPart("best_upper", archive, t.best_upper.get());
+    }
     t.stage = static_cast<int>(counts[0].item<double>());
     if (t.stage > 2 && t.stage < 4) {
       t.PredictLower(&t.training);
       t.PredictLower(&t.held);
     }
     if (t.stage < 4) t.StartStage();
-    t.optimizer->load(optimizer);
+    ReadPart("optimizer", archive, t.optimizer.get());
     t.step = static_cast<int>(counts[1].item<double>());
     t.rounds = static_cast<int>(counts[2].item<double>());
     t.best_loss = counts[3].item<double>();
     t.at = static_cast<int64_t>(counts[4].item<double>());
     t.rollout_left = static_cast<int64_t>(counts[5].item<double>());
     if (t.rollout_left > 0) {
-      archive.read("rows", t.rows), archive.read("first", t.first);
-      archive.read("state", t.state);
+      archive->read("rows", t.rows), archive->read("first", t.first);
+      archive->read("state", t.state);
     }
     auto generator = at::detail::getDefaultCPUGenerator();
     generator.set_state(random);
-    return true;
-  } catch (const std::exception&) {
-    return false;
-  }
+  });
 }
 
 }  // namespace pushid

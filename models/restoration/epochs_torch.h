@@ -45,13 +45,10 @@ struct Epochs {
   }
 
   std::string State() const {
-    torch::serialize::OutputArchive archive, of_network, of_best, of_optimizer;
-    network->save(of_network);
-    best->save(of_best);
-    optimizer->save(of_optimizer);
-    archive.write("network", of_network);
-    archive.write("best", of_best);
-    archive.write("optimizer", of_optimizer);
+    torch::serialize::OutputArchive archive;
+    WritePart("network", *network, &archive);
+    WritePart("best", *best, &archive);
+    WritePart("optimizer", *optimizer, &archive);
     archive.write("judged",
                   torch::tensor({static_cast<double>(best_epoch), best_loss}, torch::kFloat64));
     WriteProgress(epoch, &archive);
@@ -60,25 +57,16 @@ struct Epochs {
 
   // False when the state is not one of this training.
   bool Resume(const std::string& state) {
-    try {
-      std::istringstream stream(state);
-      torch::serialize::InputArchive archive, of_network, of_best, of_optimizer;
-      archive.load_from(stream);
-      archive.read("network", of_network);
-      archive.read("best", of_best);
-      archive.read("optimizer", of_optimizer);
+    return Unarchived(state, [this](torch::serialize::InputArchive* archive) {
       torch::Tensor judged;
-      archive.read("judged", judged);
-      network->load(of_network);
-      best->load(of_best);
-      optimizer->load(of_optimizer);
+      archive->read("judged", judged);
+      ReadPart("network", archive, network.get());
+      ReadPart("best", archive, best.get());
+      ReadPart("optimizer", archive, optimizer.get());
       best_epoch = static_cast<int>(judged[0].item<double>());
       best_loss = judged[1].item<double>();
-      epoch = ReadProgress(&archive);
-      return true;
-    } catch (const std::exception&) {
-      return false;
-    }
+      epoch = ReadProgress(archive);
+    });
   }
 
  private:

@@ -57,6 +57,34 @@ inline std::string Archived(const torch::serialize::OutputArchive& archive) {
   return stream.str();
 }
 
+// A module's or an optimizer's state as a part of a training's.
+template <typename Part>
+void WritePart(const char* name, const Part& part, torch::serialize::OutputArchive* archive) {
+  torch::serialize::OutputArchive of_part;
+  part.save(of_part);
+  archive->write(name, of_part);
+}
+template <typename Part>
+void ReadPart(const char* name, torch::serialize::InputArchive* archive, Part* part) {
+  torch::serialize::InputArchive of_part;
+  archive->read(name, of_part);
+  part->load(of_part);
+}
+
+// Reads what Archived wrote; read: takes the archive. False when the state is another training's.
+template <typename Read>
+bool Unarchived(const std::string& state, const Read& read) {
+  try {
+    std::istringstream stream(state);
+    torch::serialize::InputArchive archive;
+    archive.load_from(stream);
+    read(&archive);
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
 // How far a training is, and where its random numbers are.
 inline void WriteProgress(int step, torch::serialize::OutputArchive* archive) {
   archive->write("step", torch::tensor(step));

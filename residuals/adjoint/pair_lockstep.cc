@@ -12,13 +12,12 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
     : kernels_(kernels), right_(kernels, PackedMatrix::kRight), inputs_(PairShape::kInputs, 0) {
-  const PackedMatrix empty(kernels, PackedMatrix::kLeft);
   std::vector<int> sizes = shape.hidden;
   sizes.push_back(4);
   int width = PairShape::kInputs, at = 0;
   for (int rows : sizes) {
-    layers_.push_back({rows, width, at, empty, empty, Columns(rows, 0), Columns(rows, 0)});
-    at += rows * (width + 1);
+    layers_.push_back({PackedLayer(kernels, rows, width, at), Columns(rows, 0), Columns(rows, 0)});
+    at += layers_.back().num_weights();
     width = rows;
   }
 }
@@ -26,12 +25,7 @@ PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
 void PairLockstep::Start(const double* weights) {
   weights_ = weights;
   first_ = {0};
-  for (Layer& layer : layers_) {
-    const double* w = weights + layer.at;
-    const int stride = layer.width + 1;
-    layer.weights.Pack(w, layer.rows, layer.width, stride, 1);
-    layer.transposed.Pack(w, layer.width, layer.rows, 1, stride);
-  }
+  for (Layer& layer : layers_) layer.Pack(weights);
 }
 
 void PairLockstep::Grow() {
@@ -88,7 +82,7 @@ void PairLockstep::AddWeightGradient(double* gradient) {
     right_.Pack(layer.back.data(), layer.rows, total, 1, layer.rows);
     RowMajor own = RowMajor::Zero(layer.rows, layer.width);
     AddProduct(left, right_, own.data(), layer.width);
-    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.width + 1);
+    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
     by_weight.leftCols(layer.width) += own;
     by_weight.col(layer.width) += layer.back.leftCols(total).rowwise().sum();
   }

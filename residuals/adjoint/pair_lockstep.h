@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "models/learned_pair.h"
-#include "residuals/kernels/packed_matrix.h"
+#include "residuals/adjoint/packed_layer.h"
 
 namespace pushid {
 
@@ -39,11 +39,8 @@ class PairLockstep {
   void AddWeightGradient(double* gradient);
 
  private:
-  // [W b], the last of them [O c].
-  struct Layer {
-    int rows, width;  // of W
-    int at;           // its first weight
-    PackedMatrix weights, transposed;
+  // The last of them is [O c].
+  struct Layer : PackedLayer {
     Columns values, back;  // of all steps: H (Y of the last), D
   };
 

@@ -7,11 +7,10 @@ RodLockstep::RodLockstep(const RodShape& shape, const VectorKernels& kernels,
                          const LockstepColumns& columns)
     : columns_(columns), kernels_(kernels), right_(kernels, PackedMatrix::kRight) {
   for (int rows : shape.hidden) {
-    const PackedMatrix empty(kernels, PackedMatrix::kLeft);
-    layers_.push_back({rows, top_, output_at_, empty, empty, Eigen::VectorXd(rows),
+    layers_.push_back({PackedLayer(kernels, rows, top_, output_at_), Eigen::VectorXd(rows),
                        Eigen::VectorXd(rows), Columns(rows, columns_.total()),
                        Columns(rows, columns_.total())});
-    output_at_ += rows * (top_ + 1);
+    output_at_ += layers_.back().num_weights();
     top_ = rows;
   }
   inputs_.resize(RodShape::kInputs, columns_.total());
@@ -21,12 +20,9 @@ RodLockstep::RodLockstep(const RodShape& shape, const VectorKernels& kernels,
 void RodLockstep::Start(const double* weights) {
   weights_ = weights;
   for (Layer& layer : layers_) {
-    const double* w = weights + layer.at;
-    const int stride = layer.width + 1;
-    layer.weights.Pack(w, layer.rows, layer.width, stride, 1);
-    layer.transposed.Pack(w, layer.width, layer.rows, 1, stride);
-    layer.rest = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(w + layer.width, layer.rows, 1,
-                                                                     Eigen::OuterStride<>(stride));
+    layer.Pack(weights);
+    layer.rest = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(
+        weights + layer.at + layer.width, layer.rows, 1, Eigen::OuterStride<>(layer.stride()));
     kernels_.tanh(layer.rest.data(), layer.rows);
     layer.bias.setZero();
   }
@@ -39,7 +35,7 @@ void RodLockstep::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* v
     Layer& layer = layers_[i];
     auto below = columns_.At(Below(i), step), active = columns_.At(layer.active, step);
     for (int row = 0; row < layer.rows; ++row) {
-      active.row(row).setConstant(weights_[layer.at + (row + 1) * (layer.width + 1) - 1]);
+      active.row(row).setConstant(weights_[layer.at + (row + 1) * layer.stride() - 1]);
     }
     right_.Pack(below.data(), n, layer.width, layer.width, 1);
     AddProduct(layer.weights, right_, active.data(), layer.rows);
@@ -75,7 +71,7 @@ void RodLockstep::AddWeightGradient(double* gradient) {
     right_.Pack(layer.active.data(), layer.rows, columns_.total(), 1, layer.rows);
     RowMajor own = RowMajor::Zero(layer.rows, layer.width);
     AddProduct(left, right_, own.data(), layer.width);
-    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.width + 1);
+    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
     by_weight.leftCols(layer.width) += own;
     by_weight.col(layer.width) += layer.bias;
   }

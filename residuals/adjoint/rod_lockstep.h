@@ -14,7 +14,7 @@
 
 #include "models/rod_law.h"
 #include "residuals/adjoint/lockstep_columns.h"
-#include "residuals/kernels/packed_matrix.h"
+#include "residuals/adjoint/packed_layer.h"
 
 namespace pushid {
 
@@ -37,10 +37,7 @@ class RodLockstep {
   void AddWeightGradient(double* gradient);
 
  private:
-  struct Layer {
-    int rows, width;  // of W
-    int at;           // its first weight
-    PackedMatrix weights, transposed;
+  struct Layer : PackedLayer {
     Eigen::VectorXd rest, bias;  // tanh(b), b^
     Columns active, hidden;      // of all steps; active becomes D on the way back
   };

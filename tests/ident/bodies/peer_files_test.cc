@@ -103,7 +103,9 @@ TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
     return peer.ok() ? "no error" : peer.error().ToString();
   };
   RestorationFile file;
-  EXPECT_TRUE(Contains(error(file), "'window'; --peer takes what --kind=simlpe or --kind=mrt"));
+  EXPECT_TRUE(Contains(error(file),
+                       "'window'; known are simlpe and mrt (what follows a pendulum is "
+                       "named by --restoration)"));
   file.kind = RestorationKind::kMrt;
   EXPECT_TRUE(Contains(error(file), "scaling.tokens.mean is missing; train again"));
   AddTensors(RandomMrt(), &file.tensors);
