@@ -138,7 +138,9 @@ class TrcReader {
   void NoteMissing(std::string_view line) {
     const long frame =
         std::strtol(std::string(line.substr(0, line.find('\t'))).c_str(), nullptr, 10);
-    if (!missing_ && last_frame_ > 0 && frame > last_frame_ + 1) {
+    // Numbers as text has them: a sum may overflow.
+    const bool gap = last_frame_ > 0 && frame > last_frame_ && frame - last_frame_ > 1;
+    if (!missing_ && gap) {
       missing_ = reader_.ErrorHere("rows are missing before this one: Frame# goes from " +
                                    std::to_string(last_frame_) + " to " + std::to_string(frame));
     }

@@ -122,6 +122,16 @@ TEST_F(PointFilesTest, ATrcWithoutOneOfItsRows) {
                        "bad.trc:7: rows are missing before this one: Frame# goes from 1 to 3"));
 }
 
+// A number of the largest size has none after it; one more once overflowed.
+TEST_F(PointFilesTest, TrcOfTheLargestFrameNumber) {
+  std::string text = kTrc;
+  text.replace(text.find("1\t0.000"), 1, "99999999999999999999");
+  text.erase(text.find("\n3\t") + 1);
+  const Result<PointMotion> read = ReadTrc(WriteText("bad.trc", text));
+  ASSERT_FALSE(read.ok());
+  EXPECT_TRUE(Contains(read.error().ToString(), "wrong frame count: NumFrames is 3"));
+}
+
 // Wherever a file is cut, the last row shows it, up to its last number.
 TEST_F(PointFilesTest, CutTrc) {
   const std::string text = kTrc;
