@@ -78,8 +78,8 @@ T ContactLoad(const ParameterSet<T>& p, const T& d, const Vector2<T>& r0) {
 // From j's contact point to n's at frame 0.
 template <typename T>
 Vector2<T> BetweenFirstContactPoints(const Pair& pair, const T& height) {
-  return ContactPoint(pair.body_n, pair.q0_n, Angles<double>(pair.q0_n), height) -
-         ContactPoint(pair.body_j, pair.q0_j, Angles<double>(pair.q0_j), height);
+  return ContactPoint(pair.body_n, pair.first_n.q, pair.first_n.angles, height) -
+         ContactPoint(pair.body_j, pair.first_j.q, pair.first_j.angles, height);
 }
 
 // The load of two people.
@@ -115,10 +115,10 @@ Vector2<T> ContactForce(const ParameterSet<T>& p, const Vector2<T>& r, const Vec
 template <bool kSpring, bool kDamping>
 struct ContactTerm {
   template <typename T>
-  static void Add(const Pair& pair, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
+  static void Add(const Pair& pair, const ParameterSet<T>& p, const PosedPendulum<T>& n,
+                  const PosedPendulum<T>& j, PairForce<T>* force) {
     const T& height = p[kContactHeight];
-    const Angles<T> of_n(n.q), of_j(j.q);
+    const Angles<T>&of_n = n.angles, &of_j = j.angles;
     const Vector2<T> r =
         ContactPoint(pair.body_n, n.q, of_n, height) - ContactPoint(pair.body_j, j.q, of_j, height);
     // Free distances are never larger than the contact distance.

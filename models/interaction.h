@@ -62,7 +62,7 @@ struct PairForces {
 template <typename T>
 PairForces<T> PairForcesBetween(const InteractionTerms& terms, const InteractionNetwork* network,
                                 const Pair& pair, const ParameterSet<T>& p,
-                                const PendulumState<T>& n, const PendulumState<T>& j) {
+                                const PosedPendulum<T>& n, const PosedPendulum<T>& j) {
   PairForces<T> forces;
   ForEachTerm(terms, network, [&](auto term) {
     term.Add(pair, p, n, j, &forces.part[PairPartOf<decltype(term)>::value]);
@@ -75,7 +75,7 @@ template <typename T>
 PairForce<T> InteractionBetween(const InteractionTerms& terms, const InteractionNetwork* network,
                                 const Pair& pair, const ParameterSet<T>& p,
                                 const PendulumState<T>& n, const PendulumState<T>& j) {
-  return PairForcesBetween(terms, network, pair, p, n, j).Sum();
+  return PairForcesBetween<T>(terms, network, pair, p, n, j).Sum();
 }
 
 }  // namespace pushid

@@ -67,6 +67,16 @@ struct Angles {
   }
 };
 
+// A state with its sines and cosines: what acts at one frame asks for them many times.
+template <typename T>
+struct PosedPendulum : PendulumState<T> {
+  Angles<T> angles;
+
+  PosedPendulum() = default;
+  PosedPendulum(const PendulumState<T>& state)  // NOLINT: a state with what follows from it
+      : PendulumState<T>(state), angles(state.q) {}
+};
+
 template <typename T, typename L>
 Matrix4<T> MassMatrix(const BodyOf<L>& body, const Angles<T>& angles) {
   const double m = body.point_mass();

@@ -74,6 +74,9 @@ PairFinder::PairFinder(const Scene& scene, const InteractionTerms& terms)
       point_(scene.people.size()) {
   std::vector<int> rank = CanonicalRank(scene);
   for (std::size_t n = 0; n < rank.size(); ++n) order_[rank[n]] = static_cast<int>(n);
+  if (Active()) {
+    for (const ScenePerson& person : scene.people) first_.emplace_back(person.start.q);
+  }
   grid_ = NeighbourGrid(std::move(rank));
 }
 

@@ -87,17 +87,17 @@ class PairFinder {
 
   // states: of everybody at one frame; p: the parameters everybody shares between them.
   template <typename T>
-  void Update(const ParameterSet<T>& p, const PendulumState<T>* states) {
+  void Update(const ParameterSet<T>& p, const std::vector<PosedPendulum<T>>& states) {
     if (!Active()) return;
     for (int i = 0; i < kNumParameters; ++i) parameters_[i] = RealPart(p[i]);
     double lean_squared = 0.0;  // m^2, of the contact point farthest off its cart
     for (std::size_t n = 0; n < cart_.size(); ++n) {
-      const Vector4<T>& t = states[n].q;
-      const Vector4<double> q(RealPart(t[0]), RealPart(t[1]), RealPart(t[2]), RealPart(t[3]));
-      cart_[n] = q.head<2>();
+      cart_[n] = {RealPart(states[n].q[0]), RealPart(states[n].q[1])};
       if (!terms_.Contact()) continue;
+      const auto& [s_th, c_th, s_ph, c_ph] = states[n].angles;
+      const double reach = parameters_[kContactHeight] * scene_->people[n].body.rod_length;
       point_[n] =
-          ContactPoint(scene_->people[n].body, q, Angles<double>(q), parameters_[kContactHeight]);
+          cart_[n] + reach * Eigen::Vector2d(RealPart(s_th), -RealPart(c_th) * RealPart(s_ph));
       lean_squared = std::max(lean_squared, (point_[n] - cart_[n]).squaredNorm());
     }
     grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean_squared)));
@@ -111,6 +111,9 @@ class PairFinder {
         person, [this, person](int other) { return MayAct(person, other); }, near);
   }
   int Rank(int person) const { return grid_.Rank(person); }
+  Pair Of(int n, int j) const {
+    return {scene_->people[n].body, scene_->people[j].body, first_[n], first_[j]};
+  }
 
   // Calls visit(n, j) for every pair once, n before j in canonical order, pairs in that order too.
   template <typename Visit>
@@ -140,7 +143,8 @@ class PairFinder {
   const Scene* scene_;
   InteractionTerms terms_;
   ParameterSet<double> parameters_{};
-  std::vector<int> order_;                     // people by rank
+  std::vector<int> order_;  // people by rank
+  std::vector<FirstPose> first_;
   std::vector<Eigen::Vector2d> cart_, point_;  // point_: of contact
   NeighbourGrid grid_;
   std::vector<int> near_;
@@ -149,7 +153,7 @@ class PairFinder {
 // Two people of a scene as an interaction sees them.
 inline Pair PairOf(const Scene& scene, int n, int j) {
   const ScenePerson &a = scene.people[n], &b = scene.people[j];
-  return {a.body, b.body, a.start.q, b.start.q};
+  return {a.body, b.body, FirstPose(a.start.q), FirstPose(b.start.q)};
 }
 
 }  // namespace pushid

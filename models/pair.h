@@ -2,7 +2,7 @@
 //
 // A term is a struct with
 //   template <typename T> static void Add(const Pair&, const ParameterSet<T>&,
-//                                         const PendulumState<T>& n, const PendulumState<T>& j,
+//                                         const PosedPendulum<T>& n, const PosedPendulum<T>& j,
 //                                         PairForce<T>*);
 // that adds the generalized forces [N, N, N m, N m] it exerts on both. interaction.h sums the
 // terms that a model asks for; a term whose force shall be a part of its own in reports has a
@@ -18,12 +18,21 @@
 
 namespace pushid {
 
+// How a person stood at frame 0.
+struct FirstPose {
+  Vector4<double> q = Vector4<double>::Zero();
+  Angles<double> angles;
+
+  FirstPose() = default;
+  explicit FirstPose(const Vector4<double>& at) : q(at), angles(at) {}
+};
+
 // Two people and how they stood at frame 0.
 struct Pair {
   Body body_n, body_j;
-  Vector4<double> q0_n = Vector4<double>::Zero(), q0_j = Vector4<double>::Zero();
+  FirstPose first_n, first_j;
 
-  Pair Swapped() const { return {body_j, body_n, q0_j, q0_n}; }
+  Pair Swapped() const { return {body_j, body_n, first_j, first_n}; }
 };
 
 template <typename T>

@@ -73,12 +73,11 @@ RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForce
                      int from, RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const int people = scene.num_people(), num_frames = path->num_frames();
-  std::vector<int> scratch;
   for (int t = from; t < num_frames; ++t) {
     const bool last = t + 1 == num_frames;
     if (last && trace == nullptr) break;
     forces->Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces->Prepare(n, &scratch);
+    forces->PrepareAll();
     for (int n = 0; n < people; ++n) {
       const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
       NetForce<T> force = forces->On(n, t, qd_previous);

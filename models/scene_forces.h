@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "models/drive.h"
@@ -114,11 +115,11 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
-                       const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                       const PosedPendulum<T>& state, const Vector4<T>& qd_previous,
                        const Received<T>& received = {},
                        const Vector4<T>& network = Vector4<T>::Zero()) {
   NetForce<T> force;
-  force.angles = Angles<T>(state.q);
+  force.angles = state.angles;
   force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   const bool stands = options.stance == Stance::kThreshold;
@@ -149,9 +150,9 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
 // The self force of everybody in a scene.
 std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
 
-// Everything a step needs besides the states, allocated once. Frame by frame: Update,
-// Prepare for each person, then On, AccelerationOf and Next, each person in any order and from any
-// thread (each with a scratch of its own).
+// Everything a step needs besides the states, allocated once. Frame by frame: Update, Prepare for
+// each person (PrepareAll asks every pair once), then On, AccelerationOf and Next, each person in
+// any order and from any thread (each with a scratch of its own).
 template <typename T>
 class SceneForces {
  public:
@@ -178,44 +179,35 @@ class SceneForces {
       }
     }
     started_ = true;
-    states_ = states;
-    finder_.Update(Parameters(0), states);
+    states_.assign(states, states + scene_->people.size());
+    finder_.Update(Parameters(0), states_);
   }
 
   // What all others do to one person, and what the person's own network answers: once a frame. Each
   // person adds up in canonical order (neighbours.h).
   void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
-    auto& sum = received_[person].part;
-    sum.fill(Vector4<T>::Zero());
+    received_[person].part.fill(Vector4<T>::Zero());
     for (int other : *scratch) {
       const bool first = finder_.Rank(person) < finder_.Rank(other);
-      const int n = first ? person : other, j = first ? other : person;
-      const PairForces<T> forces = Between(n, j);
-      for (int i = 0; i < kNumPairParts; ++i) {
-        if (forces.part[i].acts) sum[i] += first ? forces.part[i].on_n : forces.part[i].on_j;
-      }
+      const PairForces<T> forces = first ? Between(person, other) : Between(other, person);
+      Receive(person, forces, first);
     }
-    if (networks_.empty()) return;
-    const PendulumState<T>& state = states_[person];
-    const SelfForce& self = self_[person];
-    SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
-                        state.rod, &networks_[person].state);
-    networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
-                                          self.body.mass, &networks_[person].state);
+    AskNetwork(person);
   }
 
-  PairForces<T> Between(int n, int j) const {
-    const Pair pair = PairOf(*scene_, n, j);
-    PairForces<T> forces =
-        PairForcesBetween(options_->interaction, options_->interaction_network.get(), pair,
-                          Parameters(0), states_[n], states_[j]);
-    if (options_->interaction.learned) {
-      const LearnedTerms& learned = *options_->learned;
-      AddLearnedPair(learned.pair, network_weights_ + learned.pair_at(), pair, Parameters(0),
-                     states_[n], states_[j], &forces.part[0]);
-    }
-    return forces;
+  // The same for everybody, to the last bit.
+  void PrepareAll() {
+    for (Received<T>& received : received_) received.part.fill(Vector4<T>::Zero());
+    acting_.clear();
+    finder_.ForEachPair([this](int n, int j) {
+      const PairForces<T> forces = Between(n, j);
+      if (!forces.acts()) return;
+      acting_.emplace_back(n, j);
+      Receive(n, forces, true);
+      Receive(j, forces, false);
+    });
+    for (int n = 0; n < scene_->num_people(); ++n) AskNetwork(n);
   }
 
   // The parts of the net force; qd_previous: the velocity one frame earlier.
@@ -250,19 +242,54 @@ class SceneForces {
   const ParameterSet<T>& Parameters(int person) const {
     return (*parameters_)[parameters_->size() == 1 ? 0 : person];
   }
+  // As Update left it.
+  const PosedPendulum<T>& state(int person) const { return states_[person]; }
+  // Who acted on whom at PrepareAll, as ForEachPair visits them.
+  const std::vector<std::pair<int, int>>& acting() const { return acting_; }
   const SelfForce& self(int person) const { return self_[person]; }
   const Received<T>& received(int person) const { return received_[person]; }
   // As Prepare left it; only where options have a network.
   const NetworkState<T>& network(int person) const { return networks_[person].state; }
   // As Next left it; only where options have a law for the rod.
   const RodLayers<T>& rod(int person) const { return rods_[person]; }
-  PairFinder& pairs() { return finder_; }
+  const PairFinder& pairs() const { return finder_; }
 
  private:
   struct Network {
     NetworkState<T> state;
     Vector4<T> force;
   };
+
+  PairForces<T> Between(int n, int j) const {
+    const Pair pair = finder_.Of(n, j);
+    PairForces<T> forces =
+        PairForcesBetween(options_->interaction, options_->interaction_network.get(), pair,
+                          Parameters(0), states_[n], states_[j]);
+    if (options_->interaction.learned) {
+      const LearnedTerms& learned = *options_->learned;
+      AddLearnedPair(learned.pair, network_weights_ + learned.pair_at(), pair, Parameters(0),
+                     states_[n], states_[j], &forces.part[0]);
+    }
+    return forces;
+  }
+
+  // first: whether the person is the first of the two.
+  void Receive(int person, const PairForces<T>& forces, bool first) {
+    for (int i = 0; i < kNumPairParts; ++i) {
+      const PairForce<T>& part = forces.part[i];
+      if (part.acts) received_[person].part[i] += first ? part.on_n : part.on_j;
+    }
+  }
+
+  void AskNetwork(int person) {
+    if (networks_.empty()) return;
+    const PendulumState<T>& state = states_[person];
+    const SelfForce& self = self_[person];
+    SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
+                        state.rod, &networks_[person].state);
+    networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
+                                          self.body.mass, &networks_[person].state);
+  }
 
   void StartNetworks(const T* weights) {
     const LearnedTerms& network = *options_->learned;
@@ -301,7 +328,8 @@ class SceneForces {
   std::vector<RodLayers<T>> rods_;
   std::vector<T> own_weights_;
   const T* network_weights_ = nullptr;
-  const PendulumState<T>* states_ = nullptr;
+  std::vector<PosedPendulum<T>> states_;
+  std::vector<std::pair<int, int>> acting_;
   bool started_ = false;
 };
 

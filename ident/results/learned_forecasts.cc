@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "ident/problem/parallel.h"
-#include "ident/results/recording_filter.h"
 
 namespace pushid {
 namespace {
@@ -76,11 +75,12 @@ Trial MakeTrial(const PendulumRecording& recording, const RecordingFilter& filte
   return trial;
 }
 
-TrialsOfRecording MakeTrials(const IdentifiedModel& model, const PendulumRecording& recording,
-                             const RecordingEffect& effect) {
+TrialsOfRecording MakeTrials(const IdentifiedModel& model, const RecordingEffect& effect,
+                             RecordingToForecast* of) {
   TrialsOfRecording made;
+  const PendulumRecording& recording = *of->recording;
   const int frames = recording.num_frames();
-  RecordingFilter filter(model, recording, frames);
+  RecordingFilter& filter = of->filter;
   double next = kTrialSpacing;
   for (int t = 1; t < frames; ++t) {
     filter.Observe(HipsAt(recording, t));
@@ -159,12 +159,11 @@ Vector3<double> LearnedWidening(const std::vector<TrialsOfRecording>& recordings
 
 }  // namespace
 
-void LearnForecasts(const IdentifiedModel& model,
-                    const std::vector<const PendulumRecording*>& recordings, int num_threads,
-                    RecordingEffect* effect) {
+void LearnForecasts(const IdentifiedModel& model, std::vector<RecordingToForecast> recordings,
+                    int num_threads, RecordingEffect* effect) {
   std::vector<TrialsOfRecording> made(recordings.size());
   ParallelFor(static_cast<int>(recordings.size()), num_threads,
-              [&](int i) { made[i] = MakeTrials(model, *recordings[i], *effect); });
+              [&](int i) { made[i] = MakeTrials(model, *effect, &recordings[i]); });
   double error = 0.0, without = 0.0;
   for (const TrialsOfRecording& recording : made) {
     error += recording.error;

@@ -5,12 +5,18 @@
 #include <vector>
 
 #include "ident/results/recording_effect.h"
+#include "ident/results/recording_filter.h"
 
 namespace pushid {
 
+// A recording and its filter, which has seen frame 0 alone.
+struct RecordingToForecast {
+  const PendulumRecording* recording;
+  RecordingFilter filter;
+};
+
 // Sets blend_rate, widening and explained; the spread and the error scale must be known.
-void LearnForecasts(const IdentifiedModel& model,
-                    const std::vector<const PendulumRecording*>& recordings, int num_threads,
-                    RecordingEffect* effect);
+void LearnForecasts(const IdentifiedModel& model, std::vector<RecordingToForecast> recordings,
+                    int num_threads, RecordingEffect* effect);
 
 }  // namespace pushid

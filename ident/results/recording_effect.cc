@@ -162,20 +162,21 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   if (model.options.push_tail == PushTail::kNone) return std::nullopt;
   const int total = static_cast<int>(recordings.size());
   std::vector<Misfits> all(total);
+  std::vector<std::optional<RecordingFilter>> starts(total);
   ParallelFor(total, num_threads, [&](int i) {
     const PendulumRecording& recording = recordings[i];
-    RecordingFilter filter(model, recording, recording.num_frames());
+    RecordingFilter filter = starts[i].emplace(model, recording, recording.num_frames());
     if (!filter.ok()) return;
     for (int t = 1; t < recording.num_frames(); ++t) filter.Observe(HipsAt(recording, t));
     all[i] = {filter.misfit(), filter.residuals(), filter.acts()};
   });
-  std::vector<const PendulumRecording*> kept;
+  std::vector<RecordingToForecast> kept;
   std::vector<Misfits> misfits;
   std::vector<std::string> people;
   for (int i = 0; i < total; ++i) {
     if (all[i].residuals == 0) continue;
     people.push_back(PersonKey(recordings[i], recordings[i].pushed_person));
-    kept.push_back(&recordings[i]);
+    kept.push_back({&recordings[i], *std::move(starts[i])});
     misfits.push_back(std::move(all[i]));
   }
   if (kept.empty()) return std::nullopt;
@@ -187,12 +188,12 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters);
   for (size_t i = 0; i < kept.size(); ++i) {
     if (!misfits[i].acts) continue;
-    const PendulumRecording& r = *kept[i];
+    const PendulumRecording& r = *kept[i].recording;
     const EffectEstimate b = MeanEffect(EffectWeights(misfits[i].of_node, p.spread, p.scale));
     effect.recordings.push_back({r.id, r.subject_ids[r.pushed_person], r.condition, b.mean, b.error,
                                  LikeliestEffect(misfits[i].of_node)});
   }
-  LearnForecasts(model, kept, num_threads, &effect);
+  LearnForecasts(model, std::move(kept), num_threads, &effect);
   return effect;
 }
 

@@ -51,11 +51,11 @@ struct CvaeStages {
   }
 
   // Whether the layout has it.
-  bool Has(int stage) const {
-    return (layout().halves || stage < 2) && (layout().pendulum || stage % 2 == 0);
+  bool Has(int which) const {
+    return (layout().halves || which < 2) && (layout().pendulum || which % 2 == 0);
   }
   // Of stages that the layout has not, 0.
-  int Steps(int stage) const { return Has(stage) ? options.steps[stage] : 0; }
+  int Steps(int which) const { return Has(which) ? options.steps[which] : 0; }
   void StartStage();
   void FinishStage();
   void NewBatch();

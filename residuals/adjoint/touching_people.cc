@@ -51,13 +51,15 @@ void TouchingPeople::FindContacts(Group* group, const PeopleNow& now,
                                   std::vector<Contact>* contacts, Matrix* received) const {
   const int first = group->first;
   const ParameterSet<double>& p = now.parameters[first];
-  const PendulumState<double>* states = &now.states[first];
+  const auto* begin = &now.states[first];
+  const std::vector<PosedPendulum<double>> states(begin, begin + group->scene->num_people());
   group->finder.Update(p, states);
   group->finder.ForEachPair([&](int n, int j) {
-    Contact contact{first + n, first + j, first, PairOf(*group->scene, n, j), false, 0.0};
+    Contact contact{first + n, first + j, first, group->finder.Of(n, j), false, 0.0};
     const PairForce<double> force =
-        InteractionBetween(options_.interaction, options_.interaction_network.get(), contact.pair,
-                           p, states[n], states[j]);
+        PairForcesBetween(options_.interaction, options_.interaction_network.get(), contact.pair, p,
+                          states[n], states[j])
+            .Sum();
     contact.terms = force.acts;
     if (network_) contact.gate = PairGate<double>(contact.pair, p, states[n].q, states[j].q);
     if (!contact.terms && !contact.learned()) return;

@@ -18,7 +18,7 @@ Eigen::Matrix<double, 8, 1> ForcesOf(const Pair& pair, const ParameterSet<double
                                      const PendulumState<double>& n,
                                      const PendulumState<double>& j) {
   PairForce<double> force;
-  Term::Add(pair, p, n, j, &force);
+  Term::template Add<double>(pair, p, n, j, &force);
   Eigen::Matrix<double, 8, 1> both;
   both << force.on_n, force.on_j;
   return both;

@@ -35,7 +35,7 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
   for (int t = 0; t < recording_.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n, row += 4) {
       const Body& body = scene.people[n].body;
-      const PendulumState<double> state{smoothed_[n][t].value, smoothed_[n][t].rate};
+      const PosedPendulum<double> state({smoothed_[n][t].value, smoothed_[n][t].rate});
       const Vector4<double>& before = smoothed_[n][t > 0 ? t - 1 : 0].rate;
       const double cart = 1.0 / body.mass;
       const double angle = 1.0 / (body.point_mass() * body.rod_length);

@@ -8,21 +8,19 @@ namespace {
 
 // A person's contact point by [x, y, theta, phi, height], and its velocity by these and the rates.
 struct PointJacobian {
-  Angles<double> angles;
   Eigen::Vector2d place, velocity;
   Eigen::Matrix<double, 2, 8> place_by_state, velocity_by_state;
   Eigen::Vector2d place_by_height, velocity_by_height;
 };
 
 // Written out: automatic derivatives of these took as long as all that contact does.
-PointJacobian PointOf(const Body& body, const PendulumState<double>& state, double height) {
+PointJacobian PointOf(const Body& body, const PosedPendulum<double>& state, double height) {
   const double l = body.rod_length, reach = height * l;
   PointJacobian point;
-  point.angles = Angles<double>(state.q);
-  const auto& [s_th, c_th, s_ph, c_ph] = point.angles;
+  const auto& [s_th, c_th, s_ph, c_ph] = state.angles;
   const double thd = state.qd[2], phd = state.qd[3];
-  point.place = ContactPoint(body, state.q, point.angles, height);
-  point.velocity = ContactVelocity(body, point.angles, state.qd, height);
+  point.place = ContactPoint(body, state.q, state.angles, height);
+  point.velocity = ContactVelocity(body, state.angles, state.qd, height);
   Eigen::Matrix2d turning;  // of the point by [theta, phi], and of its velocity by their rates
   turning << reach * c_th, 0.0, reach * s_th * s_ph, -reach * c_th * c_ph;
   point.place_by_state.setZero();
@@ -89,7 +87,7 @@ Eigen::Matrix<double, 4, 5> GeneralizedByForce(const Body& body, const Angles<do
 
 template <bool kSpring, bool kDamping>
 PairJacobian ContactJacobian(const Pair& pair, const ParameterSet<double>& p,
-                             const PendulumState<double>& n, const PendulumState<double>& j) {
+                             const PosedPendulum<double>& n, const PosedPendulum<double>& j) {
   const double height = p[kContactHeight];
   const PointJacobian at_n = PointOf(pair.body_n, n, height);
   const PointJacobian at_j = PointOf(pair.body_j, j, height);
@@ -107,9 +105,8 @@ PairJacobian ContactJacobian(const Pair& pair, const ParameterSet<double>& p,
   jacobian.by_parameter.setZero();
   for (int side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1.0 : -1.0;
-    const Eigen::Matrix<double, 4, 5> q =
-        GeneralizedByForce(side == 0 ? pair.body_n : pair.body_j, (side == 0 ? at_n : at_j).angles,
-                           height, sign * f.force);
+    const Eigen::Matrix<double, 4, 5> q = GeneralizedByForce(
+        side == 0 ? pair.body_n : pair.body_j, (side == 0 ? n : j).angles, height, sign * f.force);
     auto by_states = jacobian.by_states.middleRows<4>(4 * side);
     by_states.noalias() = sign * (q.leftCols<2>() * f_by_states);
     by_states.middleCols<2>(8 * side + 2) += q.middleCols<2>(2);
@@ -137,7 +134,7 @@ PairJacobian OtherJacobian(const InteractionTerms& terms, const InteractionNetwo
   for (int i = 0; i < kNumPairParameters; ++i) {
     parameters[kFirstPairParameter + i] = Jet(p[kFirstPairParameter + i], 16 + i);
   }
-  const PairForce<Jet> force = InteractionBetween(terms, network, pair, parameters, a, b);
+  const PairForce<Jet> force = InteractionBetween<Jet>(terms, network, pair, parameters, a, b);
   PairJacobian jacobian;
   for (int row = 0; row < 4; ++row) {
     jacobian.by_states.row(row) = force.on_n[row].v.head<16>().transpose();
@@ -152,7 +149,7 @@ PairJacobian OtherJacobian(const InteractionTerms& terms, const InteractionNetwo
 
 PairJacobian ComputePairJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
                                  const Pair& pair, const ParameterSet<double>& p,
-                                 const PendulumState<double>& n, const PendulumState<double>& j) {
+                                 const PosedPendulum<double>& n, const PosedPendulum<double>& j) {
   InteractionTerms others = terms;
   others.spring = others.damping = others.learned = false;
   PairJacobian jacobian;

@@ -24,6 +24,6 @@ struct PairJacobian {
 
 PairJacobian ComputePairJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
                                  const Pair& pair, const ParameterSet<double>& p,
-                                 const PendulumState<double>& n, const PendulumState<double>& j);
+                                 const PosedPendulum<double>& n, const PosedPendulum<double>& j);
 
 }  // namespace pushid

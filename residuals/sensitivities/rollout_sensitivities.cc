@@ -60,14 +60,13 @@ class ReceivedSensitivities {
         now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
         lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {}
 
-  // Of the interaction at one frame; forces: updated to it.
-  void Update(const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
-              SceneForces<double>* forces) {
+  // Of the interaction at one frame; forces: prepared for it.
+  void Update(const RolloutSensitivities& sensitivities, int frame,
+              const SceneForces<double>& forces) {
     if (!options_.interaction.Any()) return;
     for (Columns& columns : now_) columns.setZero();
-    forces->pairs().ForEachPair([&](int n, int j) {
-      if (!forces->Between(n, j).acts()) return;
-      const PairJacobian jacobian = Of(n, j, path, frame, *forces);
+    for (const auto& [n, j] : forces.acting()) {
+      const PairJacobian jacobian = Of(n, j, forces);
       for (int side = 0; side < 2; ++side) {
         Columns& target = now_[side == 0 ? n : j];
         const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
@@ -83,7 +82,7 @@ class ReceivedSensitivities {
         target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
             by_weight_.middleRows<4>(4 * side);
       }
-    });
+    }
   }
 
   // Adds what person n feels of it.
@@ -115,16 +114,15 @@ class ReceivedSensitivities {
 
  private:
   // Of two people; by_weight_ as well where weights are fitted.
-  PairJacobian Of(int n, int j, const RolloutPath<double>& path, int frame,
-                  const SceneForces<double>& forces) {
-    const Pair pair = PairOf(scene_, n, j);
+  PairJacobian Of(int n, int j, const SceneForces<double>& forces) {
+    const Pair pair = forces.pairs().Of(n, j);
     PairJacobian jacobian =
         ComputePairJacobian(options_.interaction, options_.interaction_network.get(), pair,
-                            forces.Parameters(0), path.At(frame, n), path.At(frame, j));
+                            forces.Parameters(0), forces.state(n), forces.state(j));
     if (weights_ == nullptr) return jacobian;
     const LearnedTerms& learned = *options_.learned;
     AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
-                           path.At(frame, n), path.At(frame, j), &jacobian,
+                           forces.state(n), forces.state(j), &jacobian,
                            inputs_.weight_column < 0 ? nullptr : &by_weight_);
     return jacobian;
   }
@@ -229,12 +227,11 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   Columns by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
   StanceJacobian stance;
-  std::vector<int> scratch;
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
     forces.Update(path->Frame(t));
-    for (int n = 0; n < people; ++n) forces.Prepare(n, &scratch);
-    received.Update(*path, *sensitivities, t, &forces);
+    forces.PrepareAll();
+    received.Update(*sensitivities, t, forces);
     for (int n = 0; n < people; ++n) {
       const Body& body = scene.people[n].body;
       const SelfForce& self = forces.self(n);

@@ -7,8 +7,8 @@
 namespace pushid {
 
 void StepJacobian::Begin(const std::vector<PendulumState<double>>& states) {
-  states_ = states;
-  forces_.Update(states_.data());
+  forces_.Update(states.data());
+  forces_.PrepareAll();
 }
 
 Vector4<double> StepJacobian::Velocity(int frame, int person,
@@ -16,8 +16,7 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   const Body& body = scene_.people[person].body;
   const SelfForce& self = forces_.self(person);
   const ParameterSet<double>& p = forces_.Parameters(person);
-  const PendulumState<double>& state = states_[person];
-  forces_.Prepare(person, &scratch_);
+  const PendulumState<double>& state = forces_.state(person);
   const NetForce<double> force = forces_.On(person, frame, state.qd);
   const Vector4<double> a = forces_.AccelerationOf(person, force);
   SelfForce::Jacobian jacobian;
@@ -28,20 +27,21 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   of_force.middleCols<2>(6) -= rigid.rightCols<2>();
   if (options_.interaction.Any() &&
       ForcesAt(scene_, options_.push, person, frame) == ActiveForces::kAll) {
-    forces_.pairs().ForEachPair([&](int n, int j) {
-      if ((n != person && j != person) || !forces_.Between(n, j).acts()) return;
-      const Pair two = PairOf(scene_, n, j);
+    for (const auto& [n, j] : forces_.acting()) {
+      if (n != person && j != person) continue;
+      const Pair two = forces_.pairs().Of(n, j);
       PairJacobian pair =
           ComputePairJacobian(options_.interaction, options_.interaction_network.get(), two,
-                              forces_.Parameters(0), states_[n], states_[j]);
+                              forces_.Parameters(0), forces_.state(n), forces_.state(j));
       if (options_.interaction.learned) {
         const LearnedTerms& learned = *options_.learned;
         AddLearnedPairJacobian(learned.pair, learned.weights.data() + learned.pair_at(), two,
-                               forces_.Parameters(0), states_[n], states_[j], &pair, nullptr);
+                               forces_.Parameters(0), forces_.state(n), forces_.state(j), &pair,
+                               nullptr);
       }
       const int at = n == person ? 0 : 1;
       of_force += pair.by_states.block<4, 8>(4 * at, 8 * at);
-    });
+    }
   }
   *by_state = scene_.dt * InverseMassMatrix(body, force.angles, body.mass) * of_force;
   by_state->rightCols<4>() += Matrix4<double>::Identity();

@@ -23,8 +23,6 @@ class StepJacobian {
   const Scene& scene_;
   const ModelOptions& options_;
   SceneForces<double> forces_;
-  std::vector<PendulumState<double>> states_;
-  std::vector<int> scratch_;
 };
 
 }  // namespace pushid

@@ -103,7 +103,7 @@ void Jacobian_OfTail_ByJets(benchmark::State& state) {
 BENCHMARK(Jacobian_OfTail_ByJets)->Unit(benchmark::kNanosecond);
 
 struct Touching {
-  Pair pair{{80.0, 0.95, 0.0}, {70.0, 0.9, 0.0}, Vector4<double>::Zero(), {0.45, 0.05, 0.0, 0.0}};
+  Pair pair{{80.0, 0.95, 0.0}, {70.0, 0.9, 0.0}, FirstPose(), FirstPose({0.45, 0.05, 0.0, 0.0})};
   PendulumState<double> n, j;
   ParameterSet<double> p{};
   InteractionTerms terms;

@@ -27,8 +27,8 @@ void IpmStep(benchmark::State& state) {
   PendulumState<double> pose = recording.states[0][20];
   for (auto _ : state) {
     benchmark::DoNotOptimize(pose);
-    const NetForce<double> force =
-        NetForceAt(recording.scene, options, self[0], p, 0, 20, pose, pose.qd);
+    const NetForce<double> force = NetForceAt(recording.scene, options, self[0], p, 0, 20,
+                                              PosedPendulum<double>(pose), pose.qd);
     benchmark::DoNotOptimize(
         Step(pose, Acceleration(body, force.angles, pose.qd, force.Total()), recording.scene.dt));
   }
@@ -47,8 +47,8 @@ void IpmStepOfStance(benchmark::State& state) {
   pose.step = 0.6;
   for (auto _ : state) {
     benchmark::DoNotOptimize(pose);
-    const NetForce<double> force =
-        NetForceAt(recording.scene, options, self[0], p, 0, 20, pose, pose.qd);
+    const NetForce<double> force = NetForceAt(recording.scene, options, self[0], p, 0, 20,
+                                              PosedPendulum<double>(pose), pose.qd);
     PendulumState<double> next =
         Step(pose,
              AccelerationOnGround(body, force.angles, pose.qd, force.Total(), force.ground,

@@ -31,8 +31,7 @@ Pair TwoPeople(double distance) {
   Pair pair;
   pair.body_n = {70.0, 0.95, 0.1};
   pair.body_j = {90.0, 1.02, 0.08};
-  pair.q0_n = {0.0, 0.0, 0.0, 0.0};
-  pair.q0_j = {distance, 0.05, 0.02, -0.01};
+  pair.first_j = FirstPose({distance, 0.05, 0.02, -0.01});
   return pair;
 }
 
@@ -49,7 +48,7 @@ TEST(Contact, NobodyIsLoadedWhereHeStoodAtTheStart) {
   for (double distance : {0.1, 0.3, 0.4, 0.6}) {
     const Pair pair = TwoPeople(distance);
     const PairForce<double> force =
-        Contact<double>(pair, Parameters(0.5), AtRest(pair.q0_n), AtRest(pair.q0_j));
+        Contact<double>(pair, Parameters(0.5), AtRest(pair.first_n.q), AtRest(pair.first_j.q));
     EXPECT_FALSE(force.acts) << distance;
     EXPECT_EQ(force.on_n.norm(), 0.0);
   }
@@ -108,7 +107,7 @@ TEST(Contact, ForceAndSlopeVanishAtFirstTouch) {
   for (int i = 0; i <= 1000; ++i) {
     PendulumState<double> n;
     n.q = {0.15 + 1e-4 * i, 0.0, 0.0, 0.0};
-    const PendulumState<double> j = AtRest(pair.q0_j);
+    const PendulumState<double> j = AtRest(pair.first_j.q);
     const double now = Contact(pair, Parameters(0.5), n, j).on_j[0];
     EXPECT_GE(now, before);
     EXPECT_LT(now - before, 0.3);  // 2500 N/m x 0.1 mm and a little

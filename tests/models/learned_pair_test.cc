@@ -29,7 +29,7 @@ std::vector<double> RandomWeights(const PairShape& shape, Random* random) {
 // Two people who face each other's backs, `apart` metres from each other; at frame 0 they stood
 // 0.6 m apart.
 struct Two {
-  Pair pair{{60.0, 0.9, 0.08}, {90.0, 1.0, 0.1}, {0.0, 0.0, 0.0, 0.0}, {0.6, 0.02, 0.0, 0.0}};
+  Pair pair{{60.0, 0.9, 0.08}, {90.0, 1.0, 0.1}, FirstPose(), FirstPose({0.6, 0.02, 0.0, 0.0})};
   PendulumState<double> n, j;
   explicit Two(double apart) {
     j.q = {apart, 0.02, 0.0, 0.0};

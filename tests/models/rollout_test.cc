@@ -77,7 +77,7 @@ TEST_P(PushSemantics, ForcesDuringAndAfterThePush) {
   ModelOptions options;
   options.push = expected.use;
   const ParameterSet<double> p = StandingParameters();
-  const PendulumState<double> state = RandomState(&random, 0.3);
+  const PosedPendulum<double> state = RandomState(&random, 0.3);
   const std::vector<SelfForce> self = SelfForces(scene, options);
   const Vector4<double> push(120.0, -30.0, 100.0, 20.0), none = Vector4<double>::Zero();
   const Vector4<double> friction = self[1].Friction(p, state.qd);
@@ -119,7 +119,7 @@ TEST(Rollout, LaterNetPushReplacesTheTailOfAnEarlierOne) {
   scene.pushes = {MakeScenePush(0, 0, PushKind::kNet, ConstantForce(4, {120, 0, 100, 0})),
                   MakeScenePush(0, 10, PushKind::kNet, ConstantForce(4, {50, 10, 0, 0}))};
   const ParameterSet<double> p = StandingParameters();
-  const PendulumState<double>& state = scene.people[0].start;
+  const PosedPendulum<double> state = scene.people[0].start;
   ModelOptions options;
   const std::vector<SelfForce> self = SelfForces(scene, options);
   const auto tail = [&](PushUse use, int frame) {

@@ -34,7 +34,7 @@ TEST(ContactTakeover, IsTheRegressionOnUnitContact) {
   std::vector<double> rows, forces;
   const Pair pair = PairOf(recording.scene, 0, 1);
   for (int t = 0; t < recording.num_frames(); ++t) {
-    const PendulumState<double>&n = recording.states[0][t], &j = recording.states[1][t];
+    const PosedPendulum<double> n(recording.states[0][t]), j(recording.states[1][t]);
     PairForce<double> network, by_spring, by_damping;
     AddLearnedPair(options.learned->pair, options.learned->weights.data(), pair, p, n, j, &network);
     ContactTerm<true, true>::Add(pair, spring, n, j, &by_spring);
