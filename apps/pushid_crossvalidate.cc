@@ -14,6 +14,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/prediction/predictive_bands.h"
+#include "ident/problem/fold_file.h"
 #include "ident/validation/frontier_svg.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/predictors.h"
@@ -163,7 +164,9 @@ int Run() {
                                        : Result<Candidates>(Candidates{});
   if (!noisy.ok()) return Fail(noisy.error());
   const Result<std::vector<Fold>> folds =
-      MakeFolds(pendulums, flags.scheme, flags.folds, flags.repeats, Seed());
+      flags.folds_file.empty()
+          ? MakeFolds(pendulums, flags.scheme, flags.folds, flags.repeats, Seed())
+          : ReadFolds(flags.folds_file, pendulums);
   if (!folds.ok()) return Fail(folds.error());
 
   std::vector<CrossValidation> validations;

@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "apps/flags/command_line.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
 
@@ -17,6 +18,9 @@ DEFINE_string(scheme, pushid::NameOf(kDefaults.scheme),
               "interleaved (a setting dealt out in turn), "
               "subject or setting (one at a time), strong (all strong pushes)");
 DEFINE_int32(folds, kDefaults.folds, "folds of the stratified and the interleaved scheme");
+DEFINE_string(folds_file, "",
+              "the folds, instead of --scheme: JSON, {\"folds\": [{\"name\": \"1\", "
+              "\"held_out\": [ids]}]}; all other recordings are fitted");
 DEFINE_int32(repeats, kDefaults.repeats, "repeats of the stratified scheme, each with new folds");
 DEFINE_string(compare, "",
               "further candidates, semicolon-separated: name: --flag=value ... added to the flags "
@@ -54,7 +58,12 @@ MaybeError ReadCandidates(const std::string& text, CrossvalidateFlags* flags) {
 Result<CrossvalidateFlags> CrossvalidateFlagsFromCommandLine() {
   CrossvalidateFlags flags;
   if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &flags.scheme)) return *error;
+  for (const char* one : {"scheme", "folds", "repeats"}) {
+    if (FLAGS_folds_file.empty() || !Given(one)) continue;
+    return Error{std::string("--folds_file gives the folds; leave --") + one + " out"};
+  }
   if (MaybeError error = ReadCandidates(FLAGS_compare, &flags)) return *error;
+  flags.folds_file = FLAGS_folds_file;
   flags.folds = FLAGS_folds;
   flags.repeats = FLAGS_repeats;
   flags.baselines = FLAGS_yardsticks;

@@ -14,6 +14,7 @@ namespace pushid {
 struct CrossvalidateFlags {
   FoldScheme scheme = FoldScheme::kStratified;
   int folds = 4, repeats = 5;  // of the stratified scheme
+  std::string folds_file;      // instead of a scheme; empty: none
   // Names of further candidates, with the options that they have over the given ones.
   std::vector<std::pair<std::string, GivenOptions>> candidates;
   bool baselines = true;

@@ -301,11 +301,14 @@ TEST_F(BadUsageTest, PushFlags) {
 }
 
 TEST_F(BadUsageTest, CrossValidationFlags) {
+  WriteText("folds.json", "{\"folds\": [{\"name\": \"1\", \"held_out\": [\n\n\"nobody\"]}]}");
   const std::vector<Case> cases = {
       {{"--scheme=random"}, {"--scheme", "'random'"}},
       {{"--folds=1"}, {"--folds"}},
       {{"--folds=13"}, {"--folds"}},
       {{"--repeats=0"}, {"--repeats"}},
+      {{"--folds_file=" + Path("none.json")}, {"none.json", "no such file"}},
+      {{"--folds_file=" + Path("folds.json")}, {"folds.json:3", "\"nobody\""}},
       {{"--compare=ldp"}, {"--compare", "'ldp'", "name:"}},
       {{"--compare=pd: preset=ldp"}, {"--compare", "'preset=ldp'"}},
       {{"--compare=pd: --preset=best"}, {"--compare", "'best'"}},

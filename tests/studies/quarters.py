@@ -2,6 +2,7 @@
 
 curve     errors by the share of the recordings that were fitted (ident/validation/README.md) and their picture; half an hour of one core
 quarters  the ten quarters one by one (ident/validation/README.md); the same fits
+ridge     ridge regression and who stays still on the same parts (ident/validation/README.md); ten minutes
 bodies    the whole chain on quarters, beside siMLPe (ident/validation/README.md); eight minutes of one core
 
 Parts are drawn stratified by setting, strength and pushed person; deals are whole but for the last, so that a recording is
@@ -149,6 +150,36 @@ def quarters():
                          rows)
 
 
+def folds_file(setting, divisor):
+    """The parts as folds: each is fitted, all else held out."""
+    ids = [e["id"] for e in recordings(setting)]
+    fitted_ids = [[i for i in ids if i not in part] for part in parts(setting, 4)[:4]] if divisor is None else parts(setting, divisor)
+    folds = [{"name": str(k + 1), "held_out": [i for i in ids if i not in part]} for k, part in enumerate(fitted_ids)]
+    text = json.dumps({"folds": folds})
+    path = os.path.join(studies.KEPT, f"folds_{hashlib.sha256(text.encode()).hexdigest()[:12]}.json")
+    os.makedirs(studies.KEPT, exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+    return path
+
+
+def ridge():
+    rows = []
+    for setting in ("single", "groups"):
+        preset = "--preset=tail" if setting == "single" else "--preset=group"
+        for divisor, title in [*SHARES, (None, "3/4")]:
+            found = studies.on_recordings("pushid-crossvalidate", setting, preset,
+                                          f"--folds_file={folds_file(setting, divisor)}", "--quiet").json["predictors"]
+            cells = []
+            for predictor in (found[0], *(p for p in found if p["name"] in ("ridge", "static"))):
+                for key in ("hipADE_m", "hipFDE_m"):
+                    values = [fold[key] for fold in predictor["folds"]]
+                    cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
+            rows.append([setting, title, len(found[0]["folds"]), *cells])
+    heads = [f"{name}, {metric}" for name in ("physics", "ridge", "stays still") for metric in ("hipADE m", "hipFDE m")]
+    return studies.table(["", "share fitted", "parts", *heads], rows)
+
+
 def trained(setting, part, *flags):
     """A restoration of some recordings; the folder is named after what it was made of."""
     name = hashlib.sha256(repr((setting, part, flags)).encode()).hexdigest()[:12]
@@ -184,4 +215,4 @@ def bodies():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"curve": curve, "quarters": quarters, "bodies": bodies})
+    studies.main(__file__, {"curve": curve, "quarters": quarters, "ridge": ridge, "bodies": bodies})
