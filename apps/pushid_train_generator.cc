@@ -7,6 +7,7 @@
 #include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_generator_flags.h"
+#include "apps/support/blas_threads.h"
 #include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
@@ -203,6 +204,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
 int Run() {
   const Result<TrainGeneratorFlags> flags = TrainGeneratorFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
+  SetBlasThreads(flags.value().options.particles.num_threads);
   return flags.value().data == GeneratorData::kCmu ? FromClips(flags.value())
                                                    : FromPushes(flags.value());
 }

@@ -7,6 +7,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
+#include "apps/support/blas_threads.h"
 #include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
@@ -132,6 +133,7 @@ int Run() {
   const Result<TrainRestorationFlags> read = TrainRestorationFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const TrainRestorationFlags& flags = read.value();
+  SetBlasThreads(flags.options.training.num_threads);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);

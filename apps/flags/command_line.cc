@@ -13,6 +13,7 @@
 #include <set>
 #include <sstream>
 
+#include "apps/support/blas_threads.h"
 #include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
@@ -135,6 +136,7 @@ int CheckPrinted(int exit_code) {
 
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words) {
+  SetBlasThreads(1);
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());
