@@ -133,6 +133,7 @@ int Run() {
   const Result<TrainRestorationFlags> read = TrainRestorationFlagsFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   const TrainRestorationFlags& flags = read.value();
+  if (flags.check) return kDone;
   SetBlasThreads(flags.options.training.num_threads);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());

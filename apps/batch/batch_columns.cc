@@ -31,13 +31,13 @@ std::string Shown(double value, double error, EstimateStatus status) {
          (status == EstimateStatus::kIdentified ? "" : " (" + NameOf(status) + ")");
 }
 
-// "hipADE" -> "hip_ade"
+// "hipADE" -> "hip_ade", "relative_MPJPE" -> "relative_mpjpe"
 std::string LowerCase(const std::string& name) {
   std::string text;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const auto c = static_cast<unsigned char>(name[i]);
-    const bool begins =
-        i > 0 && std::isupper(c) && !std::isupper(static_cast<unsigned char>(name[i - 1]));
+    const bool begins = i > 0 && std::isupper(c) && name[i - 1] != '_' &&
+                        !std::isupper(static_cast<unsigned char>(name[i - 1]));
     text += (begins ? "_" : "") + std::string(1, static_cast<char>(std::tolower(c)));
   }
   return text;
@@ -87,11 +87,12 @@ JobColumn ParameterDataShareColumn(const std::string& name) {
           }};
 }
 
-JobColumn HeldOutColumn(const HipMetric& metric) {
+JobColumn HeldOutColumn(const Metric& metric) {
   return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
           std::string("held-out ") + metric.name + ", " + metric.unit, false, false,
-          [value = metric.value](const JobResult& row) {
-            return row.held_out ? Number(*row.held_out.*value, 3) : Nothing();
+          [metric](const JobResult& row) {
+            const double* const value = row.HeldOut(metric);
+            return value != nullptr ? Number(*value, 3) : Nothing();
           }};
 }
 
@@ -120,7 +121,7 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   add({"cost", "", false, false, [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
   add({"settles", "settles", false, false,
        [](Row r) { return r.done() ? Words(r.settles ? "yes" : "no") : Nothing(); }});
-  for (const HipMetric& metric : kHipMetrics) add(HeldOutColumn(metric));
+  for (const Metric& metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
   add({"warnings", "warnings", false, false, [](Row r) {
          return JobCell{Joined(r.warnings),
                         r.warnings.empty() ? "" : std::to_string(r.warnings.size())};

@@ -70,6 +70,10 @@ Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant
     }
     AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
   }
+  if (variant.restoration) AddPiece("restoration", &hash);
+  for (const std::string& flag : variant.restoration.value_or(std::vector<std::string>{})) {
+    AddPiece(flag, &hash);
+  }
   return hash.Hex();
 }
 
@@ -137,17 +141,32 @@ std::string JoinIds(const std::vector<std::string>& ids) {
   return list;
 }
 
-// Flags that say how recordings are read: those that are held out are read as those that were
-// fitted.
-std::vector<std::string> ReadingFlags(const std::vector<std::string>& flags) {
-  std::vector<std::string> reading;
+std::vector<std::string> Those(const std::vector<std::string>& flags,
+                               std::initializer_list<const char*> names) {
+  std::vector<std::string> those;
   for (const std::string& flag : flags) {
-    for (const char* name :
-         {"length_unit", "length_scale", "max_gap_s", "lowpass_hz", "resample_fps"}) {
-      if (flag.rfind("--" + std::string(name) + "=", 0) == 0) reading.push_back(flag);
+    for (const char* name : names) {
+      if (flag.rfind("--" + std::string(name) + "=", 0) == 0) those.push_back(flag);
     }
   }
-  return reading;
+  return those;
+}
+
+using Command = std::vector<std::string>;
+
+void Append(const Command& more, Command* command) {
+  command->insert(command->end(), more.begin(), more.end());
+}
+
+// What every program is told that follows the fit: recordings are read as those that were fitted.
+Command AfterFit(const std::string& program, const BatchJob& job, const BatchPlan& plan,
+                 const std::vector<std::string>& ids, const std::string& model) {
+  Command command = {program, "--model=" + model, "--recordings=" + plan.manifest,
+                     "--ids=" + JoinIds(ids), "--quiet"};
+  Append(Those(job.fit_flags,
+               {"length_unit", "length_scale", "max_gap_s", "lowpass_hz", "resample_fps"}),
+         &command);
+  return command;
 }
 
 class Expander {
@@ -208,6 +227,10 @@ class Expander {
       job.fit_flags = variant.flags;
       job.fit_flags.push_back("--seed=" + std::to_string(plan_.seed));
       if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
+      job.restoration_flags = variant.restoration;
+      if (job.restoration_flags) {
+        job.restoration_flags->push_back("--seed=" + std::to_string(plan_.seed));
+      }
       ContentHash hash;
       AddPiece(Version(), &hash);
       AddPiece(flags_hash, &hash);
@@ -237,23 +260,25 @@ Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& 
 std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
                                                   const std::string& folder,
                                                   const std::string& bin) {
-  const std::string model = folder + "/model.json";
-  std::vector<std::string> fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
-                                  "--ids=" + JoinIds(job.recordings), "--model_out=" + model,
-                                  "--quiet"};
-  fit.insert(fit.end(), job.fit_flags.begin(), job.fit_flags.end());
-  std::vector<std::vector<std::string>> commands = {fit};
-  if (!job.held_out.empty()) {
-    std::vector<std::string> evaluate = {bin + "/pushid-evaluate",
-                                         "--model=" + model,
-                                         "--recordings=" + plan.manifest,
-                                         "--ids=" + JoinIds(job.held_out),
-                                         "--json_out=" + folder + "/scores.json",
-                                         "--quiet"};
-    const std::vector<std::string> reading = ReadingFlags(job.fit_flags);
-    evaluate.insert(evaluate.end(), reading.begin(), reading.end());
-    commands.push_back(evaluate);
+  const std::string model = folder + "/model.json", restoration = folder + "/restoration";
+  Command fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
+                 "--ids=" + JoinIds(job.recordings), "--model_out=" + model, "--quiet"};
+  Append(job.fit_flags, &fit);
+  std::vector<Command> commands = {fit};
+  if (job.restoration_flags) {
+    Command train = AfterFit(bin + "/pushid-train-restoration", job, plan, job.recordings, model);
+    train.push_back("--out=" + restoration);
+    Append(*job.restoration_flags, &train);
+    commands.push_back(train);
   }
+  if (job.held_out.empty()) return commands;
+  Command evaluate = AfterFit(bin + "/pushid-evaluate", job, plan, job.held_out, model);
+  evaluate.push_back("--json_out=" + folder + "/scores.json");
+  if (job.restoration_flags) {
+    evaluate.push_back("--restoration=" + restoration);
+    Append(Those(*job.restoration_flags, {"postprocess"}), &evaluate);
+  }
+  commands.push_back(evaluate);
   return commands;
 }
 

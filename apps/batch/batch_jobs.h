@@ -4,6 +4,7 @@
 // makes new jobs of those it touches.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct BatchJob {
   int replica = 0;      // 0: the recordings as they are
   std::vector<std::string> recordings, held_out;  // ids
   std::vector<std::string> fit_flags;             // of pushid-fit, without outputs and recordings
+  // Of pushid-train-restoration, likewise; without them nothing is restored.
+  std::optional<std::vector<std::string>> restoration_flags;
 };
 
 // In a fixed order: variants as in the plan, groups as in the manifest, folds, replicas. Errors: of

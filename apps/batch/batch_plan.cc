@@ -24,6 +24,7 @@
 
 #include "apps/support/overwrite_check.h"
 #include "datasets/manifest/merged_manifest.h"
+#include "models/restoration/restoration_kind.h"
 
 namespace pushid {
 namespace {
@@ -38,6 +39,8 @@ const std::map<std::string, std::string> kOwnFlags = {
     {"ids", "say it in [data]"},
     {"leave_out", "say it in [data]"},
     {"seed", "say it in [jobs]"},
+    {"crossvalidate", "say folds in [jobs]"},
+    {"model", "every job trains for its own fit"},
     {"resample", "bootstrap in [jobs] sets it"},
     {"num_threads", "a job has one thread; pushid-batch --jobs runs several at a time"},
     {"model_out", "every job has its own"},
@@ -197,7 +200,7 @@ class PlanReader {
     std::set<std::string> names;
     for (const toml::node& entry : *node->as_array()) {
       const toml::table& table = *entry.as_table();
-      Known(table, "[[variant]]", {"name", "flags"});
+      Known(table, "[[variant]]", {"name", "flags", "restoration"});
       BatchVariant variant;
       Get(table, "name", "a text", &variant.name);
       if (variant.name.empty()) Fail(table, "a [[variant]] needs a name");
@@ -212,25 +215,44 @@ class PlanReader {
         const std::string file = FileOfFlag(flag);
         if (!file.empty()) flag = flag.substr(0, flag.find('=') + 1) + Resolve(file);
       }
+      GetRestoration(table, &variant);
       plan_.variants.push_back(variant);
     }
   }
 
-  void CheckFlag(const toml::table& table, const std::string& flag) {
+  void GetRestoration(const toml::table& table, BatchVariant* variant) {
+    const toml::node* node = table.get("restoration");
+    if (node == nullptr) return;
+    variant->restoration.emplace();
+    variant->restoration_line = LineOf(*node);
+    GetStrings(table, "restoration", &*variant->restoration);
+    for (const std::string& flag : *variant->restoration) {
+      CheckFlag(*node, flag);
+      const std::string peer = "--kind=";
+      const auto kind = flag.rfind(peer, 0) == 0 ? RestorationKindFromName(flag.substr(peer.size()))
+                                                 : std::nullopt;
+      if (kind && !RowOf(*kind).follows_pendulum) {
+        Fail(*node, flag + " is a peer, which restores no pendulum; compare with it by " +
+                        "pushid-train-restoration --crossvalidate");
+      }
+    }
+  }
+
+  void CheckFlag(const toml::node& at, const std::string& flag) {
     if (flag.rfind("--", 0) != 0) {
-      return Fail(table, "'" + flag + "' is no flag; write \"--name=value\"");
+      return Fail(at, "'" + flag + "' is no flag; write \"--name=value\"");
     }
     const std::string name = flag.substr(2, flag.find('=') - 2);
     const auto own = kOwnFlags.find(name);
     if (own != kOwnFlags.end()) {
-      Fail(table, "--" + name + " is set by the batch itself: " + own->second);
+      Fail(at, "--" + name + " is set by the batch itself: " + own->second);
     }
     if (IsOutputFlag(name)) {
-      Fail(table, "--" + name + " would be written by every job of the variant; leave it out");
+      Fail(at, "--" + name + " would be written by every job of the variant; leave it out");
     }
     if (name.rfind("help", 0) == 0 || name == "version" || name == "check" ||
         name == "list_parameters") {
-      Fail(table, "--" + name + " makes no fit; leave it out");
+      Fail(at, "--" + name + " makes no fit; leave it out");
     }
   }
 

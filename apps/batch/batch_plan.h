@@ -17,6 +17,7 @@
 //   [[variant]]                      # one or more
 //   name = "physics"
 //   flags = ["--self_force=none"]    # any flag of pushid-fit; files relative to the plan
+//   restoration = ["--kind=window"]  # flags of pushid-train-restoration; absent: none is trained
 //
 //   [output]
 //   dir = "out"                      # relative to the plan
@@ -24,6 +25,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +38,9 @@ enum class GroupBy { kNone, kRecording, kSubject, kSetting };
 struct BatchVariant {
   std::string name;
   std::vector<std::string> flags;  // of pushid-fit, with paths as the programs can open them
-  int line = 0;                    // of the plan
+  // Of pushid-train-restoration; where there are none, no bodies are restored.
+  std::optional<std::vector<std::string>> restoration;
+  int line = 0, restoration_line = 0;  // of the plan
 };
 
 struct BatchPlan {

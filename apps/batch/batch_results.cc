@@ -1,6 +1,10 @@
 // apps: reading a job's files.
 #include "apps/batch/batch_results.h"
 
+#include <algorithm>
+
+#include "datasets/files/json_file.h"
+#include "ident/bodies/body_report.h"
 #include "ident/results/result_json.h"
 #include "ident/validation/scores_json.h"
 
@@ -29,7 +33,47 @@ JobResult Failed(const BatchJob& job, const std::string& reason, double seconds)
   return result;
 }
 
+Result<std::vector<HeldOutScore>> ReadHeldOut(const std::string& path, bool bodies) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  const Result<ScoreSummary> hips = ScoresFromJson(document.value().content, path);
+  if (!hips.ok()) return hips.error();
+  std::vector<HeldOutScore> scores;
+  if (!bodies) {
+    for (const HipMetric& metric : kHipMetrics) {
+      scores.push_back({metric, hips.value().mean.*metric.value});
+    }
+    return scores;
+  }
+  const Result<BodyMetrics> restored = MeanBodyMetrics(document.value().content, path);
+  if (!restored.ok()) return restored.error();
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    scores.push_back({kBodyMetrics[m], restored.value()[m]});
+  }
+  return scores;
+}
+
 }  // namespace
+
+const double* JobResult::HeldOut(const Metric& metric) const {
+  const auto at = std::find_if(held_out.begin(), held_out.end(), [&metric](const auto& score) {
+    return score.metric.Key() == metric.Key();
+  });
+  return at == held_out.end() ? nullptr : &at->value;
+}
+
+std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows) {
+  std::vector<Metric> metrics;
+  for (const JobResult& row : rows) {
+    for (const HeldOutScore& score : row.held_out) {
+      const bool known = std::any_of(metrics.begin(), metrics.end(), [&score](const Metric& m) {
+        return m.Key() == score.metric.Key();
+      });
+      if (!known) metrics.push_back(score.metric);
+    }
+  }
+  return metrics;
+}
 
 std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
   return plan.dir + "/jobs/" + job.id;
@@ -48,9 +92,9 @@ JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
   if (!model.ok()) return Failed(job, model.error().ToString(), seconds);
   AddModel(model.value().fit, &result);
   if (job.held_out.empty()) return result;
-  const Result<ScoreSummary> scores = ReadScores(folder + "/scores.json");
+  auto scores = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
   if (!scores.ok()) return Failed(job, scores.error().ToString(), seconds);
-  result.held_out = scores.value().mean;
+  result.held_out = std::move(scores.value());
   return result;
 }
 

@@ -2,16 +2,20 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/batch/batch_jobs.h"
 #include "apps/batch/job_status.h"
-#include "ident/prediction/evaluation.h"
+#include "ident/figures/metric.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
+
+struct HeldOutScore {
+  Metric metric;
+  double value = 0.0;  // mean over what was held out
+};
 
 struct JobResult {
   const BatchJob* job = nullptr;
@@ -22,7 +26,12 @@ struct JobResult {
   double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;
-  std::optional<HipMetrics> held_out;  // of what was held out
+  // Of the restored bodies, or of the hips where nothing is restored; empty where nothing was held
+  // out.
+  std::vector<HeldOutScore> held_out;
+
+  // Null where there is no such score.
+  const double* HeldOut(const Metric& metric) const;
 
   bool done() const { return status.state == JobState::kDone; }
 };
@@ -31,5 +40,8 @@ std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
 
 // Never an error: damage costs the one job, which the next run does again.
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
+
+// All that some job was scored by.
+std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows);
 
 }  // namespace pushid

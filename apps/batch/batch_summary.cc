@@ -52,8 +52,8 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
       job["cost"] = NumberJson(row.cost);
       job["settles"] = row.settles;
       if (!row.warnings.empty()) job["warnings"] = row.warnings;
-      for (const HipMetric& metric : kHipMetrics) {
-        if (row.held_out) job["held_out"][metric.Key()] = *row.held_out.*metric.value;
+      for (const HeldOutScore& score : row.held_out) {
+        job["held_out"][score.metric.Key()] = NumberJson(score.value);
       }
     }
     job["run"] = {{"solve_s", row.solve_s}, {"seconds", row.status.seconds}};

@@ -39,7 +39,7 @@ std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<
 struct FoldScores {
   std::vector<std::string> variants;  // in the plan's order
   std::vector<std::string> folds;
-  std::map<std::pair<std::string, std::string>, HipMetrics> scores;  // by variant and fold
+  std::map<std::pair<std::string, std::string>, const JobResult*> scores;  // by variant and fold
 
   bool Has(const std::string& variant, const std::string& fold) const {
     return scores.count({variant, fold}) > 0;
@@ -68,8 +68,8 @@ std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobRes
     if (at == groups.end()) at = groups.insert(groups.end(), {row.job->folded, {}});
     AddOnce(row.job->variant, &at->second.variants);
     AddOnce(row.job->group, &at->second.folds);
-    if (row.done() && row.held_out) {
-      at->second.scores[{row.job->variant, row.job->group}] = *row.held_out;
+    if (row.done() && !row.held_out.empty()) {
+      at->second.scores[{row.job->variant, row.job->group}] = &row;
     }
   }
   return groups;
@@ -91,7 +91,7 @@ std::string MeanWithError(const std::vector<double>& values) {
 }
 
 std::vector<std::string> HeldOutRow(const std::string& group, const std::string& variant,
-                                    const FoldScores& of) {
+                                    const FoldScores& of, const std::vector<Metric>& metrics) {
   const std::vector<std::string> compared = of.FoldsOfAll();
   std::string missing;
   for (const std::string& fold : of.folds) {
@@ -101,13 +101,15 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
   }
   std::vector<std::string> cells = {
       group, variant, std::to_string(compared.size()) + " of " + std::to_string(of.folds.size())};
-  for (const HipMetric& metric : kHipMetrics) {
+  for (const Metric& metric : metrics) {
     std::vector<double> values, differences;
     for (const std::string& fold : compared) {
-      values.push_back(of.scores.at({variant, fold}).*metric.value);
-      differences.push_back(values.back() - of.scores.at({of.variants[0], fold}).*metric.value);
+      const double* const value = of.scores.at({variant, fold})->HeldOut(metric);
+      const double* const first = of.scores.at({of.variants[0], fold})->HeldOut(metric);
+      if (value != nullptr) values.push_back(*value);
+      if (value != nullptr && first != nullptr) differences.push_back(*value - *first);
     }
-    cells.push_back(Rounded(Mean(values), 3));
+    cells.push_back(values.empty() ? "-" : Rounded(Mean(values), 3));
     cells.push_back(variant == of.variants[0] ? "-" : MeanWithError(differences));
   }
   cells.push_back(missing.empty() ? "-" : missing);
@@ -118,7 +120,8 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
 
 TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   std::vector<std::string> header = {"group", "variant", "folds compared"};
-  for (const HipMetric& metric : kHipMetrics) {
+  const std::vector<Metric> metrics = HeldOutMetrics(rows);
+  for (const Metric& metric : metrics) {
     header.push_back(std::string("held-out ") + metric.name + ", " + metric.unit);
     header.push_back("beside the first variant");
   }
@@ -128,7 +131,7 @@ TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   TextTable table(header, words);
   for (const auto& [group, scores] : ByGroup(rows)) {
     for (const std::string& variant : scores.variants) {
-      table.Add(HeldOutRow(group, variant, scores));
+      table.Add(HeldOutRow(group, variant, scores, metrics));
     }
   }
   return table;

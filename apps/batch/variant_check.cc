@@ -1,8 +1,9 @@
-// apps: asking pushid-fit about flags.
+// apps: asking programs about flags.
 #include "apps/batch/variant_check.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "apps/support/child_process.h"
 
@@ -23,10 +24,30 @@ std::string ComplaintOf(const std::vector<std::string>& command) {
     }
   }
   if (pclose(pipe) == 0) return "";
-  for (const std::string who : {"pushid-fit: error: ", "ERROR: "}) {
+  const std::string program = std::filesystem::path(command[0]).filename().string();
+  for (const std::string& who : {program + ": error: ", std::string("ERROR: ")}) {
     if (last.rfind(who, 0) == 0) return last.substr(who.size());
   }
   return last;
+}
+
+MaybeError CheckRestoration(const BatchPlan& plan, const BatchVariant& variant,
+                            const std::string& bin) {
+  const std::string trainer = bin + "/pushid-train-restoration";
+  const auto wrong = [&](const std::string& what) {
+    return Error{"variant '" + variant.name + "': " + what, plan.path, variant.restoration_line};
+  };
+  std::error_code ignored;
+  if (!std::filesystem::exists(trainer, ignored)) {
+    return wrong("a restoration needs " + trainer + ", which is built where LibTorch is found");
+  }
+  // Which model and where to is said by each job.
+  std::vector<std::string> command = {trainer, "--check", "--model=model.json",
+                                      "--out=restoration"};
+  command.insert(command.end(), variant.restoration->begin(), variant.restoration->end());
+  const std::string complaint = ComplaintOf(command);
+  if (complaint.empty()) return std::nullopt;
+  return wrong(complaint);
 }
 
 }  // namespace
@@ -41,8 +62,11 @@ MaybeError CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& job
     std::vector<std::string> command = {bin + "/pushid-fit", "--check"};
     command.insert(command.end(), variant.flags.begin(), variant.flags.end());
     const std::string complaint = ComplaintOf(command);
-    if (complaint.empty()) continue;
-    return Error{"variant '" + variant.name + "': " + complaint, plan.path, variant.line};
+    if (!complaint.empty()) {
+      return Error{"variant '" + variant.name + "': " + complaint, plan.path, variant.line};
+    }
+    if (!variant.restoration) continue;
+    if (MaybeError error = CheckRestoration(plan, variant, bin)) return error;
   }
   return std::nullopt;
 }

@@ -1,5 +1,5 @@
-// apps: the flags of a plan's variants, checked by pushid-fit itself before any job starts: a flag
-// misspelt would fail in every job, one after the other.
+// apps: the flags of a plan's variants, checked by the programs themselves before any job starts: a
+// flag misspelt would fail in every job, one after the other.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace pushid {
 
-// Of the variants that the jobs are of. Errors: what pushid-fit says, with the plan's line.
+// Of the variants that the jobs are of. Errors: what the program says, with the plan's line; there
+// is no program that trains.
 MaybeError CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                          const std::string& bin);
 

@@ -29,6 +29,8 @@ DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
+DEFINE_bool(check, pushid::TrainRestorationFlags{}.check,
+            "only check the flags: nothing is read, trained or written");
 DEFINE_int32(crossvalidate, pushid::TrainRestorationFlags{}.crossvalidate,
              "folds: instead of writing a restoration, refit pendulum and restoration in every "
              "fold and score the recordings held out; 0: off");
@@ -176,6 +178,13 @@ Result<RestorationRunOptions> RunOptions() {
 
 Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
   if (MaybeError error = CheckFlags()) return *error;
+  if (FLAGS_check) {
+    const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
+    if (!postprocess.ok()) return postprocess.error();
+    TrainRestorationFlags checked;
+    checked.check = true;
+    return checked;
+  }
   const Result<RestorationRunOptions> options = RunOptions();
   if (!options.ok()) return options.error();
   const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);

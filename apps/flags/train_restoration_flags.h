@@ -14,6 +14,7 @@ struct TrainRestorationFlags {
   FoldScheme scheme = FoldScheme::kStratified;
   std::string json_out;       // scores of the cross-validation; empty: none
   std::string more_settings;  // of recordings to learn from too; empty: none
+  bool check = false;         // nothing else was read
 };
 Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine();
 

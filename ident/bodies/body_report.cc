@@ -122,6 +122,21 @@ void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
   }
 }
 
+Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
+  try {
+    BodyMetrics metrics{};
+    for (int m = 0; m < kNumBodyMetrics; ++m)
+      metrics[m] = json.at("mean").at(kBodyMetrics[m].Key());
+    return metrics;
+  } catch (const Json::exception& error) {
+    return Error{
+        "these are no scores of bodies, as pushid-evaluate --restoration --json_out "
+        "writes them: " +
+            std::string(error.what()),
+        file};
+  }
+}
+
 std::string BodyText(const BodyEvaluation& evaluation) {
   std::string text = "bodies, means over recordings\n";
   TextTable table = NewTable("");

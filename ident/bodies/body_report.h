@@ -14,6 +14,9 @@ namespace pushid {
 // peers'), true_pendulum and recorded.
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
+// The means over recordings of what AddBodyJson added to. file: where it stands, for errors.
+Result<BodyMetrics> MeanBodyMetrics(const nlohmann::ordered_json& json, const std::string& file);
+
 nlohmann::ordered_json MeanJson(const BodyMean& mean);
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
