@@ -24,12 +24,10 @@ void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
   if (CostAt(alone, estimate) == CostAt(with, estimate)) return;  // nothing was put in
   const SolveStart refit = Refit(alone, estimate);
   if (!refit.usable) return;
-  const auto found = ComputeProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
-                                     num_threads, progress);
+  const auto found = ClassifyProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,
+                                      num_threads, progress);
   if (!found.ok()) return;
-  for (size_t i = 0; i < profiles->size(); ++i) {
-    (*profiles)[i].by_data_alone = found.value()[i].classification;
-  }
+  for (size_t i = 0; i < profiles->size(); ++i) (*profiles)[i].by_data_alone = found.value()[i];
 }
 
 }  // namespace

@@ -15,6 +15,9 @@
 namespace pushid {
 namespace {
 
+// Of the cost: what more would bring is a hundredth of what replicas differ by.
+constexpr double kReplicaTolerance = 1e-5;
+
 // The combinations that move with a free parameter.
 std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {
   std::vector<CombinationSpec> moving;
@@ -45,6 +48,7 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
                          const std::vector<CombinationSpec>& combinations) {
   FitOptions options = problem.options();
   options.num_threads = 1;
+  options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
   const FitProblem drawn(problem.recordings(), options, counts);
   SolveStart fit = Refit(drawn, estimate);
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);

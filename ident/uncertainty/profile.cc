@@ -14,6 +14,13 @@ namespace pushid {
 namespace {
 
 constexpr double kHold = 0.03;  // s_hold over the naive error
+// Where a held fit ends: changes of the cost, over the threshold, well below what crossings are
+// located to (profile_search.cc); where only the class is wanted, more of them. And of the cost
+// itself, at most: a far threshold must not end fits that have hardly begun.
+struct HoldTolerance {
+  double of_threshold, of_cost;
+};
+constexpr HoldTolerance kToLocate = {2e-5, 1e-6}, kToClassify = {1e-3, 1e-4};
 
 class Profiler {
  public:
@@ -26,11 +33,18 @@ class Profiler {
 
   // In the target's own scale.
   Profile Run(const ProfileTarget& target) const;
+  ProfileClass Classify(const ProfileTarget& target) const;
 
  private:
   ProfileSearch Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const;
-  HeldFit Hold(const ProfileTarget& target, double sigma, double wanted,
+  ProfileSide Trace(const ProfileTarget& target, const ProfileSearch& search, int sign) const;
+  HeldFit Hold(const ProfileTarget& target, const ProfileSearch& search, double wanted,
                const std::vector<double>& from) const;
+  // Nothing but a prior holds it; its profile rises for that, and it is not identified.
+  bool IsNull(const ProfileTarget& target) const {
+    return target.index >= 0 &&
+           uncertainty_.estimates[target.index].status == EstimateStatus::kUnidentifiable;
+  }
   double Value(const ProfileTarget& target, const FitPoint& point) const;
   Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
@@ -127,8 +141,16 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
   return search;
 }
 
-HeldFit Profiler::Hold(const ProfileTarget& target, double sigma, double wanted,
+ProfileSide Profiler::Trace(const ProfileTarget& target, const ProfileSearch& search,
+                            int sign) const {
+  return TraceProfile(search, sign, [&](double wanted, const std::vector<double>& from) {
+    return Hold(target, search, wanted, from);
+  });
+}
+
+HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search, double wanted,
                        const std::vector<double>& from) const {
+  const double sigma = kHold * search.naive_error;
   FitPoint point = estimate_;
   point.SetFlat(from);
   FitProblem::Built built = problem_.Build(&point, 0);
@@ -145,6 +167,12 @@ HeldFit Profiler::Hold(const ProfileTarget& target, double sigma, double wanted,
   built.problem->AddResidualBlock(holder, nullptr, point.shared.data());
   ceres::Solver::Options options = SolverOptions(problem_.options(), *built.problem);
   options.num_threads = 1;
+  if (cost_ > 0.0) {
+    const HoldTolerance& enough = search.locate_crossing ? kToLocate : kToClassify;
+    options.function_tolerance =
+        std::max(options.function_tolerance,
+                 std::min(enough.of_cost, enough.of_threshold * search.threshold / cost_));
+  }
   std::string message;
   const SolveStage stage = SolveBuilt(&built, options, 0, &message);
   held.value = Value(target, point);
@@ -167,13 +195,19 @@ ProfilePoint Profiler::Describe(const ProfileTarget& target, const HeldFit& fit)
   return point;
 }
 
+bool Crosses(const ProfileSide& side) { return std::isfinite(side.crossing); }
+bool IsFlat(const ProfileSide& side) { return side.end == "flat"; }
+
+ProfileClass ClassOf(const ProfileSide& below, const ProfileSide& above) {
+  if (IsFlat(below) && IsFlat(above)) return ProfileClass::kStructurallyNot;
+  return Crosses(below) && Crosses(above) ? ProfileClass::kIdentifiable
+                                          : ProfileClass::kPracticallyNot;
+}
+
 Profile Profiler::Run(const ProfileTarget& target) const {
   const ProfileSearch search = Search(target, Gradient(target));
-  const HoldFit hold = [&](double wanted, const std::vector<double>& from) {
-    return Hold(target, kHold * search.naive_error, wanted, from);
-  };
-  const ProfileSide below = TraceProfile(search, -1, hold);
-  const ProfileSide above = TraceProfile(search, +1, hold);
+  const ProfileSide below = Trace(target, search, -1);
+  const ProfileSide above = Trace(target, search, +1);
 
   Profile profile;
   profile.name = target.name;
@@ -192,33 +226,38 @@ Profile Profiler::Run(const ProfileTarget& target) const {
   std::sort(profile.points.begin(), profile.points.end(),
             [](const ProfilePoint& a, const ProfilePoint& b) { return a.value < b.value; });
 
-  // What only a prior holds has a rising profile too, and is not identified for that.
-  const bool null = target.index >= 0 &&
-                    uncertainty_.estimates[target.index].status == EstimateStatus::kUnidentifiable;
-  const bool flat = below.end == "flat" && above.end == "flat";
-  if (null || flat) {
-    profile.classification = ProfileClass::kStructurallyNot;
+  profile.classification = IsNull(target) ? ProfileClass::kStructurallyNot : ClassOf(below, above);
+  if (profile.classification == ProfileClass::kStructurallyNot) {
     profile.lower95 = -std::numeric_limits<double>::infinity();
     profile.upper95 = std::numeric_limits<double>::infinity();
-  } else if (std::isfinite(profile.lower95) && std::isfinite(profile.upper95)) {
-    profile.classification = ProfileClass::kIdentifiable;
   }
   return profile;
 }
 
-// From the target's scale to what is reported; factors are positive.
-Profile InUnitsOf(const ReportedProfile& reported, Transform transform, Profile profile) {
-  const auto natural = [&](double value) {
-    if (!std::isfinite(value)) return reported.factor * value;
-    return reported.factor * ToNatural(transform, value) + reported.offset;
-  };
-  profile.name = reported.name;
-  profile.unit = reported.unit;
-  profile.estimate = natural(profile.estimate);
-  profile.lower95 = natural(profile.lower95);
-  profile.upper95 = natural(profile.upper95);
-  for (ProfilePoint& point : profile.points) point.value = natural(point.value);
-  return profile;
+ProfileClass Profiler::Classify(const ProfileTarget& target) const {
+  if (IsNull(target)) return ProfileClass::kStructurallyNot;
+  ProfileSearch search = Search(target, Gradient(target));
+  search.locate_crossing = false;
+  const ProfileSide below = Trace(target, search, -1);
+  if (!Crosses(below) && !IsFlat(below)) return ProfileClass::kPracticallyNot;
+  return ClassOf(below, Trace(target, search, +1));
+}
+
+// One value of each target that is asked for, in any order.
+template <typename Value>
+std::vector<Value> ForTargets(const ProfilePlan& plan, int num_threads, const JobProgress& progress,
+                              const std::function<Value(const ProfileTarget&)>& of) {
+  std::vector<size_t> needed;
+  for (const ReportedProfile& reported : plan.chosen()) {
+    if (std::find(needed.begin(), needed.end(), reported.target) == needed.end()) {
+      needed.push_back(reported.target);
+    }
+  }
+  std::vector<Value> values(plan.targets().size());
+  ParallelFor(
+      static_cast<int>(needed.size()), num_threads,
+      [&](int i) { values[needed[i]] = of(plan.targets()[needed[i]]); }, progress);
+  return values;
 }
 
 }  // namespace
@@ -229,23 +268,31 @@ Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const Fi
                                              const JobProgress& progress) {
   ProfilePlan plan(problem);
   if (MaybeError error = plan.Choose(names)) return *error;
-  std::vector<size_t> needed;
-  for (const ReportedProfile& reported : plan.chosen()) {
-    if (std::find(needed.begin(), needed.end(), reported.target) == needed.end()) {
-      needed.push_back(reported.target);
-    }
-  }
   const Profiler profiler(problem, estimate, uncertainty);
-  std::vector<Profile> traced(plan.targets().size());
-  ParallelFor(
-      static_cast<int>(needed.size()), num_threads,
-      [&](int i) { traced[needed[i]] = profiler.Run(plan.targets()[needed[i]]); }, progress);
+  const std::vector<Profile> traced =
+      ForTargets<Profile>(plan, num_threads, progress,
+                          [&](const ProfileTarget& target) { return profiler.Run(target); });
   std::vector<Profile> profiles;
   for (const ReportedProfile& reported : plan.chosen()) {
-    profiles.push_back(
-        InUnitsOf(reported, plan.targets()[reported.target].transform, traced[reported.target]));
+    profiles.push_back(plan.Reported(reported, traced[reported.target]));
   }
   return profiles;
+}
+
+Result<std::vector<ProfileClass>> ClassifyProfiles(const FitProblem& problem,
+                                                   const FitPoint& estimate,
+                                                   const Uncertainty& uncertainty,
+                                                   const std::vector<std::string>& names,
+                                                   int num_threads, const JobProgress& progress) {
+  ProfilePlan plan(problem);
+  if (MaybeError error = plan.Choose(names)) return *error;
+  const Profiler profiler(problem, estimate, uncertainty);
+  const std::vector<ProfileClass> traced = ForTargets<ProfileClass>(
+      plan, num_threads, progress,
+      [&](const ProfileTarget& target) { return profiler.Classify(target); });
+  std::vector<ProfileClass> classes;
+  for (const ReportedProfile& reported : plan.chosen()) classes.push_back(traced[reported.target]);
+  return classes;
 }
 
 }  // namespace pushid

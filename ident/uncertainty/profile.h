@@ -72,6 +72,12 @@ Result<std::vector<Profile>> ComputeProfiles(const FitProblem& problem, const Fi
                                              const std::vector<std::string>& names, int num_threads,
                                              const JobProgress& progress = nullptr);
 
+// The classes alone, in the same order, at less than half of the cost: where exactly a threshold is
+// crossed does not matter to them, nor does the second side where the first says enough.
+Result<std::vector<ProfileClass>> ClassifyProfiles(
+    const FitProblem& problem, const FitPoint& estimate, const Uncertainty& uncertainty,
+    const std::vector<std::string>& names, int num_threads, const JobProgress& progress = nullptr);
+
 // What follows knows nothing of people: any number of any least-squares problem can be profiled.
 
 // The best fit found with the number held near `wanted`.
@@ -91,11 +97,13 @@ struct ProfileSearch {
   double threshold = 0.0;             // of the cost
   double lower = -std::numeric_limits<double>::infinity();  // bounds of the number
   double upper = std::numeric_limits<double>::infinity();
+  bool locate_crossing = true;  // false: it is known to lie before the last point
 };
 
 struct ProfileSide {
-  double crossing = 0.0;  // of the threshold; infinite where it is not crossed
-  std::string end;        // as in Profile
+  // Of the threshold, or the last point where it is not located; infinite where it is not crossed.
+  double crossing = 0.0;
+  std::string end;  // as in Profile
   std::vector<HeldFit> points;
 };
 

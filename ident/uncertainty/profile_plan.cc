@@ -2,6 +2,7 @@
 #include "ident/uncertainty/profile_plan.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ident/problem/fit_problem.h"
 
@@ -52,6 +53,21 @@ MaybeError ProfilePlan::Choose(const std::vector<std::string>& names) {
   }
   if (names.empty()) chosen_ = all_;
   return std::nullopt;
+}
+
+Profile ProfilePlan::Reported(const ReportedProfile& reported, Profile profile) const {
+  const Transform transform = targets_[reported.target].transform;
+  const auto natural = [&](double value) {
+    if (!std::isfinite(value)) return reported.factor * value;
+    return reported.factor * ToNatural(transform, value) + reported.offset;
+  };
+  profile.name = reported.name;
+  profile.unit = reported.unit;
+  profile.estimate = natural(profile.estimate);
+  profile.lower95 = natural(profile.lower95);
+  profile.upper95 = natural(profile.upper95);
+  for (ProfilePoint& point : profile.points) point.value = natural(point.value);
+  return profile;
 }
 
 void ProfilePlan::Add(const ProfileTarget& combination) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/parameter_map.h"
 
@@ -23,7 +24,8 @@ struct ProfileTarget {
   double constant = 0.0;               // what fixed parameters contribute
 };
 
-// A profile to report: a target's, or a linear function of it in natural values.
+// A profile to report: a target's, or a linear function of it in natural values; factors are
+// positive.
 struct ReportedProfile {
   std::string name, unit;
   size_t target;
@@ -40,6 +42,8 @@ class ProfilePlan {
 
   const std::vector<ProfileTarget>& targets() const { return targets_; }
   const std::vector<ReportedProfile>& chosen() const { return chosen_; }
+  // From its target's scale to natural values and its own name.
+  Profile Reported(const ReportedProfile& reported, Profile of_target) const;
 
  private:
   void Add(const ProfileTarget& combination);

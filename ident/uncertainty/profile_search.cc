@@ -96,7 +96,8 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
     const double root = Root(search, fit);
     if (root >= aim) {
       side.end = "threshold";
-      side.crossing = FindCrossing(search, last, fit, hold, &side.points);
+      side.crossing =
+          search.locate_crossing ? FindCrossing(search, last, fit, hold, &side.points) : fit.value;
       return side;
     }
     side.end = at_limit ? "bound" : "flat";

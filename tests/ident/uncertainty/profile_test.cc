@@ -122,6 +122,17 @@ TEST(ProfileSearch, FollowsTheClosedForm) {
   }
 }
 
+TEST(ProfileSearch, NeedNotLocateACrossing) {
+  const Saturation s = NoisyData({0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0}, 0.05);
+  ProfileSearch search = SearchAround(s, 0.5 * 0.05 * 0.05 * 3.84);
+  const ProfileSide located = TraceProfile(search, 1, Holder(s));
+  search.locate_crossing = false;
+  const ProfileSide crossed = TraceProfile(search, 1, Holder(s));
+  EXPECT_EQ(crossed.end, "threshold");
+  EXPECT_GE(crossed.crossing, located.crossing);
+  EXPECT_LT(crossed.points.size(), located.points.size());
+}
+
 // Large x alone show the plateau, not how fast it is reached.
 TEST(ProfileSearch, LevelsOffWhereTheDataAreTooWeak) {
   const Saturation s = NoisyData({2.0, 2.5, 3.0, 4.0}, 0.05);
@@ -167,6 +178,10 @@ struct Profiled {
     return ComputeProfiles(FitProblem(recordings, options), result.starts[result.best_start].to,
                            result.uncertainty, names, threads);
   }
+  Result<std::vector<ProfileClass>> Classes(const std::vector<std::string>& names) const {
+    return ClassifyProfiles(FitProblem(recordings, options), result.starts[result.best_start].to,
+                            result.uncertainty, names, 2);
+  }
 };
 
 // Little noise: the cost is quadratic over the interval.
@@ -207,6 +222,20 @@ TEST(Profiles, SeparateWhatIsIdentifiedFromWhatIsNot) {
   EXPECT_EQ(sum.classification, ProfileClass::kIdentifiable);
   EXPECT_LT(sum.lower95, sum.estimate);
   EXPECT_LT(sum.estimate, sum.upper95);
+}
+
+TEST(Profiles, ClassesAloneAreThoseOfTheProfiles) {
+  for (const char* freed : {"", "Kp_x,Kp_y"}) {
+    SCOPED_TRACE(freed);
+    const Profiled profiled(TinyStudy(), freed);
+    const std::vector<Profile> profiles = profiled.Profiles({}, 2).value();
+    const std::vector<ProfileClass> classes = profiled.Classes({}).value();
+    ASSERT_EQ(classes.size(), profiles.size());
+    for (size_t i = 0; i < classes.size(); ++i) {
+      EXPECT_EQ(classes[i], profiles[i].classification) << profiles[i].name;
+    }
+    EXPECT_FALSE(profiled.Classes({"nonsense"}).ok());
+  }
 }
 
 // A few noisy frames under narrow priors: these close the profile, and the data alone do not.
