@@ -1,8 +1,9 @@
 """What takes how long: the benchmarks, in the words of a table, and whole processes.
 
 benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
-processes   tests/benchmarks/README.md; a minute
-batch       tests/benchmarks/README.md; a batch of 101 fits; a minute
+processes   tests/benchmarks/README.md; two minutes
+batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
+rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
 against     tests/benchmarks/README.md; this commit's fits and another's, whose folder of programs PUSHID_BIN_BEFORE
             names; three minutes
 
@@ -10,11 +11,13 @@ Times on one core, busy with nothing else if they are to be compared.
 """
 import json
 import os
+import re
 import resource
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 import studies
 from studies import number
@@ -80,6 +83,8 @@ def processor_seconds(*command):
 
 def processes():
     fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
+    groups = [*fit[:-1], "--setting=groups"]
+    validate = [os.path.join(studies.BIN, "pushid-crossvalidate"), *fit[1:], "--folds=4", "--repeats=5"]
     report = [os.path.join(studies.BIN, "pushid-report"), f"--model={studies.fit('single').path}",
               f"--recordings={studies.MANIFEST}"]
 
@@ -91,8 +96,11 @@ def processes():
         rows = [["`pushid-fit --setting=single`", told(*fit)],
                 ["... `--preset=ldp`", told(*fit, "--preset=ldp")],
                 ["... `--profile`", told(*fit, "--profile")],
-                ["... `--bootstrap=199`", told(*fit, "--bootstrap=199")],
-                ["`pushid-report --html_out`", told(*report, f"--html_out={page}")]]
+                ["... `--bootstrap=199` / `1000`", f"{told(*fit, '--bootstrap=199')} / {told(*fit, '--bootstrap=1000')}"],
+                ["`pushid-crossvalidate --folds=4 --repeats=5`", told(*validate)],
+                ["`pushid-report --html_out`", told(*report, f"--html_out={page}")],
+                ["`pushid-fit --setting=groups`, the 49 recordings of groups", told(*groups)],
+                ["... `--bootstrap=20`", told(*groups, "--bootstrap=20")]]
         size = os.path.getsize(page) / 1e6
     text = studies.table(["the 32 recordings of single people, one thread", "processor time"], rows)
     return f"{text}\n\nThe page has {number(size)} MB."
@@ -117,11 +125,46 @@ def batch():
         plan = os.path.join(folder, "plan.toml")
         with open(plan, "w", encoding="utf-8") as file:
             file.write(PLAN.format(manifest=studies.MANIFEST))
-        command = [os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", "--jobs=1"]
-        seconds = processor_seconds(*command, "--resume=false")
-        jobs = len(os.listdir(os.path.join(folder, "out/jobs")))
-    return (f"`pushid-batch --jobs=1` runs {jobs} fits of the 32 recordings of single people (one, and "
-            f"{jobs - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s of processor time.")
+        begin = time.perf_counter()
+        subprocess.run([os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", "--jobs=1"], check=True,
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        seconds = time.perf_counter() - begin
+        with open(os.path.join(folder, "out/summary.json"), encoding="utf-8") as file:
+            jobs = [job["run"]["seconds"] for job in json.load(file)["jobs"]]
+    return (f"`pushid-batch --jobs=1` runs {len(jobs)} fits of the 32 recordings of single people (one, and "
+            f"{len(jobs) - 1} bootstrap replicas), each in a process of its own, in {number(seconds)} s: "
+            f"{number(sum(jobs))} s in these processes, {number(1e3 * (seconds - sum(jobs)) / len(jobs), 2)} ms a job "
+            "beside them.")
+
+
+def solve_seconds(*flags):
+    fit = studies.on_recordings("pushid-fit", "single", *flags, "--quiet", out="model_out", keep=False)
+    return fit.json["run"]["solve_seconds"]
+
+
+def rivals():
+    """One start each; the physics, recordings and six parameters of the published PD model."""
+    def script(name):
+        return ["/usr/bin/python3", os.path.join(studies.SOURCE, f"tests/benchmarks/{name}_pd_fit.py"), studies.MANIFEST,
+                "--start=textbook"]
+
+    def told(name):  # "... 58 evaluations, 3.91 s"
+        printed = subprocess.run(script(name), check=True, stdout=subprocess.PIPE, text=True,
+                                 env=dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")).stdout
+        return float(re.search(r"evaluations, ([0-9.]+) s", printed).group(1))
+
+    fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
+    times = {"`pushid-fit --preset=ldp`": ([], []), "`pushid-fit`, its default of 6 parameters and 2 pooled": ([], []),
+             "SciPy, `least_squares`": ([], []), "PyTorch, autograd and `LBFGS`": ([], [])}
+    for _ in range(5):  # in turns
+        for (solves, processes_of), (solve, command) in zip(times.values(), [
+                (lambda: solve_seconds("--preset=ldp"), [*fit, "--preset=ldp"]), (solve_seconds, fit),
+                (lambda: told("scipy"), script("scipy")), (lambda: told("torch"), script("torch"))]):
+            solves.append(solve())
+            processes_of.append(processor_seconds_once(*command))
+    rows = [[title, *(f"{number(statistics.median(of), 2)} s" for of in found)] for title, found in times.items()]
+    return (studies.table(["", "the solve alone", "the whole process"], rows) +
+            f"\n\nMedians of five, in turns, one thread; {machine()}.")
 
 
 def machine():
@@ -154,4 +197,5 @@ def against():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch, "against": against})
+    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch, "rivals": rivals,
+                             "against": against})
