@@ -14,7 +14,7 @@
 
 #include "models/rod_law.h"
 #include "residuals/adjoint/lockstep_columns.h"
-#include "residuals/adjoint/packed_layer.h"
+#include "residuals/kernels/packed_layer.h"
 
 namespace pushid {
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "models/neighbours.h"
-#include "residuals/adjoint/pair_lockstep.h"
 #include "residuals/kernels/vector_kernels.h"
+#include "residuals/sensitivities/pair_lockstep.h"
 
 namespace pushid {
 

@@ -31,6 +31,22 @@ Output Backward(const PairShape& shape, const double* weights, const PairLayers<
   return back;  // not reached: the inputs are the first layer's
 }
 
+// side: whose force it is, 0 of n and 1 of j.
+void AddResponse(const Pair& pair, const GateJacobian& gate, int side, const PairResponse& response,
+                 PairJacobian* jacobian) {
+  const double scale = kNetworkAcceleration * (side == 0 ? pair.body_n.mass : pair.body_j.mass);
+  const Eigen::Matrix<double, 4, 16> own =
+      scale * gate.gate * PairInputsByStates(response.by_input);
+  auto by_states = jacobian->by_states.middleRows<4>(4 * side);
+  by_states.leftCols<8>() += side == 0 ? own.leftCols<8>() : own.rightCols<8>();
+  by_states.rightCols<8>() += side == 0 ? own.rightCols<8>() : own.leftCols<8>();
+  const Vector4<double> output = scale * response.output;
+  by_states.middleCols<4>(0) += output * gate.by_places.head<4>();
+  by_states.middleCols<4>(8) += output * gate.by_places.tail<4>();
+  jacobian->by_parameter.middleRows<4>(4 * side).leftCols<kContactParameters>() +=
+      output * gate.by_parameter;
+}
+
 }  // namespace
 
 GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
@@ -60,21 +76,53 @@ void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const
   Output unwanted(4, 0);
   for (int side = 0; side < 2; ++side) {
     const double mass = side == 0 ? pair.body_n.mass : pair.body_j.mass;
-    const double scale = kNetworkAcceleration * mass;
     RunPairNetwork(shape, weights, side == 0 ? n : j, side == 0 ? j : n, &layers);
-    const Output by_input = by_weight == nullptr
-                                ? Backward(shape, weights, layers, 0.0, unwanted)
-                                : Backward(shape, weights, layers, scale * gate.gate,
-                                           by_weight->middleRows<4>(4 * side));
-    const Eigen::Matrix<double, 4, 16> own = scale * gate.gate * PairInputsByStates(by_input);
-    auto by_states = jacobian->by_states.middleRows<4>(4 * side);
-    by_states.leftCols<8>() += side == 0 ? own.leftCols<8>() : own.rightCols<8>();
-    by_states.rightCols<8>() += side == 0 ? own.rightCols<8>() : own.leftCols<8>();
-    const Vector4<double> output = scale * layers.output;
-    by_states.middleCols<4>(0) += output * gate.by_places.head<4>();
-    by_states.middleCols<4>(8) += output * gate.by_places.tail<4>();
-    jacobian->by_parameter.middleRows<4>(4 * side).leftCols<kContactParameters>() +=
-        output * gate.by_parameter;
+    const Output by_input = by_weight == nullptr ? Backward(shape, weights, layers, 0.0, unwanted)
+                                                 : Backward(shape, weights, layers,
+                                                            kNetworkAcceleration * mass * gate.gate,
+                                                            by_weight->middleRows<4>(4 * side));
+    AddResponse(pair, gate, side, {layers.output, by_input}, jacobian);
+  }
+}
+
+HeldPairs::HeldPairs(const PairShape& shape, const double* weights)
+    : lockstep_(shape, BestVectorKernels()) {
+  lockstep_.Start(weights);
+}
+
+void HeldPairs::Ask(const SceneForces<double>& forces) {
+  gates_.clear();
+  first_.clear();
+  int columns = 0;
+  for (const auto& [n, j] : forces.acting()) {
+    gates_.push_back(PairGateJacobian(forces.pairs().Of(n, j), forces.Parameters(0),
+                                      forces.state(n).q, forces.state(j).q));
+    first_.push_back(columns);
+    if (gates_.back().gate > 0.0) columns += 2;
+  }
+  inputs_.resize(PairShape::kInputs, columns);
+  VectorX<double> u;
+  for (size_t k = 0; k < gates_.size(); ++k) {
+    if (!(gates_[k].gate > 0.0)) continue;
+    const auto& [n, j] = forces.acting()[k];
+    for (int side = 0; side < 2; ++side) {
+      SetPairInputs<double>(forces.state(side == 0 ? n : j), forces.state(side == 0 ? j : n), &u);
+      inputs_.col(first_[k] + side) = u;
+    }
+  }
+  lockstep_.Forget();
+  lockstep_.Forward(inputs_, &outputs_);
+  lockstep_.Linearize(&by_input_);
+}
+
+void HeldPairs::AddTo(size_t k, const SceneForces<double>& forces, PairJacobian* jacobian) const {
+  if (!(gates_[k].gate > 0.0)) return;
+  const auto& [n, j] = forces.acting()[k];
+  const Pair pair = forces.pairs().Of(n, j);
+  for (int side = 0; side < 2; ++side) {
+    const int column = first_[k] + side;
+    AddResponse(pair, gates_[k], side,
+                {outputs_.col(column), by_input_.middleCols<4>(4 * column).transpose()}, jacobian);
   }
 }
 

@@ -5,10 +5,19 @@
 //   dF/ds = 2 M (g dy/du du/ds + y dg/ds),  dF/dp = 2 M y dg/dp,  dF/dw = 2 M g dy/dw
 // with dy/du and dy/dw by backpropagation of the four outputs, and the gate's derivatives by Jets
 // over both places and the contact's parameters.
+//
+// A network that is held needs no dy/dw: all pairs of a frame are then asked in one product a layer
+// (pair_lockstep.h), four outputs of each back. One of 512-512 has its weights read once a frame
+// so, and not once a pair and output.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "models/learned_pair.h"
+#include "models/scene_forces.h"
 #include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/pair_lockstep.h"
 
 namespace pushid {
 
@@ -42,10 +51,34 @@ Eigen::Matrix<double, Rows::RowsAtCompileTime, 16> PairInputsByStates(const Rows
 // d(force on n, force on j) / d(weights).
 using PairByWeight = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
 
+// What a network says of one of two people, before gate and mass.
+struct PairResponse {
+  Vector4<double> output;
+  Eigen::Matrix<double, 4, PairShape::kInputs> by_input;
+};
+
 // Adds to the Jacobian of the other terms; by_weight: overwritten, may be null.
 void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const Pair& pair,
                             const ParameterSet<double>& p, const PendulumState<double>& n,
                             const PendulumState<double>& j, PairJacobian* jacobian,
                             PairByWeight* by_weight);
+
+// All pairs of a scene by weights that are held.
+class HeldPairs {
+ public:
+  // weights: of the interaction alone; they must outlive the object.
+  HeldPairs(const PairShape& shape, const double* weights);
+
+  // Those who act on each other at a frame; forces: prepared for it.
+  void Ask(const SceneForces<double>& forces);
+  // What AddLearnedPairJacobian adds, of forces.acting()[k].
+  void AddTo(size_t k, const SceneForces<double>& forces, PairJacobian* jacobian) const;
+
+ private:
+  PairLockstep lockstep_;
+  std::vector<GateJacobian> gates_;
+  std::vector<int> first_;  // column of each pair: what n hears of j; the next: j of n
+  PairLockstep::Columns inputs_, outputs_, by_input_;
+};
 
 }  // namespace pushid

@@ -58,15 +58,20 @@ class ReceivedSensitivities {
         inputs_(inputs),
         weights_(options.interaction.learned ? Weights(options, inputs) : nullptr),
         now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
-        lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {}
+        lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {
+    if (weights_ == nullptr || inputs.weight_column >= 0) return;
+    held_.emplace(options.learned->pair, weights_ + options.learned->pair_at());
+  }
 
   // Of the interaction at one frame; forces: prepared for it.
   void Update(const RolloutSensitivities& sensitivities, int frame,
               const SceneForces<double>& forces) {
     if (!options_.interaction.Any()) return;
     for (Columns& columns : now_) columns.setZero();
-    for (const auto& [n, j] : forces.acting()) {
-      const PairJacobian jacobian = Of(n, j, forces);
+    if (held_) held_->Ask(forces);
+    for (size_t k = 0; k < forces.acting().size(); ++k) {
+      const auto& [n, j] = forces.acting()[k];
+      const PairJacobian jacobian = Of(k, forces);
       for (int side = 0; side < 2; ++side) {
         Columns& target = now_[side == 0 ? n : j];
         const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
@@ -78,7 +83,7 @@ class ReceivedSensitivities {
               entry.derivative *
               jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter);
         }
-        if (weights_ == nullptr || inputs_.weight_column < 0) continue;
+        if (weights_ == nullptr || held_) continue;
         target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
             by_weight_.middleRows<4>(4 * side);
       }
@@ -113,17 +118,20 @@ class ReceivedSensitivities {
   }
 
  private:
-  // Of two people; by_weight_ as well where weights are fitted.
-  PairJacobian Of(int n, int j, const SceneForces<double>& forces) {
+  // Of the k-th two who act on each other; by_weight_ as well where weights are fitted.
+  PairJacobian Of(size_t k, const SceneForces<double>& forces) {
+    const auto& [n, j] = forces.acting()[k];
     const Pair pair = forces.pairs().Of(n, j);
     PairJacobian jacobian =
         ComputePairJacobian(options_.interaction, options_.interaction_network.get(), pair,
                             forces.Parameters(0), forces.state(n), forces.state(j));
-    if (weights_ == nullptr) return jacobian;
-    const LearnedTerms& learned = *options_.learned;
-    AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
-                           forces.state(n), forces.state(j), &jacobian,
-                           inputs_.weight_column < 0 ? nullptr : &by_weight_);
+    if (held_) {
+      held_->AddTo(k, forces, &jacobian);
+    } else if (weights_ != nullptr) {
+      const LearnedTerms& learned = *options_.learned;
+      AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
+                             forces.state(n), forces.state(j), &jacobian, &by_weight_);
+    }
     return jacobian;
   }
 
@@ -165,6 +173,7 @@ class ReceivedSensitivities {
   const SensitivityInputs& inputs_;
   const double* weights_;  // of what is learned; null where no interaction is
   PairByWeight by_weight_;
+  std::optional<HeldPairs> held_;  // where weights are, and are not fitted
   std::vector<Columns> now_, lately_;
 };
 

@@ -29,7 +29,7 @@ VARIANTS = ["window", "cvae, one network", "cvae, lower then upper"]  # in the p
 def scores(setting):
     """Variant -> recording -> scores of the fold that held it out."""
     plan = os.path.join(studies.SOURCE, f"tests/studies/ablation_{setting}.toml")
-    subprocess.run([os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", f"--jobs={os.cpu_count()}"],
+    subprocess.run([os.path.join(studies.BIN, "pushid-batch"), f"--plan={plan}", f"--jobs={os.cpu_count()}", "--quiet"],
                    check=True, stdout=subprocess.DEVNULL)
     folder = os.path.join(studies.SOURCE, f"build/ablation/{setting}")
     found = collections.defaultdict(dict)

@@ -127,5 +127,47 @@ TEST(LearnedPairRollouts, FixedWeightsAreTheModels) {
   }
 }
 
+// All pairs of a frame at once, some of whom do not touch, and pair by pair.
+TEST(HeldPairs, AreThoseOfEachPairAlone) {
+  Random random(74);
+  ModelOptions options = WithNetwork({}, 0.3, &random, {}, {{20, 9}});
+  options.interaction.spring = options.interaction.damping = true;
+  const PairShape& shape = options.learned->pair;
+  const double* const weights = options.learned->weights.data();
+  Scene scene = SceneOfPeople(6, 0.05, &random);
+  for (int n = 4; n < 6; ++n) scene.people[n].start.q[0] += 5.0;
+  const std::vector<ParameterSet<double>> p(6, RecoveringParameters());
+  SceneForces<double> forces(scene, options, p);
+  HeldPairs held(shape, weights);
+  int touching = 0;
+  for (double apart : {-0.2, -0.3, 20.0, -0.25}) {  // closer than at first, or nobody near anybody
+    std::vector<PendulumState<double>> states;
+    for (int n = 0; n < 6; ++n) {
+      states.push_back({scene.people[n].start.q, Vector4<double>::Zero()});
+      states.back().q[0] += apart * n;
+      for (int i = 0; i < 4; ++i) states.back().qd[i] = random.Uniform(-0.5, 0.5);
+    }
+    forces.Update(states.data());
+    forces.PrepareAll();
+    held.Ask(forces);
+    for (size_t k = 0; k < forces.acting().size(); ++k, ++touching) {
+      const auto& [n, j] = forces.acting()[k];
+      PairJacobian alone;
+      alone.by_states.setZero();
+      alone.by_parameter.setZero();
+      PairJacobian together = alone;
+      AddLearnedPairJacobian(shape, weights, forces.pairs().Of(n, j), p[0], forces.state(n),
+                             forces.state(j), &alone, nullptr);
+      held.AddTo(k, forces, &together);
+      const double scale = alone.by_states.cwiseAbs().maxCoeff();
+      EXPECT_GT(scale, 0.0);
+      EXPECT_LT((alone.by_states - together.by_states).cwiseAbs().maxCoeff(), 1e-12 * scale);
+      EXPECT_LT((alone.by_parameter - together.by_parameter).cwiseAbs().maxCoeff(),
+                1e-12 * std::max(1.0, alone.by_parameter.cwiseAbs().maxCoeff()));
+    }
+  }
+  EXPECT_GT(touching, 8);
+}
+
 }  // namespace
 }  // namespace pushid

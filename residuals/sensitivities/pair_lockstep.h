@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "models/learned_pair.h"
-#include "residuals/adjoint/packed_layer.h"
+#include "residuals/kernels/packed_layer.h"
 
 namespace pushid {
 
@@ -27,6 +27,8 @@ class PairLockstep {
 
   // Before the first step; weights: of the interaction alone, there until the last step back.
   void Start(const double* weights);
+  // All steps, for others by the same weights.
+  void Forget() { first_ = {0}; }
 
   // The next step. inputs: u, a column for each, maybe none. outputs: y before gate and mass, 4 x
   // as many.
@@ -35,7 +37,11 @@ class PairLockstep {
   // From the last step to the first: the adjoints of a step's outputs to those of its inputs.
   void Backward(int step, const Columns& outputs, Columns* inputs);
 
-  // After the last of these: adds d(cost)/d(weights).
+  // Instead of that, of the last step forwards: d(outputs)/d(inputs). Four columns for each of the
+  // step's, one for each of its outputs.
+  void Linearize(Columns* by_input);
+
+  // After the last step back: adds d(cost)/d(weights).
   void AddWeightGradient(double* gradient);
 
  private:

@@ -1,5 +1,5 @@
 // residuals: learned interactions in lockstep, forwards and backwards.
-#include "residuals/adjoint/pair_lockstep.h"
+#include "residuals/sensitivities/pair_lockstep.h"
 
 #include <algorithm>
 
@@ -24,7 +24,7 @@ PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
 
 void PairLockstep::Start(const double* weights) {
   weights_ = weights;
-  first_ = {0};
+  Forget();
   for (Layer& layer : layers_) layer.Pack(weights);
 }
 
@@ -69,6 +69,24 @@ void PairLockstep::Backward(int step, const Columns& outputs, Columns* inputs) {
     inputs->setZero(layer.width, n);
     right_.Pack(back.data(), n, layer.rows, layer.rows, 1);
     AddProduct(layer.transposed, right_, inputs->data(), layer.width);
+  }
+}
+
+void PairLockstep::Linearize(Columns* by_input) {
+  const int step = static_cast<int>(first_.size()) - 2, n = first_[step + 1] - first_[step];
+  *by_input = Eigen::Matrix4d::Identity().replicate(1, n);
+  if (n == 0) return;
+  Columns back;
+  for (size_t i = layers_.size(); i-- > 0;) {
+    const Layer& layer = layers_[i];
+    back.swap(*by_input);
+    for (int c = 0; c < n && !IsOutput(i); ++c) {
+      const Eigen::ArrayXd slope = 1.0 - layer.values.col(first_[step] + c).array().square();
+      back.middleCols<4>(4 * c).array().colwise() *= slope;
+    }
+    by_input->setZero(layer.width, 4 * n);
+    right_.Pack(back.data(), 4 * n, layer.rows, layer.rows, 1);
+    AddProduct(layer.transposed, right_, by_input->data(), layer.width);
   }
 }
 
