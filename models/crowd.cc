@@ -23,13 +23,10 @@ Crowd::Crowd(Scene scene, const ModelOptions& options, std::vector<ParameterSet<
   before_ = next_ = now_;
 }
 
-void Crowd::AdvanceSome(int first, int last) {
-  std::vector<int> scratch;
-  for (int n = first; n < last; ++n) {
-    forces_.Prepare(n, &scratch);
-    const NetForce<double> force = forces_.On(n, frame_, before_[n].qd);
-    next_[n] = forces_.Next(n, forces_.AccelerationOf(n, force), force, before_[n].qd);
-  }
+void Crowd::Advance(int person) {
+  const NetForce<double> force = forces_.On(person, frame_, before_[person].qd);
+  const Vector4<double> acceleration = forces_.AccelerationOf(person, force);
+  next_[person] = forces_.Next(person, acceleration, force, before_[person].qd);
 }
 
 RolloutStatus Crowd::Advance() {
@@ -41,12 +38,17 @@ RolloutStatus Crowd::Advance() {
   const auto share = [&](int i) {
     return static_cast<int>(static_cast<long long>(people) * i / threads);
   };
+  if (threads == 1) forces_.PrepareAll();
+  const auto advance_share = [&](int i) {
+    std::vector<int> scratch;
+    for (int n = share(i); n < share(i + 1); ++n) {
+      if (threads > 1) forces_.Prepare(n, &scratch);
+      Advance(n);
+    }
+  };
   std::vector<std::thread> others;
-  for (int i = 1; i < threads; ++i) {
-    others.emplace_back(
-        [this, first = share(i), last = share(i + 1)] { AdvanceSome(first, last); });
-  }
-  AdvanceSome(0, share(1));
+  for (int i = 1; i < threads; ++i) others.emplace_back(advance_share, i);
+  advance_share(0);
   for (std::thread& other : others) other.join();
   for (int n = 0; n < people; ++n) {
     const std::string_view outside = OutsideDomain(scene_.people[n].body, next_[n]);

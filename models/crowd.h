@@ -6,7 +6,8 @@
 //     if (!crowd.Advance().ok) ...
 //   }
 // Every person adds up what the neighbours do in canonical order (neighbours.h), so the result is
-// the same to the last bit for any number of threads, and that of Rollout.
+// the same to the last bit for any number of threads, and that of Rollout. One thread asks every
+// pair once; several ask it for each of the two, so that no thread waits for another.
 #pragma once
 
 #include <vector>
@@ -33,7 +34,7 @@ class Crowd {
   const Scene& scene() const { return scene_; }
 
  private:
-  void AdvanceSome(int first, int last);
+  void Advance(int person);
 
   Scene scene_;
   ModelOptions options_;

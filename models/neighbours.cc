@@ -20,15 +20,15 @@ Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterS
   return reach;
 }
 
-Eigen::Matrix<std::int64_t, 2, 1> NeighbourGrid::Cell(const Eigen::Vector2d& at) const {
+NeighbourGrid::GridCell NeighbourGrid::Cell(const Eigen::Vector2d& at) const {
   return {static_cast<std::int64_t>(std::floor(at[0] / reach_[0])),
           static_cast<std::int64_t>(std::floor(at[1] / reach_[1]))};
 }
 
-std::size_t NeighbourGrid::Bucket(const Eigen::Matrix<std::int64_t, 2, 1>& cell) const {
-  const auto mixed = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u ^
-                     static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4Fu;
-  return (mixed >> 20) & (first_.size() - 2);  // first_ has a power of two of buckets and one more
+std::size_t NeighbourGrid::Bucket(const GridCell& cell) const {
+  const std::uint64_t column = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u >> 20;
+  // first_ has a power of two of buckets and one more.
+  return (column + static_cast<std::uint64_t>(cell[1])) & (first_.size() - 2);
 }
 
 void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach) {
@@ -40,7 +40,7 @@ void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::V
   while (buckets < 2 * people) buckets *= 2;
   first_.assign(buckets + 1, 0);
   cell_.resize(people);
-  member_.resize(people);
+  members_.resize(people);
   for (std::size_t n = 0; n < people; ++n) {
     cell_[n] = Cell(at[n]);
     ++first_[Bucket(cell_[n]) + 1];
@@ -48,7 +48,7 @@ void NeighbourGrid::Build(const std::vector<Eigen::Vector2d>& at, const Eigen::V
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   next_.assign(first_.begin(), first_.end() - 1);
   for (std::size_t n = 0; n < people; ++n) {
-    member_[next_[Bucket(cell_[n])]++] = static_cast<int>(n);
+    members_[next_[Bucket(cell_[n])]++] = {at[n], cell_[n][0], static_cast<int>(n)};
   }
 }
 

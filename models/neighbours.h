@@ -1,7 +1,8 @@
 // models: who may act on whom at one frame: a search on a uniform grid of carts.
 //
 // People are sorted into the cells of a grid as wide as the reach, by a counting sort over hashed
-// cells: the cost per person does not grow with the crowd. The order in which a person meets the
+// columns of cells: the cost per person does not grow with the crowd, however far apart people are,
+// and who is near lies near in memory. The order in which a person meets the
 // neighbours is that of their places at frame 0 (ties: angles, then mass), never that of their
 // numbers, so that sums come out the same to the last bit however the people are numbered.
 #pragma once
@@ -29,14 +30,16 @@ class NeighbourGrid {
   explicit NeighbourGrid(std::vector<int> rank) : rank_(std::move(rank)) {}
 
   void Build(const std::vector<Eigen::Vector2d>& at, const Eigen::Vector2d& reach);
-  // Everybody but `person` within the reach along both axes for whom keep(other), in canonical
-  // order.
+  // Everybody from the canonical place `from` on, but `person`, within the reach along both axes
+  // for whom keep(other), in canonical order.
   template <typename Keep>
-  void Near(int person, const Keep& keep, std::vector<int>* near) const {
+  void Near(int person, int from, const Keep& keep, std::vector<int>* near) const {
     near->clear();
-    const auto consider = [&](int other) {
-      const Eigen::Vector2d apart = (at_[other] - at_[person]).cwiseAbs();
-      const bool close = other != person && apart[0] <= reach_[0] && apart[1] <= reach_[1];
+    const Eigen::Vector2d at = at_[person];
+    const auto consider = [&](int other, const Eigen::Vector2d& there) {
+      if (rank_[other] < from || other == person) return;
+      const Eigen::Vector2d apart = (there - at).cwiseAbs();
+      const bool close = apart[0] <= reach_[0] && apart[1] <= reach_[1];
       if (close && keep(other)) near->push_back(other);
     };
     ForEachCandidate(person, consider);
@@ -48,33 +51,47 @@ class NeighbourGrid {
   // So few are compared with each other directly.
   static constexpr std::size_t kFewPeople = 12;
 
-  // Everybody in the person's cell and the eight around it, the person too.
+  using GridCell = Eigen::Matrix<std::int64_t, 2, 1>;
+  struct Member {
+    Eigen::Vector2d at;
+    std::int64_t column;  // of cells, along x
+    int person;
+  };
+
+  // Calls visit(person, place) for everybody in the person's cell and the eight around it, the
+  // person too, and for some others, each once.
   template <typename Visit>
   void ForEachCandidate(int person, const Visit& visit) const {
     if (at_.size() <= kFewPeople) {
-      for (std::size_t other = 0; other < at_.size(); ++other) visit(static_cast<int>(other));
+      for (std::size_t other = 0; other < at_.size(); ++other) {
+        visit(static_cast<int>(other), at_[other]);
+      }
       return;
     }
+    // Three cells of a column lie in buckets one after the other.
+    const std::size_t last = first_.size() - 2;
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
-      for (std::int64_t dy = -1; dy <= 1; ++dy) {
-        const Eigen::Matrix<std::int64_t, 2, 1> cell =
-            cell_[person] + Eigen::Matrix<std::int64_t, 2, 1>(dx, dy);
-        const std::size_t bucket = Bucket(cell);
-        for (int k = first_[bucket]; k < first_[bucket + 1]; ++k) {
-          // Several cells may share a bucket.
-          if (cell_[member_[k]] == cell) visit(member_[k]);
+      const GridCell lowest = cell_[person] + GridCell(dx, -1);
+      const std::size_t begin = Bucket(lowest);
+      const auto visit_buckets = [&](std::size_t from, std::size_t to) {
+        for (int k = first_[from]; k < first_[to]; ++k) {
+          // Other columns may share the buckets.
+          if (members_[k].column == lowest[0]) visit(members_[k].person, members_[k].at);
         }
-      }
+      };
+      visit_buckets(begin, std::min(begin + 3, last + 1));
+      if (begin + 3 > last + 1) visit_buckets(0, begin + 2 - last);
     }
   }
-  Eigen::Matrix<std::int64_t, 2, 1> Cell(const Eigen::Vector2d& at) const;
-  std::size_t Bucket(const Eigen::Matrix<std::int64_t, 2, 1>& cell) const;
+  GridCell Cell(const Eigen::Vector2d& at) const;
+  std::size_t Bucket(const GridCell& cell) const;
 
   std::vector<int> rank_;
   std::vector<Eigen::Vector2d> at_;
   Eigen::Vector2d reach_ = Eigen::Vector2d::Zero();
-  std::vector<Eigen::Matrix<std::int64_t, 2, 1>> cell_;  // of each person
-  std::vector<int> first_, member_, next_;               // members of a bucket; scratch
+  std::vector<GridCell> cell_;     // of each person
+  std::vector<Member> members_;    // bucket after bucket
+  std::vector<int> first_, next_;  // the first of each bucket, and the end; scratch
 };
 
 // The canonical order of a scene's people.
@@ -103,12 +120,12 @@ class PairFinder {
     grid_.Build(cart_, InteractionReach(terms_, parameters_, std::sqrt(lean_squared)));
   }
 
-  // Neighbours of a person in canonical order.
-  void Near(int person, std::vector<int>* near) const {
+  // Neighbours of a person in canonical order, from a place in it on.
+  void Near(int person, std::vector<int>* near, int from = 0) const {
     near->clear();
     if (!Active()) return;
     grid_.Near(
-        person, [this, person](int other) { return MayAct(person, other); }, near);
+        person, from, [this, person](int other) { return MayAct(person, other); }, near);
   }
   int Rank(int person) const { return grid_.Rank(person); }
   Pair Of(int n, int j) const {
@@ -120,10 +137,8 @@ class PairFinder {
   void ForEachPair(Visit&& visit) {
     if (!Active()) return;
     for (int n : order_) {
-      Near(n, &near_);
-      for (int j : near_) {
-        if (grid_.Rank(j) > grid_.Rank(n)) visit(n, j);
-      }
+      Near(n, &near_, grid_.Rank(n) + 1);
+      for (int j : near_) visit(n, j);
     }
   }
 

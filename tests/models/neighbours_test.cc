@@ -40,9 +40,13 @@ TEST(NeighbourGrid, EqualsAllPairs) {
       grid.Build(at, reach);
       std::vector<int> near;
       for (int n = 0; n < people; ++n) {
-        grid.Near(
-            n, [](int) { return true; }, &near);
-        ASSERT_EQ(near, AllPairs(at, reach, n)) << people << " people, spread " << spread;
+        const auto all = [](int) { return true; };
+        grid.Near(n, 0, all, &near);
+        std::vector<int> expected = AllPairs(at, reach, n);
+        ASSERT_EQ(near, expected) << people << " people, spread " << spread;
+        grid.Near(n, n + 1, all, &near);
+        expected.erase(expected.begin(), std::upper_bound(expected.begin(), expected.end(), n));
+        ASSERT_EQ(near, expected) << people << " people, spread " << spread;
       }
     }
   }

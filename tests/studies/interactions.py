@@ -1,7 +1,7 @@
 """What people do to each other, learned beside contact: does it predict what was not fitted?
 
 learned  held-out errors of groups, settling and false movers (ident/validation/README.md); 20 minutes of one core
-large    the same of networks that are trained by their gradient (ident/validation/README.md); 10 minutes of one core
+large    the same of networks that are trained by their gradient (ident/validation/README.md); 40 minutes of one core
 """
 import studies
 from studies import number, with_error
@@ -16,11 +16,12 @@ CANDIDATES = [
     ("network, no spring and no damping", "--interaction=network:4"),
     ("composed as LDP is", "--preset=ldp_groups"),
 ]
-LARGE = "--interaction=spring,damping,network:64-64"
-# 512-512, as LDP has it, takes too long five times over: its derivatives beside the physical parameters.
+LARGE, AS_LDP = (f"--interaction=spring,damping,network:{size}" for size in ("64-64", "512-512"))
 LARGE_CANDIDATES = [
     ("large network, stopped early", f"{LARGE} --early_stopping=0.2"),
     ("large network, a fifth of the prior", f"{LARGE} --network_prior=0.2"),
+    ("as large as LDP's, stopped early", f"{AS_LDP} --early_stopping=0.2"),
+    ("as large as LDP's, a fifth of the prior", f"{AS_LDP} --network_prior=0.2"),
 ]
 
 
