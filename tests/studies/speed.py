@@ -1,6 +1,7 @@
 """What takes how long: the benchmarks, in the words of a table, and whole processes.
 
 benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
+crowds      tests/benchmarks/README.md; four minutes; needs pushid-benchmarks
 processes   tests/benchmarks/README.md; two minutes
 batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
 rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
@@ -42,6 +43,7 @@ ROWS = [
      ["NetworkJacobian/mlp:4", "NetworkJacobian/gru:4"]),
     ("one second of a crowd of 1,000 / 10,000 people who touch",
      [f"CrowdSecond/people:{n}/threads:1/real_time" for n in (1000, 10000)]),
+    ("the same of 10,000 who do not", ["CrowdSecondWithoutContact/people:10000/threads:1/real_time"]),
     ("learning from first frames: one frame / a prediction after 30 / a whole recording",
      ["OnlineObserve", "OnlinePredict", "OnlineRecording"]),
     ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
@@ -65,6 +67,21 @@ def benchmarks():
                 cells.append(f"{number(found['cpu_time'])} {found['time_unit']}")
         rows.append([title, " / ".join(cells)])
     return studies.table(["what", "processor time"], rows)
+
+
+def crowds():
+    rows = []
+    for people in (100, 1_000, 10_000, 100_000, 1_000_000):
+        cells = []
+        for threads in (1, 2):
+            command = [os.path.join(studies.BIN, "pushid-benchmarks"), "--benchmark_format=json",
+                       f"--benchmark_filter=^CrowdSecond/people:{people}/threads:{threads}/real_time$"]
+            out = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+            cells.append(f"{number(json.loads(out)['benchmarks'][0]['person_steps'] / 1e6, 2)} million")
+            most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # kB, of the largest so far
+        rows.append([f"{people:,}", *cells, f"{number(most / 1e3)} MB"])
+    return studies.table(["people, 0.45 m apart", "person-steps a second, one thread", "two threads", "memory of the process"],
+                         rows)
 
 
 def processor_seconds_once(*command):
@@ -197,5 +214,5 @@ def against():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"benchmarks": benchmarks, "processes": processes, "batch": batch, "rivals": rivals,
-                             "against": against})
+    studies.main(__file__, {"benchmarks": benchmarks, "crowds": crowds, "processes": processes, "batch": batch,
+                            "rivals": rivals, "against": against})
