@@ -118,6 +118,7 @@ flags = ["--self_force=none"]
 [[variant]]
 name = "linear"
 flags = ["--self_force=linear", "--mode_weight=10"]
+restoration = ["--kind=window", "--sees=pose"]
 [output]
 dir = "out"
 )"));
