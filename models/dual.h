@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <type_traits>
 
 namespace pushid {
 
@@ -44,6 +45,11 @@ struct Dual {
   }
   // By a constant, which has no derivatives to carry.
   friend Dual operator*(double c, const Dual& x) { return x.Scaled(T(c)); }
+  template <typename C,
+            std::enable_if_t<std::is_same_v<C, T> && !std::is_same_v<C, double>, int> = 0>
+  friend Dual operator*(const C& c, const Dual& x) {
+    return x.Scaled(c);
+  }
   friend Dual operator*(const Dual& x, double c) { return x.Scaled(T(c)); }
   friend Dual operator/(const Dual& x, double c) { return {x.a / T(c), x.v / T(c)}; }
 

@@ -27,14 +27,15 @@ inline constexpr double kCartShare = 0.1;  // of the body's mass
 inline constexpr double kReferenceMass = 85;   // kg
 inline constexpr double kReferenceRod = 0.95;  // m
 
-// L: of the lengths, which are constants (double) unless a rod moves.
+// L: of what is constant (double), unless a rod moves, or several people stand side by side in a
+// vector of the processor (residuals/lockstep).
 template <typename L>
 struct BodyOf {
-  double mass = kReferenceMass;     // kg
+  L mass = L(kReferenceMass);       // kg
   L rod_length = L(kReferenceRod);  // m
   L cart_height = L(0.0);           // m
 
-  double point_mass() const { return (1.0 - kCartShare) * mass; }
+  L point_mass() const { return (1.0 - kCartShare) * mass; }
 };
 
 // What does not change during a recording; the lengths are those of frame 0.
@@ -52,7 +53,7 @@ struct PendulumState {
 // k = lift: bent knees and raised heels.
 template <typename T>
 BodyOf<T> BodyNow(const Body& body, const T& rod, const T& lift) {
-  return {body.mass, body.rod_length + rod, body.cart_height - lift * rod};
+  return {T(body.mass), body.rod_length + rod, body.cart_height - lift * rod};
 }
 
 // Sines and cosines of theta and phi: a step needs them several times, and they are half its cost.
@@ -79,8 +80,7 @@ struct PosedPendulum : PendulumState<T> {
 
 template <typename T, typename L>
 Matrix4<T> MassMatrix(const BodyOf<L>& body, const Angles<T>& angles) {
-  const double m = body.point_mass();
-  const L l = body.rod_length;
+  const L m = body.point_mass(), l = body.rod_length;
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T zero(0.0), total(body.mass);
   Matrix4<T> mass;
@@ -98,8 +98,7 @@ Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
 
 template <typename T, typename L>
 Vector4<T> Coriolis(const BodyOf<L>& body, const Angles<T>& angles, const Vector4<T>& qd) {
-  const double m = body.point_mass();
-  const L l = body.rod_length;
+  const L m = body.point_mass(), l = body.rod_length;
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T thd = qd[2], phd = qd[3];
   return {-m * l * s_th * thd * thd,

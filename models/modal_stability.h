@@ -82,22 +82,33 @@ struct ModePolynomial {
   std::array<T, 3> Conditions() const { return {c2, c0, c2 * c1 - c0}; }
 };
 
+// A person who stands upright at rest, linearized.
+template <typename T>
+struct UprightRest {
+  static constexpr double kStep = 1.0;  // s; any: what follows does not depend on it
+  Body body;
+  RestJacobian<T> jacobian;
+
+  UprightRest(const ModelOptions& options, const Body& person, const ParameterSet<T>& p)
+      : body(person) {
+    // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
+    // derivatives, is nothing to rely on.
+    ParameterSet<T> linear = p;
+    linear[kCq] = linear[kDq] = T(0.0);
+    const SelfForce self(options, body, Vector4<double>::Zero(), kStep);
+    jacobian = LinearizeAtRest(options.stance, self, linear);
+  }
+};
+
 // plane: 0 for (x, theta), 1 for (y, phi).
 template <typename T>
-ModePolynomial<T> FreeModes(const ModelOptions& options, const Body& body, const ParameterSet<T>& p,
-                            int plane) {
-  const Vector4<double> upright = Vector4<double>::Zero();
-  constexpr double kStep = 1.0;  // s; any: K does not depend on it
-  const SelfForce self(options, body, upright, kStep);
-  // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
-  // derivatives, is nothing to rely on.
-  ParameterSet<T> linear = p;
-  linear[kCq] = linear[kDq] = T(0.0);
-  const RestJacobian<T> rest = LinearizeAtRest(options.stance, self, linear);
-  const Matrix4<double> mass = MassMatrix<double>(body, upright);
+ModePolynomial<T> FreeModes(const UprightRest<T>& upright, int plane) {
+  const Body& body = upright.body;
+  const RestJacobian<T>& rest = upright.jacobian;
+  const Matrix4<double> mass = MassMatrix<double>(body, Vector4<double>::Zero());
   const int cart = plane, angle = 2 + plane;                   // rows
   const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns
-  const T k = kStep * rest.by_previous[plane];
+  const T k = UprightRest<T>::kStep * rest.by_previous[plane];
   const T f_e = rest.by_state(cart, at_e), f_w = rest.by_state(cart, at_w);
   const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane] - rest.ground;
   const T t_e = rest.by_state(angle, at_e), t_v = rest.by_state(angle, at_v);

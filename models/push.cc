@@ -1,4 +1,4 @@
-// models: derivatives of the push tail, and the push of the settling simulations.
+// models: how long pushes and their tails are, and the push of the settling simulations.
 #include "models/push.h"
 
 #include <algorithm>
@@ -14,26 +14,8 @@ double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double
   const double force = push.mean.head<2>().norm();
   if (push.kind == PushKind::kExternal || push.force.empty()) return force * duration;
   // The sum of TailForce over all frames to come, a geometric series.
-  const double tail = p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, duration));
+  const double tail = p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, LogTailDuration(duration)));
   return force * (duration + tail);
-}
-
-void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
-                     Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
-  if (!TailActs(push, frame)) return;
-  const double duration = static_cast<double>(push.force.size()) * dt;
-  const double tau = TailDecayTime(p, duration);
-  const double elapsed = (frame - push.EndFrame()) * dt;
-  const double decay = std::exp(-elapsed / tau);
-  // d decay / d tau = decay elapsed / tau^2; tau is proportional to tail_time.
-  const double by_time = decay * elapsed / (tau * p[kTailTime]);
-  const double by_exponent = decay * elapsed / tau * LogTailDuration(duration);
-  for (int row = 0; row < 4; ++row) {
-    const Parameter amplitude = row < 2 ? kTailGain : kTailTorque;
-    (*by_parameter)(row, amplitude) += decay * push.mean[row];
-    (*by_parameter)(row, kTailTime) += p[amplitude] * push.mean[row] * by_time;
-    (*by_parameter)(row, kTailExponent) += p[amplitude] * push.mean[row] * by_exponent;
-  }
 }
 
 std::vector<Vector4<double>> HalfSinePush(const Body& body, double impulse, int frames, double dt) {

@@ -51,10 +51,10 @@ inline ScenePush MakeScenePush(int person, int start_frame, PushKind kind,
 double LogTailDuration(double push_duration);
 
 // The tail's decay time in seconds.
-template <typename T>
-T TailDecayTime(const ParameterSet<T>& p, double push_duration) {
+template <typename T, typename L>
+T TailDecayTime(const ParameterSet<T>& p, const L& log_duration) {
   using std::exp;
-  return p[kTailTime] * exp(p[kTailExponent] * LogTailDuration(push_duration));
+  return p[kTailTime] * exp(p[kTailExponent] * log_duration);
 }
 
 // Whether a push has a tail at `frame`: not before it ends, and not an external one.
@@ -62,30 +62,63 @@ inline bool TailActs(const ScenePush& push, int frame) {
   return push.kind != PushKind::kExternal && !push.force.empty() && frame >= push.EndFrame();
 }
 
-// What is left of a tail that acts.
-template <typename T>
-T TailDecay(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
-  using std::exp;
-  const T tau = TailDecayTime(p, static_cast<double>(push.force.size()) * dt);
-  return exp(-(frame - push.EndFrame()) * dt / tau);
+// A tail that acts, so long after its push; L as in ipm.h.
+template <typename L>
+struct TailOf {
+  Vector4<L> mean;
+  L log_duration;  // LogTailDuration of the push
+  L elapsed;       // s, since the push ended
+
+  // What is left of it.
+  template <typename T>
+  T Decay(const ParameterSet<T>& p) const {
+    using std::exp;
+    return exp(-elapsed / TailDecayTime(p, log_duration));
+  }
+  template <typename T>
+  Vector4<T> Force(const ParameterSet<T>& p) const {
+    const T decay = Decay(p);
+    const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
+    return {gain * mean[0], gain * mean[1], torque * mean[2], torque * mean[3]};
+  }
+  // Adds the derivatives of Force to a 4 x kNumParameters matrix; written out: 2.5 times as fast
+  // as Jets (tests/benchmarks, Jacobian_OfTail).
+  template <typename T, typename Matrix>
+  void AddJacobian(const ParameterSet<T>& p, Matrix* by_parameter) const {
+    const T tau = TailDecayTime(p, log_duration), decay = Decay(p);
+    // d decay / d tau = decay elapsed / tau^2; tau is proportional to tail_time.
+    const T by_time = decay * elapsed / (tau * p[kTailTime]);
+    const T by_exponent = decay * elapsed / tau * log_duration;
+    for (int row = 0; row < 4; ++row) {
+      const Parameter amplitude = row < 2 ? kTailGain : kTailTorque;
+      (*by_parameter)(row, amplitude) += decay * mean[row];
+      (*by_parameter)(row, kTailTime) += p[amplitude] * mean[row] * by_time;
+      (*by_parameter)(row, kTailExponent) += p[amplitude] * mean[row] * by_exponent;
+    }
+  }
+};
+
+// The tail of a push that has one at `frame` (TailActs).
+inline TailOf<double> TailAt(const ScenePush& push, int frame, double dt) {
+  return {push.mean, LogTailDuration(static_cast<double>(push.force.size()) * dt),
+          (frame - push.EndFrame()) * dt};
+}
+
+// Adds the derivatives of TailForce.
+inline void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame,
+                            double dt, Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
+  if (TailActs(push, frame)) TailAt(push, frame, dt).AddJacobian(p, by_parameter);
 }
 
 // The tail's force at `frame`; zero where it does not act.
 template <typename T>
 Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
-  const T decay = TailDecay(push, p, frame, dt);
-  const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
-  return {gain * push.mean[0], gain * push.mean[1], torque * push.mean[2], torque * push.mean[3]};
+  return TailAt(push, frame, dt).Force(p);
 }
 
 // The horizontal impulse of a push with its tail, N s.
 double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt);
-
-// Adds the derivatives of TailForce to a 4 x kNumParameters matrix; written out: 2.5 times as fast
-// as Jets (tests/benchmarks, Jacobian_OfTail).
-void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame, double dt,
-                     Eigen::Matrix<double, 4, kNumParameters>* by_parameter);
 
 // A force f (N, world) at the fraction `height` of the rod, as a generalized force.
 template <typename T>
@@ -108,7 +141,7 @@ template <typename T>
 Vector4<T> TailForceAtHip(const ScenePush& push, const ParameterSet<T>& p, const Body& body,
                           const Angles<T>& angles, int frame, double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
-  const T gain = p[kTailGain] * TailDecay(push, p, frame, dt);
+  const T gain = p[kTailGain] * TailAt(push, frame, dt).Decay(p);
   return GeneralizedForce<T>(body, angles, {gain * push.mean[0], gain * push.mean[1], T(0.0)}, 1.0);
 }
 

@@ -47,20 +47,24 @@ struct ResidualSigmas {
 // Those under which FrameLoss::kLdp weighs metres, radians and their rates alike, as LDP does.
 inline constexpr ResidualSigmas kLdpSigmas = {0.1, 0.1, 0.1, 0.1, 0.01, FrameLoss::kLdp};
 
-struct MeasuredFrame {
-  Vector3<double> hip;          // m
-  PendulumState<double> state;  // m, rad, m/s, rad/s
-  double weight = 1.0;          // on r; 0 where nothing was measured
+template <typename L>
+struct MeasuredFrameOf {
+  Vector3<L> hip;          // m
+  PendulumState<L> state;  // m, rad, m/s, rad/s
+  L weight = L(1.0);       // on r; 0 where nothing was measured
 };
+using MeasuredFrame = MeasuredFrameOf<double>;
 
 template <typename T>
 using FrameVector = Eigen::Matrix<T, kFrameResiduals, 1>;
+template <int kColumns, typename T = double>
+using FrameJacobian = Eigen::Matrix<T, kFrameResiduals, kColumns, Eigen::RowMajor>;
 
 // r before the robust weight. angles: of the state.
 // body: with the lengths of that frame (BodyNow, where the rod moves).
-template <typename T, typename L>
+template <typename T, typename L, typename M>
 FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& state,
-                                const Angles<T>& angles, const MeasuredFrame& measured,
+                                const Angles<T>& angles, const MeasuredFrameOf<M>& measured,
                                 const ResidualSigmas& sigmas) {
   FrameVector<T> r;
   if (sigmas.loss == FrameLoss::kLdp) {
@@ -77,6 +81,36 @@ FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& s
   return r;
 }
 
+// Its derivative by [q, qd], and by [rod, lift] where there are so many columns, with the lift.
+template <int kColumns, typename T, typename L>
+void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<T>& state,
+                      const Angles<T>& angles, const ResidualSigmas& sigmas,
+                      FrameJacobian<kColumns, T>* jacobian) {
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  const L l = body.rod_length;
+  FrameJacobian<kColumns, T>& j = *jacobian;
+  j.setZero();
+  j(0, 0) = j(1, 1) = T(1.0 / sigmas.hip);
+  j(3, 4) = j(4, 5) = T(1.0 / sigmas.velocity);
+  j(5, 2) = j(6, 3) = T(1.0 / sigmas.angle);
+  j(7, 6) = j(8, 7) = T(1.0 / sigmas.rate);
+  if (sigmas.loss == FrameLoss::kLdp) {
+    j(2, 7) = T(1.0 / sigmas.rate);
+    return;
+  }
+  j(0, 2) = l * c_th / sigmas.hip;
+  j(1, 2) = l * s_th * s_ph / sigmas.hip;
+  j(1, 3) = -l * c_th * c_ph / sigmas.hip;
+  j(2, 2) = -l * s_th * c_ph / sigmas.hip;
+  j(2, 3) = -l * c_th * s_ph / sigmas.hip;
+  if constexpr (kColumns == 10) {
+    j(0, 8) = s_th / sigmas.hip;
+    j(1, 8) = -c_th * s_ph / sigmas.hip;
+    j(2, 8) = (c_th * c_ph - lift) / sigmas.hip;
+    j(2, 9) = -state.rod / sigmas.hip;
+  }
+}
+
 // w of the header; 1 for plain least squares.
 template <typename T>
 T RobustWeight(const T& squared_norm, double robust) {
@@ -85,20 +119,38 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
-// w r and its derivative, times `weight`, of residuals that share one w:
+// Of residuals that share one w: w, and twice dw/ds of
 //   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c)
+template <typename T>
+struct RobustSlope {
+  T w = T(1.0), twice = T(0.0);
+
+  RobustSlope(const T& squared_norm, double robust) {
+    using std::sqrt;
+    if (robust <= 0.0) return;
+    const double squared_scale = robust * robust;
+    const T c = sqrt(1.0 + squared_norm / squared_scale);
+    w = sqrt(2.0 / (1.0 + c));
+    twice = -1.0 / (w * squared_scale * c * (1.0 + c) * (1.0 + c));
+  }
+};
+
+// w r and its derivative, times `weight`.
 template <typename Residual, typename Jacobian>
 Residual RobustlyWeighted(const Residual& r, double weight, double robust, Jacobian* jacobian) {
   if (robust <= 0.0) {
     *jacobian *= weight;
     return weight * r;
   }
-  const double squared_scale = robust * robust;
-  const double c = std::sqrt(1.0 + r.squaredNorm() / squared_scale);
-  const double w = std::sqrt(2.0 / (1.0 + c));
-  const double slope = -1.0 / (2.0 * w * squared_scale * c * (1.0 + c) * (1.0 + c));
-  const Eigen::Matrix<double, 1, Jacobian::ColsAtCompileTime> along = r.transpose() * *jacobian;
-  *jacobian = weight * (w * *jacobian + (2.0 * slope) * r * along);
+  const RobustSlope<double> slope(r.squaredNorm(), robust);
+  const double w = slope.w;
+  // Row by row, as vectors of the processor lie.
+  Eigen::Matrix<double, 1, Jacobian::ColsAtCompileTime> along = r[0] * jacobian->row(0);
+  for (Eigen::Index i = 1; i < r.size(); ++i) along += r[i] * jacobian->row(i);
+  along *= slope.twice * weight;
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    jacobian->row(i) = (weight * w) * jacobian->row(i) + r[i] * along;
+  }
   return weight * w * r;
 }
 
@@ -107,16 +159,28 @@ Residual RobustlyWeighted(const Residual& r, double weight, double robust, Jacob
 // the loss as steeper than it is. With c = sqrt(1 + |r|^2 / d^2):
 //   J <- (1 - u u') J sqrt((1 + c) / 2c) + u u' J sqrt(2 / (c (1 + c))),   u = r / |r|
 // residual: w r times `weight`.
+template <typename T>
+struct RobustHessian {
+  T across, along;  // the two factors
+
+  // squared: |w r|^2 without the weight.
+  RobustHessian(const T& squared, double robust) {
+    using std::sqrt;
+    const T c = 1.0 + squared / (2.0 * robust * robust);
+    across = sqrt((1.0 + c) / (2.0 * c));
+    along = sqrt(2.0 / (c * (1.0 + c)));
+  }
+};
+
 template <typename Residual, typename Rows>
 void CorrectForRobustLoss(const Residual& residual, double weight, double robust, Rows&& jacobian) {
   const double squared = residual.squaredNorm();
   if (robust <= 0.0 || weight <= 0.0 || squared <= 0.0) return;
-  const double c = 1.0 + squared / (2.0 * weight * weight * robust * robust);
-  const double across = std::sqrt((1.0 + c) / (2.0 * c)), along = std::sqrt(2.0 / (c * (1.0 + c)));
+  const RobustHessian<double> factor(squared / (weight * weight), robust);
   const Eigen::VectorXd u = residual / std::sqrt(squared);
   const Eigen::Matrix<double, 1, Eigen::Dynamic> by_u = u.transpose() * jacobian;
-  jacobian *= across;
-  jacobian += (along - across) * u * by_u;
+  jacobian *= factor.across;
+  jacobian += (factor.along - factor.across) * u * by_u;
 }
 
 template <typename T, typename L>
@@ -134,12 +198,13 @@ FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& stat
 FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
                                               const MeasuredFrame& measured,
                                               const ResidualSigmas& sigmas,
-                                              Eigen::Matrix<double, kFrameResiduals, 8>* jacobian);
+                                              FrameJacobian<8>* jacobian);
 
 // The same where the rod moves, with BodyNow(body, state.rod, lift): by [q, qd, rod, lift].
-FrameVector<double> MovingRodResidualWithJacobian(
-    const Body& body, double lift, const PendulumState<double>& state,
-    const MeasuredFrame& measured, const ResidualSigmas& sigmas,
-    Eigen::Matrix<double, kFrameResiduals, 10>* jacobian);
+FrameVector<double> MovingRodResidualWithJacobian(const Body& body, double lift,
+                                                  const PendulumState<double>& state,
+                                                  const MeasuredFrame& measured,
+                                                  const ResidualSigmas& sigmas,
+                                                  FrameJacobian<10>* jacobian);
 
 }  // namespace pushid

@@ -18,6 +18,15 @@ constexpr double kNoInformation = 1e-14;  // of a column's own, once the others 
 NormalEquations::NormalEquations(int columns)
     : columns_(columns), gram_(RowMajorMatrix::Zero(PaddedSize(columns), PaddedSize(columns))) {}
 
+NormalEquations::NormalEquations(int columns, const double* upper, int stride)
+    : NormalEquations(columns) {
+  for (int row = 0; row <= columns; ++row) {
+    for (int column = row; column <= columns; ++column) {
+      gram_(row, column) = upper[(row * (columns + 1) + column) * stride];
+    }
+  }
+}
+
 int NormalEquations::PaddedSize(int columns) {
   return (columns + 1 + kGramBlock - 1) / kGramBlock * kGramBlock;
 }

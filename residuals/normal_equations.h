@@ -22,6 +22,8 @@ class NormalEquations {
  public:
   NormalEquations() = default;
   explicit NormalEquations(int columns);
+  // G's upper triangle by rows, its numbers `stride` apart.
+  NormalEquations(int columns, const double* upper, int stride);
 
   // Doubles in a row that Add takes: those of J, then r, then zeros.
   static int PaddedSize(int columns);

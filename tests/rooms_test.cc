@@ -29,7 +29,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "generators"}},
     {"datasets",
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
-    {"residuals", {"kernels", "", "sensitivities", "cost_functions", "adjoint"}},
+    {"residuals", {"kernels", "", "sensitivities", "lockstep", "cost_functions", "adjoint"}},
     {"ident",
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
       "prediction", "validation", "push", "bodies", "generators", "training", "formations",

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "residuals/cost_functions/lane_group.h"
+
 namespace pushid {
 
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
@@ -139,17 +141,30 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   std::vector<FailedRollout> failures;
   if (options_.likelihood != Likelihood::kTrajectory) return failures;  // rolls nothing out
   FitPoint copy = point;
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  const int total = static_cast<int>(recordings_.size());
+  std::vector<std::shared_ptr<const RolloutProblem>> problems(total);
+  std::vector<const RolloutProblem*> in_lanes(total, nullptr);
+  std::vector<std::vector<double*>> blocks(total);
+  for (int i = 0; i < total; ++i) {
     if (Count(i) == 0) continue;
-    const auto problem =
+    problems[i] =
         MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
-    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
-    const SensitivityInputs inputs =
-        RolloutInputs(recordings_[i].scene, map_, problem->layout, blocks.data());
+    blocks[i] = RecordingBlocks(&copy, i);
+    if (HasLanes(*problems[i])) in_lanes[i] = problems[i].get();
+  }
+  std::vector<bool> stays(total, false);  // within the domain, as far as is known
+  for (const SideBySide& group : PutSideBySide(in_lanes)) {
+    std::vector<double const* const*> at;
+    for (int i : group.members) at.push_back(blocks[i].data());
+    const std::vector<RolloutSums> sums = group.lanes.Evaluate(at, LaneSums::kSquares);
+    for (size_t k = 0; k < sums.size(); ++k) stays[group.members[k]] = sums[k].ok;
+  }
+  for (int i = 0; i < total; ++i) {
+    if (problems[i] == nullptr || stays[i]) continue;
+    SensitivityInputs inputs;
     RolloutPath<double> path;
-    const RolloutStatus status = Rollout<double>(
-        recordings_[i].scene, options_.model, inputs.parameters, inputs.initial_velocity,
-        problem->horizon, &path, nullptr, inputs.network_weights);
+    const RolloutStatus status =
+        RollOut(*problems[i], blocks[i].data(), Derivatives::kNone, &inputs, &path, nullptr);
     if (!status.ok) failures.push_back({i, status});
   }
   return failures;

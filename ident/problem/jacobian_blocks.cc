@@ -2,10 +2,11 @@
 #include "ident/problem/jacobian_blocks.h"
 
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
-#include "residuals/cost_functions/condensed_rows.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
@@ -36,6 +37,33 @@ bool EvaluateRows(const ceres::CostFunction& cost, const std::vector<const doubl
   return true;
 }
 
+std::vector<const double*> BlocksOf(const FitProblem::Built& built,
+                                    const FitProblem::Built::Block& block) {
+  std::vector<double*> on;
+  built.problem->GetParameterBlocksForResidualBlock(block.id, &on);
+  return {on.begin(), on.end()};
+}
+
+// Rollouts that go side by side, by the index of their block; the others are empty.
+std::vector<std::optional<RolloutSums>> SumsSideBySide(const FitProblem::Built& built,
+                                                       LaneSums wanted) {
+  std::vector<const RolloutProblem*> in_lanes;
+  for (const FitProblem::Built::Block& block : built.blocks) {
+    const auto* rollout = dynamic_cast<const CondensedRollout*>(block.cost);
+    in_lanes.push_back(rollout != nullptr ? rollout->in_lanes() : nullptr);
+  }
+  std::vector<std::optional<RolloutSums>> sums(in_lanes.size());
+  for (const SideBySide& group : PutSideBySide(in_lanes)) {
+    std::vector<std::vector<const double*>> at;
+    std::vector<double const* const*> blocks;
+    for (int i : group.members) at.push_back(BlocksOf(built, built.blocks[i]));
+    for (const std::vector<const double*>& of_one : at) blocks.push_back(of_one.data());
+    std::vector<RolloutSums> results = group.lanes.Evaluate(blocks, wanted);
+    for (size_t k = 0; k < results.size(); ++k) sums[group.members[k]] = std::move(results[k]);
+  }
+  return sums;
+}
+
 // Puts rows, and whose they are, under each other.
 class Gatherer {
  public:
@@ -47,17 +75,19 @@ class Gatherer {
     }
   }
 
-  void Add(const FitProblem::Built::Block& block) {
+  // sums: of a rollout, where they are there.
+  void Add(const FitProblem::Built::Block& block, const std::optional<RolloutSums>& sums) {
     std::vector<double*> on;
     built_.problem->GetParameterBlocksForResidualBlock(block.id, &on);
     const std::vector<const double*> at(on.begin(), on.end());
     const auto* rollout = dynamic_cast<const CondensedRows*>(block.cost);
     std::vector<PersonRows> people(1);
     // A block that cannot be evaluated here was left out by Build; skip it all the same.
-    if (!(rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
-                             : EvaluateRows(*block.cost, at, &people[0]))) {
-      return;
-    }
+    const bool told =
+        sums ? static_cast<const CondensedRollout*>(block.cost)->TellPeople(*sums, robust_, &people)
+        : rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
+                             : EvaluateRows(*block.cost, at, &people[0]);
+    if (!told) return;
     const bool data = block.cluster >= 0;
     const auto* steps = dynamic_cast<const LikelihoodResidual*>(block.cost);
     for (size_t n = 0; n < people.size(); ++n) {
@@ -122,7 +152,9 @@ class Gatherer {
 JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust) {
   JacobianBlocks score;
   Gatherer gatherer(built, robust, &score);
-  for (const FitProblem::Built::Block& block : built.blocks) gatherer.Add(block);
+  const std::vector<std::optional<RolloutSums>> sums =
+      SumsSideBySide(built, robust ? LaneSums::kRobust : LaneSums::kPlain);
+  for (size_t i = 0; i < built.blocks.size(); ++i) gatherer.Add(built.blocks[i], sums[i]);
   gatherer.Finish();
   return score;
 }

@@ -2,8 +2,10 @@
 #include "ident/problem/parallel_evaluation.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "ident/problem/parallel.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
 
@@ -19,18 +21,22 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
 
   // At the blocks' present values; constant blocks get no derivatives.
   void Prepare(bool with_jacobians, const ceres::Problem& problem) {
-    if (Holds(blocks_.data(), with_jacobians)) return;
-    std::vector<double*> jacobians(blocks_.size(), nullptr);
-    for (size_t b = 0; with_jacobians && b < blocks_.size(); ++b) {
-      const bool constant = problem.IsParameterBlockConstant(blocks_[b]);
-      jacobians_[b].resize(constant ? 0 : num_residuals() * parameter_block_sizes()[b]);
-      if (!constant) jacobians[b] = jacobians_[b].data();
-    }
-    has_jacobians_ = with_jacobians;
-    Remember();
+    if (IsPrepared(with_jacobians)) return;
+    std::vector<double*> jacobians = Begin(with_jacobians, problem);
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
+  // The same of a rollout whose sums are there.
+  void Prepare(const RolloutSums& sums, bool with_jacobians, const ceres::Problem& problem) {
+    std::vector<double*> jacobians = Begin(with_jacobians, problem);
+    ok_ = rollout()->Tell(sums, residuals_.data(), with_jacobians ? jacobians.data() : nullptr);
+  }
+  bool IsPrepared(bool with_jacobians) const { return Holds(blocks_.data(), with_jacobians); }
+  // Null where it is none.
+  const CondensedRollout* rollout() const {
+    return dynamic_cast<const CondensedRollout*>(cost_.get());
+  }
+  double const* const* blocks() const { return blocks_.data(); }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     bool held = Holds(blocks, jacobians != nullptr);
@@ -48,6 +54,18 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   }
 
  private:
+  // Where derivatives go; the point is remembered.
+  std::vector<double*> Begin(bool with_jacobians, const ceres::Problem& problem) {
+    std::vector<double*> jacobians(blocks_.size(), nullptr);
+    for (size_t b = 0; with_jacobians && b < blocks_.size(); ++b) {
+      const bool constant = problem.IsParameterBlockConstant(blocks_[b]);
+      jacobians_[b].resize(constant ? 0 : num_residuals() * parameter_block_sizes()[b]);
+      if (!constant) jacobians[b] = jacobians_[b].data();
+    }
+    has_jacobians_ = with_jacobians;
+    Remember();
+    return jacobians;
+  }
   void Remember() {
     point_.clear();
     for (size_t b = 0; b < blocks_.size(); ++b) {
@@ -79,9 +97,49 @@ std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
   return prepared;
 }
 
+// One cost function, or rollouts side by side.
+struct ParallelEvaluation::Task {
+  std::vector<Prepared*> members;
+  std::optional<LaneGroup> lanes;
+
+  void Prepare(bool with_jacobians, const ceres::Problem& problem) {
+    if (!lanes) return members[0]->Prepare(with_jacobians, problem);
+    std::vector<double const* const*> blocks;
+    bool there = true;
+    for (const Prepared* member : members) {
+      blocks.push_back(member->blocks());
+      there = there && member->IsPrepared(with_jacobians);
+    }
+    if (there) return;
+    const std::vector<RolloutSums> sums =
+        lanes->Evaluate(blocks, with_jacobians ? LaneSums::kPlain : LaneSums::kSquares);
+    for (size_t i = 0; i < members.size(); ++i) {
+      members[i]->Prepare(sums[i], with_jacobians, problem);
+    }
+  }
+};
+
+ParallelEvaluation::ParallelEvaluation(int num_threads) : num_threads_(num_threads) {}
+ParallelEvaluation::~ParallelEvaluation() = default;
+
+void ParallelEvaluation::SetTasks() {
+  std::vector<const RolloutProblem*> in_lanes;
+  for (Prepared* prepared : prepared_) {
+    const CondensedRollout* const rollout = prepared->rollout();
+    in_lanes.push_back(rollout != nullptr ? rollout->in_lanes() : nullptr);
+    if (in_lanes.back() == nullptr) tasks_.push_back({{prepared}, std::nullopt});
+  }
+  for (SideBySide& group : PutSideBySide(in_lanes)) {
+    Task task{{}, std::move(group.lanes)};
+    for (int i : group.members) task.members.push_back(prepared_[i]);
+    tasks_.push_back(std::move(task));
+  }
+}
+
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
-  ParallelFor(static_cast<int>(prepared_.size()), num_threads_,
-              [&](int i) { prepared_[i]->Prepare(evaluate_jacobians, *problem_); });
+  if (tasks_.empty()) SetTasks();
+  ParallelFor(static_cast<int>(tasks_.size()), num_threads_,
+              [&](int i) { tasks_[i].Prepare(evaluate_jacobians, *problem_); });
 }
 
 }  // namespace pushid

@@ -18,7 +18,8 @@ namespace pushid {
 
 class ParallelEvaluation : public ceres::EvaluationCallback {
  public:
-  explicit ParallelEvaluation(int num_threads) : num_threads_(num_threads) {}
+  explicit ParallelEvaluation(int num_threads);
+  ~ParallelEvaluation() override;
 
   // What to add to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
@@ -30,9 +31,13 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
 
  private:
   class Prepared;
+  struct Task;
+  void SetTasks();
+
   int num_threads_;
   const ceres::Problem* problem_ = nullptr;
   std::vector<Prepared*> prepared_;  // owned by the problem
+  std::vector<Task> tasks_;          // of all of them; from the first evaluation on
 };
 
 }  // namespace pushid

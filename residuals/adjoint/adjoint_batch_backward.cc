@@ -5,7 +5,7 @@ namespace pushid {
 
 double AdjointGradient::Batch::AddResidual(int column, int frame, Adjoint* adjoint) const {
   const Walker& walker = walkers_[column];
-  Eigen::Matrix<double, kFrameResiduals, 10> jacobian;
+  FrameJacobian<10> jacobian;
   const FrameVector<double> r =
       MovingRodResidualWithJacobian(walker.body(), Parameters(column)[kRodLift], walker.path[frame],
                                     walker.Measured(frame), sigmas_, &jacobian);

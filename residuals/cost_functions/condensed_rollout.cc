@@ -11,6 +11,41 @@ CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem
   if (method == JacobianMethod::kAutodiff) oracle_ = MakeRolloutCost(std::move(problem), method);
 }
 
+RolloutSums CondensedRollout::Alone(double const* const* blocks, LaneSums sums) const {
+  if (alone_ == nullptr) alone_ = std::make_unique<LaneGroup>(std::vector{&problem()});
+  return alone_->Evaluate({blocks}, sums)[0];
+}
+
+bool CondensedRollout::Evaluate(double const* const* blocks, double* residuals,
+                                double** jacobians) const {
+  if (in_lanes() == nullptr) return CondensedRows::Evaluate(blocks, residuals, jacobians);
+  const LaneSums sums = jacobians != nullptr ? LaneSums::kPlain : LaneSums::kSquares;
+  return Tell(Alone(blocks, sums), residuals, jacobians);
+}
+
+bool CondensedRollout::EvaluatePeople(double const* const* blocks, bool robust,
+                                      std::vector<PersonRows>* people) const {
+  if (in_lanes() == nullptr) return CondensedRows::EvaluatePeople(blocks, robust, people);
+  return TellPeople(Alone(blocks, robust ? LaneSums::kRobust : LaneSums::kPlain), robust, people);
+}
+
+bool CondensedRollout::Tell(const RolloutSums& sums, double* residuals, double** jacobians) const {
+  if (!sums.ok) return false;
+  if (jacobians == nullptr) {
+    TellSquares(sums.squares, residuals);
+  } else {
+    CondensedRows::Tell(sums.plain, residuals, jacobians);
+  }
+  return true;
+}
+
+bool CondensedRollout::TellPeople(const RolloutSums& sums, bool robust,
+                                  std::vector<PersonRows>* people) const {
+  if (!sums.ok) return false;
+  *people = {RowsOf(sums.plain, robust ? &sums.robust : nullptr)};
+  return true;
+}
+
 RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives derivatives,
                                       const RowsVisitor& visit) const {
   const auto told = [&](int frame, int person, const double* residuals, FrameRows* by_column) {

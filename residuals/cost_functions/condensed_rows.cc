@@ -39,19 +39,42 @@ bool CondensedRows::Evaluate(double const* const* blocks, double* residuals,
     equations.Add(rows.count, rows.by_column);
   });
   if (!status.ok) return false;
+  if (wanted == Derivatives::kNone) {
+    TellSquares(squares, residuals);
+  } else {
+    Tell(equations, residuals, jacobians);
+  }
+  return true;
+}
+
+void CondensedRows::TellSquares(double squares, double* residuals) const {
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
   values.setZero();
-  if (wanted == Derivatives::kNone) {
-    values[values.size() - 1] = std::sqrt(squares);
-    return true;
-  }
+  values[values.size() - 1] = std::sqrt(squares);
+}
+
+void CondensedRows::Tell(const NormalEquations& equations, double* residuals,
+                         double** jacobians) const {
+  const int acting = equations.columns();
   const RowMajorMatrix factor = equations.Factor();
+  Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
+  values.setZero();
   values.head(acting) = factor.col(acting).head(acting);
   values[values.size() - 1] = factor(acting, acting);
   RowMajorMatrix condensed = RowMajorMatrix::Zero(num_residuals(), acting);
   condensed.topRows(acting) = factor.topLeftCorner(acting, acting);
   columns_.Scatter(condensed, 0, num_residuals(), jacobians);
-  return true;
+}
+
+CondensedRows::PersonRows CondensedRows::RowsOf(const NormalEquations& plain,
+                                                const NormalEquations* robust) const {
+  const int acting = plain.columns();
+  const RowMajorMatrix factor = plain.Factor();
+  PersonRows rows{columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}};
+  if (robust != nullptr) {
+    rows.robust_jacobian = columns_.Expand(robust->Factor().leftCols(acting));
+  }
+  return rows;
 }
 
 bool CondensedRows::EvaluatePeople(double const* const* blocks, bool robust,
@@ -71,10 +94,7 @@ bool CondensedRows::EvaluatePeople(double const* const* blocks, bool robust,
   if (!status.ok) return false;
   people->clear();
   for (int n = 0; n < num_people(); ++n) {
-    const RowMajorMatrix factor = plain[n].Factor();
-    PersonRows rows{columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}};
-    if (robust) rows.robust_jacobian = columns_.Expand(corrected[n].Factor().leftCols(acting));
-    people->push_back(std::move(rows));
+    people->push_back(RowsOf(plain[n], robust ? &corrected[n] : nullptr));
   }
   return true;
 }

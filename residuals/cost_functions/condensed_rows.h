@@ -30,8 +30,9 @@ class CondensedRows : public ceres::CostFunction {
   };
   // One for each person; robust: with robust_jacobian, which is empty otherwise. False when the
   // rollout leaves the domain.
-  bool EvaluatePeople(double const* const* blocks, bool robust,
-                      std::vector<PersonRows>* people) const;
+  virtual bool EvaluatePeople(double const* const* blocks, bool robust,
+                              std::vector<PersonRows>* people) const;
+  const RolloutProblem& problem() const { return *problem_; }
   int num_people() const { return problem_->recording->num_people(); }
   virtual int num_rows() const = 0;  // before they were condensed
 
@@ -52,8 +53,12 @@ class CondensedRows : public ceres::CostFunction {
   virtual RolloutStatus Visit(double const* const* blocks, Derivatives derivatives,
                               const RowsVisitor& visit) const = 0;
 
-  const RolloutProblem& problem() const { return *problem_; }
   const ActingColumns& columns() const { return columns_; }
+  // What Evaluate tells of equations by `acting` columns, and of r'r where there are none.
+  void Tell(const NormalEquations& equations, double* residuals, double** jacobians) const;
+  void TellSquares(double squares, double* residuals) const;
+  // robust: null without.
+  PersonRows RowsOf(const NormalEquations& plain, const NormalEquations* robust) const;
 
  private:
   std::shared_ptr<const RolloutProblem> problem_;

@@ -18,7 +18,12 @@ EquationErrorResidual::EquationErrorResidual(const PendulumRecording& recording,
   for (const auto& states : recording.states) {
     std::vector<Eigen::Vector4d> q;
     for (const PendulumState<double>& state : states) q.push_back(state.q);
-    smoothed_.push_back(SavitzkyGolay(q, window, recording.scene.dt));
+    const Body& body = recording.scene.people[measured_.size()].body;
+    std::vector<Measured>& frames = measured_.emplace_back();
+    for (const SmoothedSample& smooth : SavitzkyGolay(q, window, recording.scene.dt)) {
+      const PendulumState<double> state{smooth.value, smooth.rate};
+      frames.push_back({state, InverseDynamics(body, state, smooth.acceleration)});
+    }
   }
 }
 
@@ -35,16 +40,15 @@ bool EquationErrorResidual::Evaluate(double const* const* blocks, double* residu
   for (int t = 0; t < recording_.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n, row += 4) {
       const Body& body = scene.people[n].body;
-      const PosedPendulum<double> state({smoothed_[n][t].value, smoothed_[n][t].rate});
-      const Vector4<double>& before = smoothed_[n][t > 0 ? t - 1 : 0].rate;
+      const PosedPendulum<double>& state = measured_[n][t].state;
+      const Vector4<double>& before = measured_[n][t > 0 ? t - 1 : 0].state.qd;
       const double cart = 1.0 / body.mass;
       const double angle = 1.0 / (body.point_mass() * body.rod_length);
       const Vector4<double> scale(cart, cart, angle, angle);
       Eigen::Map<Vector4<double>> r(residuals + row);
       const NetForce<double> force =
           NetForceAt(scene, options_, self[n], inputs.parameters[n], n, t, state, before);
-      r = scale.cwiseProduct(force.Total() -
-                             InverseDynamics(body, state, smoothed_[n][t].acceleration));
+      r = scale.cwiseProduct(force.Total() - measured_[n][t].force);
       if (jacobians == nullptr) continue;
       NetForceJacobian(scene, options_, self[n], inputs.parameters[n], n, t, state, before,
                        &jacobian);

@@ -31,7 +31,12 @@ class EquationErrorResidual : public ceres::CostFunction {
   ModelOptions options_;
   ParameterMap map_;
   BlockLayout layout_;
-  std::vector<std::vector<SmoothedSample>> smoothed_;  // [person][frame]
+  // Smoothed, with the force that inverse dynamics asks for.
+  struct Measured {
+    PosedPendulum<double> state;
+    Vector4<double> force;
+  };
+  std::vector<std::vector<Measured>> measured_;  // [person][frame]
 };
 
 }  // namespace pushid

@@ -27,6 +27,8 @@ class ModalStabilityResidual : public ceres::CostFunction {
  private:
   template <typename T>
   Eigen::Matrix<T, kResiduals, 1> Hinges(const ParameterSet<T>& p) const;
+  // Derivatives of the hinges by what is fitted; zero by all else.
+  Eigen::Matrix<double, kResiduals, kNumParameters> ByFitted(const ParameterSet<double>& p) const;
 
   ModelOptions options_;
   Body body_;

@@ -1,6 +1,7 @@
 // residuals: settling and stability by forward sensitivities.
 #include "residuals/cost_functions/rest_residual.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "residuals/cost_functions/rollout_residual.h"
@@ -72,28 +73,45 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
   const RestProblem& p = problem_;
   const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
   RolloutPath<double> path;
-  RolloutSensitivities sensitivities;
-  const RolloutStatus status =
-      jacobians != nullptr
-          ? RolloutWithSensitivities(p.scene, p.options, inputs, p.last_frame, &path,
-                                     &sensitivities)
-          : Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity,
-                            p.last_frame, &path, nullptr, inputs.network_weights);
-  if (!status.ok) return false;
+  if (!Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity, p.last_frame,
+                       &path, nullptr, inputs.network_weights)
+           .ok) {
+    return false;
+  }
   const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
-  const ActingColumns columns(p.layout);
   const double scale = p.Scale();
+  struct Slope {
+    int frame, person, row;
+    RestRows by_state;
+  };
+  std::vector<Slope> slopes;  // where there are any
   RestRows by_state(rows_, 8);
-  RowMajorMatrix by_column;
   int row = 0;
   for (int t = p.first_frame; t < p.last_frame; ++t) {
     for (int n = 0; n < p.scene.num_people(); ++n, row += rows_) {
       OfState(path.At(t, n), self[n], residuals + row, jacobians != nullptr ? &by_state : nullptr);
       for (int k = 0; k < rows_; ++k) residuals[row + k] *= scale;
-      if (jacobians == nullptr) continue;
-      by_column = scale * by_state * sensitivities.At(t, n);
-      columns.Scatter(by_column, row, num_residuals(), jacobians);
+      if (jacobians == nullptr || by_state.isZero(0.0)) continue;
+      slopes.push_back({t, n, row, by_state});
     }
+  }
+  if (jacobians == nullptr) return true;
+  for (size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+    if (jacobians[b] == nullptr) continue;
+    std::fill_n(jacobians[b], num_residuals() * parameter_block_sizes()[b], 0.0);
+  }
+  if (slopes.empty()) return true;
+  RolloutSensitivities sensitivities;
+  if (!RolloutWithSensitivities(p.scene, p.options, inputs, slopes.back().frame + 1, &path,
+                                &sensitivities)
+           .ok) {
+    return false;
+  }
+  const ActingColumns columns(p.layout);
+  RowMajorMatrix by_column;
+  for (const Slope& slope : slopes) {
+    by_column = scale * slope.by_state * sensitivities.At(slope.frame, slope.person);
+    columns.Scatter(by_column, slope.row, num_residuals(), jacobians);
   }
   return true;
 }

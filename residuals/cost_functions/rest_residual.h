@@ -9,7 +9,8 @@
 // of frame_residual.h.
 // Settling is a demand, no pull: the people of the settling simulations (models/scene.h), from two
 // seconds after the push for a second. a_v and a_q are nine tenths of what counts as settled, so
-// that a demand of finite weight is met: whoever settles so is not moved at all. Stability: a
+// that a demand of finite weight is met: whoever settles so is not moved at all, and needs no
+// derivatives, which are rolled out only up to the last frame that has any. Stability: a
 // recording's rollout continued beyond the data, with its push times a factor; it is non-zero at
 // the truth of synthetic data, so it biases a fit.
 #pragma once

@@ -137,8 +137,8 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
   if (!status.ok) return status;
 
   const bool rod_moves = RodMoves(p.options);
-  Eigen::Matrix<double, kFrameResiduals, 8> by_state;
-  Eigen::Matrix<double, kFrameResiduals, 10> by_rod;  // by_state, by the rod, by the cart's lift
+  FrameJacobian<8> by_state;
+  FrameJacobian<10> by_rod;  // by_state, by the rod, by the cart's lift
   FrameRows by_column(kFrameResiduals, with_rows ? inputs.num_columns : 0);
   for (int t = 1; t < p.horizon; ++t) {
     for (int n = 0; n < scene.num_people(); ++n) {

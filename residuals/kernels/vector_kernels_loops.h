@@ -1,5 +1,5 @@
 // residuals: the loops of vector_kernels.h, for the file that includes this, which says
-//   PUSHID_VECTOR_DOUBLES      doubles in a vector
+//   PUSHID_VECTOR_DOUBLES      doubles in a vector (vector_math.h)
 //   PUSHID_TILE_VECTORS        vectors in a tile's column
 //   PUSHID_TILE_COLUMNS        columns of a tile; all of it must fit into the registers
 // Nothing here may be shared with files compiled for other instructions, hence no inline function
@@ -7,18 +7,12 @@
 #pragma once
 
 #include "residuals/kernels/vector_kernels.h"
+#include "residuals/kernels/vector_math.h"
 
 namespace pushid {
 namespace {
 
-using Vector = double __attribute__((vector_size(8 * PUSHID_VECTOR_DOUBLES)));
 constexpr int kTileRows = PUSHID_VECTOR_DOUBLES * PUSHID_TILE_VECTORS;
-
-inline Vector Load(const double* from) {
-  Vector vector;
-  __builtin_memcpy(&vector, from, sizeof(vector));
-  return vector;
-}
 
 // Every loop over the sums is unrolled, or else they would live in memory.
 void AddTile(int depth, const double* left, const double* right, double* c, std::ptrdiff_t stride) {
@@ -117,34 +111,6 @@ void AddGram(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a
       }
     }
   }
-}
-
-// exp(x) - 1 = 2^n (1 + p) - 1 with p = exp(r) - 1 by its series, x = n ln 2 + r, |r| <= ln 2 / 2:
-// p starts with r, so that the result is exact to rounding near zero too. Vectors throughout, since
-// compilers leave the plain loop alone where bounds are to respect NaN.
-struct Exponential {
-  Vector power, p;  // 2^n, p
-};
-
-inline Exponential Expand(Vector x) {
-  using Bits = long long __attribute__((vector_size(sizeof(Vector))));
-  constexpr double kLog2e = 1.4426950408889634074, kRound = 6755399441055744.0;  // 1.5 * 2^52
-  constexpr double kLn2High = 6.93145751953125e-1, kLn2Low = 1.42860682030941723212e-6;
-  constexpr double kFactorials[] = {479001600.0, 39916800.0, 3628800.0, 362880.0, 40320.0, 5040.0,
-                                    720.0,       120.0,      24.0,      6.0,      2.0};
-  const Vector shifted = x * kLog2e + kRound;
-  const Vector n = shifted - kRound;
-  const Vector r = (x - n * kLn2High) - n * kLn2Low;
-  Vector series = Vector{} + 1.0 / 6227020800.0;  // 1 / 13!
-#pragma GCC unroll 16
-  for (double factorial : kFactorials) series = series * r + 1.0 / factorial;
-  const Bits power = ((Bits)shifted + 1023) << 52;  // the shifted number ends in n
-  return {(Vector)power, r + r * r * series};
-}
-
-inline Vector Clamp(Vector x, double bound) {
-  const Vector below = x > bound ? Vector{} + bound : x;  // in this order NaN stays NaN
-  return below < -bound ? Vector{} - bound : below;
 }
 
 inline Vector TanhOf(Vector x) {

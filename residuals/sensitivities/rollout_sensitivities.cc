@@ -26,9 +26,7 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
       self.FrictionJacobian(p, state.qd, jacobian);
       break;
     case ActiveForces::kPushOnly:
-      jacobian->by_state.setZero();
-      jacobian->by_previous.setZero();
-      jacobian->by_parameter.setZero();
+      jacobian->SetZero();
       break;
   }
   if (options.push_tail == PushTail::kNone || active != ActiveForces::kAll) return;
@@ -42,6 +40,16 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
 namespace {
 
 using Columns = NetworkSensitivities::ForceColumns;
+
+// A force's derivative by a parameter, onto the column that depends on it: most parameters act on
+// one row or two.
+template <typename Vector>
+void AddWhereAny(const ColumnEntry& entry, const Vector& by_parameter, Columns* by_column) {
+  for (int row = 0; row < 4; ++row) {
+    if (by_parameter[row] == 0.0) continue;
+    (*by_column)(row, entry.column) += entry.derivative * by_parameter[row];
+  }
+}
 
 const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
   return inputs.network_weights != nullptr ? inputs.network_weights
@@ -79,9 +87,10 @@ class ReceivedSensitivities {
         AddNarrowProduct(by_states.rightCols<8>(), sensitivities.At(frame, j), target);
         for (const ColumnEntry& entry : inputs_.entries[0]) {
           if (!IsPairParameter(entry.parameter)) continue;
-          target.col(entry.column) +=
-              entry.derivative *
-              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter);
+          AddWhereAny(
+              entry,
+              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter),
+              &target);
         }
         if (weights_ == nullptr || held_) continue;
         target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
@@ -269,8 +278,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
             jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
       }
       for (const ColumnEntry& entry : inputs.entries[n]) {
-        by_column.col(entry.column) +=
-            entry.derivative * jacobian.by_parameter.col(entry.parameter);
+        AddWhereAny(entry, jacobian.by_parameter.col(entry.parameter), &by_column);
       }
       if (stands) {
         AdvanceStepState(stance, inputs.entries[n], now, sensitivities->StepState(t, n),

@@ -16,6 +16,7 @@
 
 #include "models/rollout.h"
 #include "residuals/parameter_map.h"
+#include "residuals/sensitivities/inverse_dynamics_jacobian.h"
 #include "residuals/sensitivities/pair_jacobian.h"
 
 namespace pushid {
@@ -77,14 +78,6 @@ class RolloutSensitivities {
   Eigen::VectorXd storage_;  // the blocks, one after the other; never shrinks
   Eigen::RowVectorXd rod_, step_;
 };
-
-// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a.
-Matrix4<double> InverseDynamicsJacobian(const Body& body, const Angles<double>& angles,
-                                        const Vector4<double>& qd, const Vector4<double>& a);
-
-// d(M a + C + G)/dl at fixed acceleration a.
-Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
-                                     const Vector4<double>& a);
 
 // Derivatives of NetForceAt: the analytic twin.
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,

@@ -47,7 +47,7 @@ Eigen::VectorXcd Eigenvalues(const ModelOptions& options, const Body& body,
 TEST(FreeModes, ByHand) {
   for (int plane : {0, 1}) {
     const ModePolynomial<double> c =
-        FreeModes<double>({}, {70.0, 0.9, 0.0}, ParameterSet<double>{}, plane);
+        FreeModes(UprightRest<double>({}, {70.0, 0.9, 0.0}, {}), plane);
     EXPECT_NEAR(c.c2, 0.0, 1e-12);
     EXPECT_NEAR(c.c1, -10.0 * 9.81 / 0.9, 1e-9);
     EXPECT_NEAR(c.c0, 0.0, 1e-12);
@@ -88,7 +88,7 @@ TEST(FreeModes, AreThoseOfTheEquationsOnPaper) {
     p[kKdX] = random.Uniform(-4, 4), p[kKdY] = random.Uniform(-4, 4);
     p[kCq] = p[kDq] = 1.0;  // vanish at rest
     for (int plane : {0, 1}) {
-      const ModePolynomial<double> actual = FreeModes<double>(options, body, p, plane);
+      const ModePolynomial<double> actual = FreeModes(UprightRest<double>(options, body, p), plane);
       const ModePolynomial<double> expected = OnPaper(options, body, p, plane);
       EXPECT_NEAR(actual.c2, expected.c2, 1e-12 * (1.0 + std::abs(expected.c2)));
       EXPECT_NEAR(actual.c1, expected.c1, 1e-12 * (100.0 + std::abs(expected.c1)));
@@ -111,14 +111,15 @@ TEST(FreeModes, RootsAreTheEigenvalues) {
       stable = stable && z.real() < 0.0;
       double smallest = 1e300;
       for (int plane = 0; plane < 2; ++plane) {
-        const ModePolynomial<double> c = FreeModes<double>(options, body, p, plane);
+        const ModePolynomial<double> c = FreeModes(UprightRest<double>(options, body, p), plane);
         smallest = std::min(smallest, std::abs(((z + c.c2) * z + c.c1) * z + c.c0));
       }
       // The quadratic damping is not quite zero at rest; p's c_q and d_q are.
       EXPECT_LT(smallest, 1e-7 * std::pow(1.0 + std::abs(z), 3));
     }
     for (int plane = 0; plane < 2; ++plane) {
-      for (double condition : FreeModes<double>(options, body, p, plane).Conditions()) {
+      for (double condition :
+           FreeModes(UprightRest<double>(options, body, p), plane).Conditions()) {
         both = both && condition > 0.0;
       }
     }

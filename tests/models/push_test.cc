@@ -31,8 +31,9 @@ TEST(PushTail, FollowsItsFormula) {
   for (const Vector4<double>& row : push.force) mean += row / 6.0;
   const Vector4<double> gain(p[kTailGain], p[kTailGain], p[kTailTorque], p[kTailTorque]);
   // A push of six frames lasts the reference duration, whatever the exponent.
-  EXPECT_NEAR(TailDecayTime(p, 6 * kDt), 0.2, 1e-15);
-  EXPECT_NEAR(TailDecayTime(p, 12 * kDt), 0.2 * std::pow(2.0, p[kTailExponent]), 1e-14);
+  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(6 * kDt)), 0.2, 1e-15);
+  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(12 * kDt)), 0.2 * std::pow(2.0, p[kTailExponent]),
+              1e-14);
   for (int k : {0, 1, 12}) {
     const Vector4<double> expected = gain.cwiseProduct(mean) * std::exp(-k * kDt / 0.2);
     ExpectClose(TailForce(push, p, 9 + k, kDt), expected, 1e-13, 1.0);

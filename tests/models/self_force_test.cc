@@ -52,7 +52,8 @@ SelfForce::Jacobian Unwritten() {
   SelfForce::Jacobian jacobian;
   jacobian.by_state.setConstant(NAN);
   jacobian.by_previous.setConstant(NAN);
-  jacobian.by_parameter.setConstant(NAN);
+  jacobian.by_parameter.leftCols<kFirstPairParameter>().setConstant(NAN);
+  jacobian.by_parameter.rightCols<kNumOwnParameters>().setConstant(NAN);
   return jacobian;
 }
 

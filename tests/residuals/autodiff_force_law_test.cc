@@ -116,7 +116,7 @@ TEST(OwnLaw, MovesTheFreeModesAsTheFrictionItRepeats) {
       for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
       jets[drag] = Jet(p[drag], 0);
       jets[kTx].v[1] = jets[kTy].v[1] = 1.0;
-      return FreeModes<Jet>(options, {80.0, 0.9, 0.0}, jets, plane);
+      return FreeModes(UprightRest<Jet>(options, {80.0, 0.9, 0.0}, jets), plane);
     };
     const auto friction = modes(twins.friction, twins.with_friction, kMu);
     const auto law = modes(twins.law, twins.with_law, kOwn);
@@ -144,11 +144,11 @@ TEST(OwnLaw, BentLawsBendTheFreeModes) {
       ParameterSet<Jet> jets;
       for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
       jets[id].v[0] = 1.0;
-      const double slope = FreeModes<Jet>(options, body, jets, plane).c2.v[0];
+      const double slope = FreeModes(UprightRest<Jet>(options, body, jets), plane).c2.v[0];
       const auto at = [&](double step) {
         ParameterSet<double> moved = p;
         moved[id] += step;
-        return FreeModes<double>(options, body, moved, plane).c2;
+        return FreeModes(UprightRest<double>(options, body, moved), plane).c2;
       };
       EXPECT_NEAR(slope, (at(1e-5) - at(-1e-5)) / 2e-5, 1e-5 * std::abs(slope));
       EXPECT_GT(std::abs(slope), 0.1);

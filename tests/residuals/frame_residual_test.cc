@@ -32,7 +32,7 @@ void ExpectTwins(const PendulumState<double>& state, const MeasuredFrame& measur
     jets.qd[i] = Jet(state.qd[i], 4 + i);
   }
   const FrameVector<Jet> expected = FrameResidual(kBody, jets, measured, sigmas);
-  Eigen::Matrix<double, kFrameResiduals, 8> jacobian;
+  FrameJacobian<8> jacobian;
   jacobian.setConstant(std::nan(""));
   const FrameVector<double> r =
       FrameResidualWithJacobian(kBody, state, measured, sigmas, &jacobian);
@@ -155,7 +155,7 @@ TEST(FrameResidual, WeightOfTheFrame) {
     measured.weight = 0.25;
     EXPECT_LT((FrameResidual(kBody, state, measured, sigmas) - 0.25 * full).norm(), 1e-15);
     measured.weight = 0.0;
-    Eigen::Matrix<double, kFrameResiduals, 8> jacobian;
+    FrameJacobian<8> jacobian;
     jacobian.setConstant(std::nan(""));
     EXPECT_TRUE(FrameResidualWithJacobian(kBody, state, measured, sigmas, &jacobian).isZero(0.0));
     EXPECT_TRUE(jacobian.isZero(0.0));

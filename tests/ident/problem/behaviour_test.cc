@@ -152,7 +152,7 @@ double FastestFreeMode(const ModelOptions& options, const ParameterSet<double>& 
   const Body body{80.0, kReferenceRod, 0.0};
   double fastest = -1e9;
   for (int plane : {0, 1}) {
-    const ModePolynomial<double> c = FreeModes<double>(options, body, p, plane);
+    const ModePolynomial<double> c = FreeModes(UprightRest<double>(options, body, p), plane);
     Eigen::Matrix3d companion;
     companion << 0, 0, -c.c0, 1, 0, -c.c1, 0, 1, -c.c2;
     fastest = std::max(fastest, companion.eigenvalues().real().maxCoeff());

@@ -1,0 +1,238 @@
+// models: what a person does about being pushed: balance, ground friction and the linear self
+// force, a generalized force [N, N, N m, N m] that depends on the own state alone.
+//
+// With e = (theta, phi) minus the reference posture, v = (xd, yd), and the gain scales of
+// GainScale:
+//   friction  F_x = -mu xd                      F_y = -mu_y yd
+//   balance   F_x = -Kp_x xd - Kd_x xdd         F_y = -Kp_y yd - Kd_y ydd
+//             F_theta = hold_theta - Kp_theta e_theta - Kd_theta thd
+//   linear    F_x = M (a_x e_theta + b_x thd - c_q |v| xd)
+//             F_theta = M t_x xd - m l^2 d_q |thd| thd
+// and the same for y and phi, where a, b and t change sign, because phi turns towards -y;
+// hold is the torque that holds the reference posture against gravity: zero for an upright one.
+// Source: Yue et al., CVPR 2024 (PD balance, friction); the linear terms stand for its network.
+//
+// Templated by the scalar T of states and parameters, and by that of what is constant, L: double
+// for one person, a vector for several side by side (residuals/lockstep).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+
+#include "models/cart_damping.h"
+#include "models/dual.h"
+#include "models/ipm.h"
+#include "models/options.h"
+#include "models/parameters.h"
+
+namespace pushid {
+
+// Factors from the reference person's gains to this body's, with the rod of frame 0: gains are the
+// person's, not the posture's.
+template <typename L>
+struct GainScaleOf {
+  L force = L(1.0);      // on N s/m
+  L stiffness = L(1.0);  // on N m/rad
+  L damping = L(1.0);    // on N m s/rad
+
+  GainScaleOf() = default;
+  GainScaleOf(GainScaling scaling, const BodyOf<L>& body) {
+    if (scaling == GainScaling::kNone) return;
+    force = stiffness = damping = body.mass / kReferenceMass;
+    if (scaling == GainScaling::kMass) return;
+    const L rod = body.rod_length / kReferenceRod;
+    stiffness *= rod;
+    damping *= rod * rod;
+  }
+};
+
+using GainScale = GainScaleOf<double>;
+
+// Derivatives of a person's own force.
+// by_state: 4 x 8 over [q, qd]; by_previous: diagonal of the (x, y) derivatives by qd_previous;
+// by_parameter: 4 x kNumParameters. All are overwritten, but for the columns of what no force of
+// a person alone has: these stay zero, since to clear them takes as long as the derivatives.
+template <typename T>
+struct SelfJacobian {
+  Eigen::Matrix<T, 4, 8> by_state = Eigen::Matrix<T, 4, 8>::Zero();
+  Eigen::Matrix<T, 2, 1> by_previous = Eigen::Matrix<T, 2, 1>::Zero();
+  Eigen::Matrix<T, 4, kNumParameters> by_parameter = Eigen::Matrix<T, 4, kNumParameters>::Zero();
+
+  void SetZero() {
+    by_state.setZero();
+    by_previous.setZero();
+    by_parameter.template leftCols<kFirstPairParameter>().setZero();
+    by_parameter.template rightCols<kNumOwnParameters>().setZero();
+  }
+};
+
+// One person's terms, with everything constant over a rollout computed once.
+template <typename L>
+struct SelfTerms {
+  BodyOf<L> body;
+  GainScaleOf<L> scale;
+  FrictionKind friction = FrictionKind::kIsotropic;
+  bool cart_derivative = false;
+  Eigen::Matrix<L, 2, 1> posture = Eigen::Matrix<L, 2, 1>::Zero();  // reference (theta, phi), rad
+  Eigen::Matrix<L, 2, 1> hold = Eigen::Matrix<L, 2, 1>::Zero();     // N m
+  L dt = L(0.0);  // s, for the backward difference
+
+  // p: by Parameter, of friction's own at least.
+  template <typename T, typename Set>
+  Vector4<T> Friction(const Set& p, const Vector4<T>& qd) const {
+    return {-scale.force * p[kMu] * qd[0], -scale.force * p[FrictionAlongY(friction)] * qd[1],
+            T(0.0), T(0.0)};
+  }
+
+  // qd_previous: the velocity one frame earlier, for the backward difference of the cart's
+  // velocity.
+  template <typename T>
+  Vector4<T> Balance(const ParameterSet<T>& p, const PendulumState<T>& state,
+                     const Vector4<T>& qd_previous) const {
+    const Vector4<T>& qd = state.qd;
+    Vector4<T> force{-scale.force * p[kKpX] * qd[0], -scale.force * p[kKpY] * qd[1],
+                     hold[0] - scale.stiffness * p[kKpTheta] * (state.q[2] - posture[0]) -
+                         scale.damping * p[kKdTheta] * qd[2],
+                     hold[1] - scale.stiffness * p[kKpPhi] * (state.q[3] - posture[1]) -
+                         scale.damping * p[kKdPhi] * qd[3]};
+    if (cart_derivative) {
+      force[0] -= scale.force * p[kKdX] * (qd[0] - qd_previous[0]) / dt;
+      force[1] -= scale.force * p[kKdY] * (qd[1] - qd_previous[1]) / dt;
+    }
+    return force;
+  }
+
+  // The rows of the cart, and all.
+  template <typename T>
+  Eigen::Matrix<T, 2, 1> LinearOnCart(const ParameterSet<T>& p,
+                                      const PendulumState<T>& state) const {
+    const L mass = body.mass;
+    const Vector4<T>& qd = state.qd;
+    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
+    const T speed = SmoothNorm(qd[0], qd[1]);
+    return {mass * (p[kAx] * e_th + p[kBx] * qd[2] - p[kCq] * speed * qd[0]),
+            mass * (-p[kAy] * e_ph - p[kBy] * qd[3] - p[kCq] * speed * qd[1])};
+  }
+  template <typename T>
+  Vector4<T> Linear(const ParameterSet<T>& p, const PendulumState<T>& state) const {
+    const L mass = body.mass, ml2 = PointInertia();
+    const Vector4<T>& qd = state.qd;
+    const Eigen::Matrix<T, 2, 1> cart = LinearOnCart(p, state);
+    return {cart[0], cart[1],
+            mass * p[kTx] * qd[0] - ml2 * p[kDq] * SmoothNorm(qd[2], T(0.0)) * qd[2],
+            -mass * p[kTy] * qd[1] - ml2 * p[kDq] * SmoothNorm(qd[3], T(0.0)) * qd[3]};
+  }
+
+  // Derivatives of Friction, and of all three. Friction's come from dual numbers over its own few
+  // inputs, so that a law of friction is its formula and its rows; those of balance and the linear
+  // terms are written out, which makes them some 30 times as fast (tests/benchmarks,
+  // Jacobian_OfSelfForce), and tests hold them against automatic ones.
+  template <typename Set, typename T>
+  void FrictionJacobian(const Set& p, const Vector4<T>& qd, SelfJacobian<T>* jacobian) const {
+    jacobian->SetZero();
+    // By the cart's velocity and by friction's own parameters.
+    constexpr int kParameters = kKpX - kMu;
+    using FrictionDual = Dual<T, 2 + kParameters>;
+    struct {
+      std::array<FrictionDual, kParameters> own;
+      const FrictionDual& operator[](int id) const { return own[id - kMu]; }
+    } parameters;
+    Vector4<FrictionDual> velocity;
+    for (int i = 0; i < 2; ++i) velocity[i] = FrictionDual::Input(qd[i], i);
+    for (int i = 0; i < kParameters; ++i) {
+      parameters.own[i] = FrictionDual::Input(p[kMu + i], 2 + i);
+    }
+    const Vector4<FrictionDual> force = Friction(parameters, velocity);
+    for (int row = 0; row < 2; ++row) {
+      jacobian->by_state.row(row).template segment<2>(4) =
+          force[row].v.template head<2>().transpose();
+      jacobian->by_parameter.row(row).template segment<kParameters>(kMu) =
+          force[row].v.template tail<kParameters>().transpose();
+    }
+  }
+
+  template <typename Set, typename T>
+  void MotionJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                      SelfJacobian<T>* jacobian) const {
+    FrictionJacobian(p, state.qd, jacobian);
+    AddBalanceJacobian(p, state, qd_previous, jacobian);
+    AddLinearJacobian(p, state, jacobian);
+  }
+
+ private:
+  template <typename Set, typename T>
+  void AddBalanceJacobian(const Set& p, const PendulumState<T>& state,
+                          const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) const {
+    auto& by_state = jacobian->by_state;
+    auto& by_parameter = jacobian->by_parameter;
+    const T xd = state.qd[0], yd = state.qd[1], thd = state.qd[2], phd = state.qd[3];
+    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
+    by_state(0, 4) -= scale.force * p[kKpX];
+    by_state(1, 5) -= scale.force * p[kKpY];
+    by_state(2, 2) -= scale.stiffness * p[kKpTheta];
+    by_state(2, 6) -= scale.damping * p[kKdTheta];
+    by_state(3, 3) -= scale.stiffness * p[kKpPhi];
+    by_state(3, 7) -= scale.damping * p[kKdPhi];
+    by_parameter(0, kKpX) = -scale.force * xd;
+    by_parameter(1, kKpY) = -scale.force * yd;
+    by_parameter(2, kKpTheta) = -scale.stiffness * e_th;
+    by_parameter(2, kKdTheta) = -scale.damping * thd;
+    by_parameter(3, kKpPhi) = -scale.stiffness * e_ph;
+    by_parameter(3, kKdPhi) = -scale.damping * phd;
+    if (cart_derivative) {
+      const Eigen::Matrix<T, 2, 1> rate(scale.force * p[kKdX] / dt, scale.force * p[kKdY] / dt);
+      by_state(0, 4) -= rate[0];
+      by_state(1, 5) -= rate[1];
+      jacobian->by_previous = rate;
+      by_parameter(0, kKdX) = -scale.force * (xd - qd_previous[0]) / dt;
+      by_parameter(1, kKdY) = -scale.force * (yd - qd_previous[1]) / dt;
+    }
+  }
+
+  template <typename Set, typename T>
+  void AddLinearJacobian(const Set& p, const PendulumState<T>& state,
+                         SelfJacobian<T>* jacobian) const {
+    auto& by_state = jacobian->by_state;
+    auto& by_parameter = jacobian->by_parameter;
+    const L mass = body.mass, ml2 = PointInertia();
+    const T xd = state.qd[0], yd = state.qd[1], thd = state.qd[2], phd = state.qd[3];
+    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
+    by_state(0, 2) += mass * p[kAx];
+    by_state(0, 6) += mass * p[kBx];
+    by_state(1, 3) -= mass * p[kAy];
+    by_state(1, 7) -= mass * p[kBy];
+    by_state(2, 4) += mass * p[kTx];
+    by_state(3, 5) -= mass * p[kTy];
+    by_parameter(0, kAx) = mass * e_th;
+    by_parameter(0, kBx) = mass * thd;
+    by_parameter(1, kAy) = -mass * e_ph;
+    by_parameter(1, kBy) = -mass * phd;
+    by_parameter(2, kTx) = mass * xd;
+    by_parameter(3, kTy) = -mass * yd;
+
+    const T speed = SmoothNorm(xd, yd);
+    by_state(0, 4) -= mass * p[kCq] * (speed + xd * xd / speed);
+    by_state(0, 5) -= mass * p[kCq] * xd * yd / speed;
+    by_state(1, 4) -= mass * p[kCq] * xd * yd / speed;
+    by_state(1, 5) -= mass * p[kCq] * (speed + yd * yd / speed);
+    by_parameter(0, kCq) = -mass * speed * xd;
+    by_parameter(1, kCq) = -mass * speed * yd;
+    const T rate_th = SmoothNorm(thd, T(0.0)), rate_ph = SmoothNorm(phd, T(0.0));
+    by_state(2, 6) -= ml2 * p[kDq] * (rate_th + thd * thd / rate_th);
+    by_state(3, 7) -= ml2 * p[kDq] * (rate_ph + phd * phd / rate_ph);
+    by_parameter(2, kDq) = -ml2 * rate_th * thd;
+    by_parameter(3, kDq) = -ml2 * rate_ph * phd;
+  }
+
+  L PointInertia() const { return body.point_mass() * body.rod_length * body.rod_length; }
+  // |v| whose derivative exists at rest; 1e-3 (m/s or rad/s) is far below any motion that matters.
+  static constexpr double kRestSpeedSquared = 1e-6;
+  template <typename T>
+  static T SmoothNorm(const T& a, const T& b) {
+    using std::sqrt;
+    return sqrt(a * a + b * b + kRestSpeedSquared);
+  }
+};
+
+}  // namespace pushid

@@ -1,0 +1,56 @@
+// residuals: recordings of people alone, rolled out and summed up side by side (person_lanes.h).
+//
+// A recording's numbers do not depend on those beside it, nor on how many these are, to the last
+// bit; other widths of vectors round otherwise (to 1e-12 of a sum).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/lockstep/person_lanes.h"
+#include "residuals/normal_equations.h"
+
+namespace pushid {
+
+// Whether a recording can be rolled out so: one person, of sliding feet, with no force that
+// remembers or that a user brings.
+bool HasLanes(const RolloutProblem& problem);
+
+// What a rollout's residuals sum up to.
+struct RolloutSums {
+  bool ok = false;                // stayed within the domain
+  double squares = 0.0;           // r'r; all there is without derivatives
+  NormalEquations plain, robust;  // robust: with the robust loss's own Hessian, where asked for
+};
+
+class LaneGroup {
+ public:
+  // problems: at most lanes.lanes, which have lanes and the same columns, and outlive the group.
+  explicit LaneGroup(std::vector<const RolloutProblem*> problems,
+                     const PersonLanes& lanes = BestPersonLanes());
+
+  // At the given blocks of each, by LaneSums.
+  std::vector<RolloutSums> Evaluate(const std::vector<double const* const*>& blocks,
+                                    LaneSums sums) const;
+
+ private:
+  void SetSteps(int lane);
+  void SetTails(int lane);
+  double& Constant(int id, int lane) { return constants_[id * width_ + lane]; }
+
+  std::vector<const RolloutProblem*> problems_;
+  const PersonLanes* lanes_;
+  int width_ = 0, frames_ = 0, num_tails_ = 0;
+  bool friction_alone_ = false;
+  std::vector<double> constants_, steps_, tails_;
+};
+
+struct SideBySide {
+  std::vector<int> members;  // indices
+  LaneGroup lanes;
+};
+// Puts problems that have lanes side by side, as many as fit; null: has none, and is in no group.
+std::vector<SideBySide> PutSideBySide(const std::vector<const RolloutProblem*>& problems);
+
+}  // namespace pushid

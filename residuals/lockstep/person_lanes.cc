@@ -1,0 +1,20 @@
+// residuals: the choice among the widths of people side by side.
+#include "residuals/lockstep/person_lanes.h"
+
+#include "residuals/kernels/vector_kernels.h"
+
+namespace pushid {
+
+// In the order of the vector kernels, of which there are as many.
+const std::vector<const PersonLanes*>& SupportedPersonLanes() {
+  static const std::vector<const PersonLanes*> supported = [] {
+    std::vector<const PersonLanes*> all = {PersonLanes128(), PersonLanes256(), PersonLanes512()};
+    all.resize(SupportedVectorKernels().size());
+    return all;
+  }();
+  return supported;
+}
+
+const PersonLanes& BestPersonLanes() { return *SupportedPersonLanes().back(); }
+
+}  // namespace pushid

@@ -1,0 +1,100 @@
+// residuals: rollouts of people alone, of sliding feet, side by side in the vectors of a processor:
+// their normal equations, once for each width of vectors, and the choice of the widest at run time
+// as in kernels/vector_kernels.h.
+//
+// The equations are those of the models' templates (ipm.h, self_terms.h, push.h) and of
+// frame_residual.h, whose scalar is a lane each of a vector. All arrays of numbers end in the lane:
+// [..][lane].
+#pragma once
+
+#include "models/self_terms.h"
+#include "residuals/frame_residual.h"
+
+namespace pushid {
+
+// Of one step of one person.
+enum LaneField {
+  kLaneHip = 0,       // 3: measured
+  kLanePose = 3,      // 4: q, measured
+  kLaneVelocity = 7,  // 4: qd, measured
+  kLaneWeight = 11,   // on the residual
+  kLanePush = 12,     // 4: generalized force
+  kLaneActs = 16,     // 1 where the own forces act, 0 where the push replaces them
+  kLaneSlides = 17,   // the same of friction
+  kLaneGoesOn = 18,   // 1 where the rollout has a next frame
+  kLaneFields
+};
+// What is constant over a rollout.
+enum LaneConstant {
+  kLaneMass = 0,
+  kLaneRod,
+  kLaneHeight,
+  kLaneScale,                     // 3: of GainScaleOf
+  kLanePosture = kLaneScale + 3,  // 2
+  kLaneHold = kLanePosture + 2,   // 2
+  kLaneStep = kLaneHold + 2,      // s
+  kLaneStart,                     // 8: q and qd at frame 0
+  kLaneConstants = kLaneStart + 8
+};
+// Of one tail.
+enum LaneTail { kLaneMean = 0, kLaneLogDuration = 4, kLaneEnd = 5, kLaneTails };
+inline constexpr int kLaneParameters = kContactStiffness;  // those of a person alone come first
+
+struct LaneEntry {
+  int column;
+  int parameter;
+};
+
+struct LaneInputs {
+  FrictionKind friction = FrictionKind::kIsotropic;
+  bool cart_derivative = false;
+  bool friction_alone = false;  // acts in some step without the other own forces
+  ResidualSigmas sigmas;
+  int frames = 0;            // of the longest rollout
+  int columns = 0;           // P
+  int velocity_column = -1;  // as in SensitivityInputs
+  int num_entries = 0, num_tails = 0;
+  const LaneEntry* entries = nullptr;  // those of a parameter one after the other
+  const double* slopes = nullptr;      // of entries
+  const double* constants = nullptr;   // kLaneConstants
+  const double* parameters = nullptr;  // kLaneParameters
+  const double* tails = nullptr;       // num_tails x kLaneTails
+  const double* steps = nullptr;       // frames x kLaneFields
+};
+
+enum class LaneSums {
+  kSquares,  // r'r alone
+  kPlain,    // [J r]'[J r]
+  kRobust    // and that with the robust loss's own Hessian (CorrectForRobustLoss)
+};
+
+struct LaneOutputs {
+  double* failed = nullptr;   // 1 where a rollout left the domain
+  double* squares = nullptr;  // r'r
+  double* plain = nullptr;    // (P + 1) x (P + 1), the upper triangle
+  double* robust = nullptr;   // the same
+  double* storage = nullptr;  // LaneStorage
+};
+
+// Doubles that a rollout needs besides.
+constexpr int LaneStorage(int lanes, int columns) {
+  const int size = columns + 1;
+  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 1);
+}
+
+struct PersonLanes {
+  const char* name;
+  int lanes;
+  void (*roll)(const LaneInputs& in, LaneSums sums, const LaneOutputs& out);
+};
+
+// What this processor can run, the widest last; never empty.
+const std::vector<const PersonLanes*>& SupportedPersonLanes();
+const PersonLanes& BestPersonLanes();
+
+// One file each, compiled for its instructions; null where the compiler has none such.
+const PersonLanes* PersonLanes128();
+const PersonLanes* PersonLanes256();  // AVX2 and FMA
+const PersonLanes* PersonLanes512();  // AVX-512F and DQ
+
+}  // namespace pushid
