@@ -224,8 +224,8 @@ FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
   AddParameterBlocks(point, 1, &built);
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     if (Count(i) == 0) continue;
-    built.Add(std::make_unique<EquationErrorResidual>(recordings_[i], options_.model, map_),
-              RecordingBlocks(point, i), i);
+    auto residual = std::make_unique<EquationErrorResidual>(recordings_[i], options_.model, map_);
+    built.AddRollout(std::move(residual), RecordingBlocks(point, i), i);
   }
   AddPriors(point, &built);
   if (map_.num_weights > 0) built.problem->SetParameterBlockConstant(point->weights.data());

@@ -3,6 +3,7 @@
 
 #include <ceres/jet.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "residuals/kernels/narrow_product.h"
@@ -67,6 +68,9 @@ class ReceivedSensitivities {
         weights_(options.interaction.learned ? Weights(options, inputs) : nullptr),
         now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
         lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {
+    for (const ColumnEntry& entry : inputs.entries[0]) {
+      if (IsPairParameter(entry.parameter)) pair_entries_.push_back(entry);
+    }
     if (weights_ == nullptr || inputs.weight_column >= 0) return;
     held_.emplace(options.learned->pair, weights_ + options.learned->pair_at());
   }
@@ -85,8 +89,7 @@ class ReceivedSensitivities {
         const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
         AddNarrowProduct(by_states.leftCols<8>(), sensitivities.At(frame, n), target);
         AddNarrowProduct(by_states.rightCols<8>(), sensitivities.At(frame, j), target);
-        for (const ColumnEntry& entry : inputs_.entries[0]) {
-          if (!IsPairParameter(entry.parameter)) continue;
+        for (const ColumnEntry& entry : pair_entries_) {
           AddWhereAny(
               entry,
               jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter),
@@ -180,11 +183,22 @@ class ReceivedSensitivities {
   const Scene& scene_;
   const ModelOptions& options_;
   const SensitivityInputs& inputs_;
+  std::vector<ColumnEntry> pair_entries_;
   const double* weights_;  // of what is learned; null where no interaction is
   PairByWeight by_weight_;
   std::optional<HeldPairs> held_;  // where weights are, and are not fitted
   std::vector<Columns> now_, lately_;
 };
+
+// Without what a person alone does not have.
+std::vector<std::vector<ColumnEntry>> WithoutPairs(std::vector<std::vector<ColumnEntry>> entries) {
+  for (std::vector<ColumnEntry>& of_one : entries) {
+    of_one.erase(std::remove_if(of_one.begin(), of_one.end(),
+                                [](const ColumnEntry& e) { return IsPairParameter(e.parameter); }),
+                 of_one.end());
+  }
+  return entries;
+}
 
 // One for each person, or none.
 std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelOptions& options,
@@ -244,6 +258,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
 
   Columns by_column(4, inputs.num_columns);
   SelfForce::Jacobian jacobian;
+  const std::vector<std::vector<ColumnEntry>> own_entries = WithoutPairs(inputs.entries);
   StanceJacobian stance;
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
@@ -277,7 +292,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         by_column.topRows<2>() +=
             jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
       }
-      for (const ColumnEntry& entry : inputs.entries[n]) {
+      for (const ColumnEntry& entry : own_entries[n]) {
         AddWhereAny(entry, jacobian.by_parameter.col(entry.parameter), &by_column);
       }
       if (stands) {
