@@ -8,6 +8,7 @@ namespace pushid {
 namespace {
 
 constexpr double kLeastKept = 0.01;
+constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
 
 Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
   return columns.colwise() - columns.rowwise().mean().eval();
@@ -18,17 +19,33 @@ Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
 // second derivatives in H leverages may pass one.
 Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
 
-// J'J, most columns of which are zero where units have columns of their own.
-Eigen::MatrixXd Information(const Eigen::MatrixXd& jacobian) {
+// F of J base, with F'F that of all its rows.
+Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
   std::vector<Eigen::Index> used;
   for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
     if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
   }
-  const Eigen::MatrixXd packed = jacobian(Eigen::all, used);
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(jacobian.cols(), jacobian.cols());
-  information(used, used) = packed.transpose() * packed;
-  return information;
+  if (used.empty()) return Eigen::MatrixXd(0, base.cols());
+  const Eigen::MatrixXd packed = jacobian(Eigen::all, used), own = base(used, Eigen::all);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(packed.transpose() * packed);
+  return squares.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.eigenvectors().transpose() * own);
 }
+
+// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
+struct Leverage {
+  Eigen::ArrayXd m;
+  Eigen::MatrixXd v;  // a column each
+
+  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
+    if (w.rows() == 0) return;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.eigenvalues().array();
+    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
+    m = values.tail(some);
+    v = w.transpose() * eigen.eigenvectors().rightCols(some) * m.rsqrt().matrix().asDiagonal();
+  }
+};
 
 }  // namespace
 
@@ -54,7 +71,7 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
     const bool robust = score.robust_jacobian.size() > 0;
     const Eigen::MatrixXd own =
         (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all);
-    gathered.information.push_back(base.transpose() * Information(own) * base);
+    gathered.factors.push_back(FewRows(own, base));
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
     gathered.scores.rightCols(1) =
         base.transpose() *
@@ -73,12 +90,11 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
   Eigen::MatrixXd own(size, groups);  // |p_g|^2
   std::vector<Eigen::MatrixXd> u;     // J_g' p_g over H^1/2, a column a coefficient
   for (Eigen::Index g = 0; g < groups; ++g) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> leverage(
-        root * scores.information[static_cast<size_t>(g)] * root);
-    const Eigen::MatrixXd& v = leverage.eigenvectors();
-    const Eigen::ArrayXd m = leverage.eigenvalues().array().max(0.0), kept = Kept(m);
-    moves.col(g) =
-        root * v * ((v.transpose() * root * scores.scores.col(g)).array() / kept.sqrt()).matrix();
+    const auto [m, v] = Leverage(scores.factors[static_cast<size_t>(g)] * root);
+    const Eigen::ArrayXd kept = Kept(m);
+    const Eigen::VectorXd score = root * scores.scores.col(g);
+    const Eigen::ArrayXd along_v = (v.transpose() * score).array();
+    moves.col(g) = root * (score + v * (along_v * (kept.rsqrt() - 1.0)).matrix());
     const Eigen::MatrixXd along = v.transpose() * b;
     own.col(g) = along.cwiseAbs2().transpose() * (m / kept).matrix();
     u.push_back((m / kept.sqrt()).matrix().asDiagonal() * along);

@@ -30,9 +30,11 @@ struct RowClusters {
 };
 RowClusters ClusterByRecording(const JacobianBlocks& score);
 
-// J_g'J_g and s_g of every cluster that has rows, in the coordinates of `base`'s columns.
+// J_g'J_g = F_g'F_g and s_g of every cluster that has rows, in the coordinates of `base`'s columns.
+// F_g has no more rows than J_g has columns that are not zero: few where units have columns of
+// their own.
 struct ClusterScores {
-  std::vector<Eigen::MatrixXd> information;
+  std::vector<Eigen::MatrixXd> factors;
   Eigen::MatrixXd scores;  // a column for each
 };
 ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clusters,

@@ -270,7 +270,7 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   const ClusterScores own = GatherScores(e.score, ClusterByRecording(e.score), unit);
   if (own.scores.cols() < 2) return 0.0;
   Eigen::MatrixXd data = Eigen::MatrixXd::Zero(unit.rows(), unit.cols());
-  for (const Eigen::MatrixXd& information : own.information) data += information;
+  for (const Eigen::MatrixXd& factor : own.factors) data += factor.transpose() * factor;
   const Eigen::MatrixXd all = data + unit * InformationBeside(e.score) * unit;
   // On the subspace that the rows determine, by normal equations: exact enough for a trace.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all);
@@ -279,9 +279,7 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   const Eigen::MatrixXd base = eigen.eigenvectors().rightCols(rank) *
                                values.tail(rank).sqrt().inverse().matrix().asDiagonal();
   ClusterScores inside{{}, base.transpose() * own.scores};
-  for (const Eigen::MatrixXd& information : own.information) {
-    inside.information.push_back(base.transpose() * information * base);
-  }
+  for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);
   // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.
   const ClusteredCovariance v =
       Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
