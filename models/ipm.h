@@ -76,6 +76,8 @@ struct PosedPendulum : PendulumState<T> {
   PosedPendulum() = default;
   PosedPendulum(const PendulumState<T>& state)  // NOLINT: a state with what follows from it
       : PendulumState<T>(state), angles(state.q) {}
+  PosedPendulum(const PendulumState<T>& state, const Angles<T>& known)
+      : PendulumState<T>(state), angles(known) {}
 };
 
 template <typename T, typename L>

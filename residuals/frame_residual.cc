@@ -23,12 +23,12 @@ FrameVector<double> RobustRows(FrameVector<double> r, double weight, double robu
 
 // lift: of the cart, where the columns end with [rod, lift]. body: with the lengths of that frame.
 template <int kColumns>
-FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumState<double>& state,
+FrameVector<double> WithJacobian(const Body& body, double lift, const PosedPendulum<double>& state,
                                  const MeasuredFrame& measured, const ResidualSigmas& sigmas,
                                  FrameJacobian<kColumns>* jacobian) {
-  const Angles<double> angles(state.q);
-  const FrameVector<double> r = RawFrameResidual(body, state, angles, measured, sigmas);
-  RawFrameJacobian(body, lift, state, angles, sigmas, jacobian);
+  const FrameVector<double> r =
+      RawFrameResidual<double>(body, state, state.angles, measured, sigmas);
+  RawFrameJacobian<kColumns, double>(body, lift, state, state.angles, sigmas, jacobian);
   if (sigmas.loss == FrameLoss::kLdp)
     return RobustRows(r, measured.weight, sigmas.robust, jacobian);
   return RobustlyWeighted(r, measured.weight, sigmas.robust, jacobian);
@@ -36,7 +36,7 @@ FrameVector<double> WithJacobian(const Body& body, double lift, const PendulumSt
 
 }  // namespace
 
-FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
+FrameVector<double> FrameResidualWithJacobian(const Body& body, const PosedPendulum<double>& state,
                                               const MeasuredFrame& measured,
                                               const ResidualSigmas& sigmas,
                                               FrameJacobian<8>* jacobian) {
@@ -44,7 +44,7 @@ FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumSt
 }
 
 FrameVector<double> MovingRodResidualWithJacobian(const Body& body, double lift,
-                                                  const PendulumState<double>& state,
+                                                  const PosedPendulum<double>& state,
                                                   const MeasuredFrame& measured,
                                                   const ResidualSigmas& sigmas,
                                                   FrameJacobian<10>* jacobian) {

@@ -195,14 +195,14 @@ FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& stat
 }
 
 // The analytic twin of FrameResidual: its value, and its derivative by [q, qd].
-FrameVector<double> FrameResidualWithJacobian(const Body& body, const PendulumState<double>& state,
+FrameVector<double> FrameResidualWithJacobian(const Body& body, const PosedPendulum<double>& state,
                                               const MeasuredFrame& measured,
                                               const ResidualSigmas& sigmas,
                                               FrameJacobian<8>* jacobian);
 
 // The same where the rod moves, with BodyNow(body, state.rod, lift): by [q, qd, rod, lift].
 FrameVector<double> MovingRodResidualWithJacobian(const Body& body, double lift,
-                                                  const PendulumState<double>& state,
+                                                  const PosedPendulum<double>& state,
                                                   const MeasuredFrame& measured,
                                                   const ResidualSigmas& sigmas,
                                                   FrameJacobian<10>* jacobian);

@@ -152,13 +152,14 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
         visit(t, n, r, &by_column);
         continue;
       }
+      const PosedPendulum<double> posed(state, sensitivities.AnglesAt(t, n));
       if (rod_moves) {
         r = p.weight *
-            MovingRodResidualWithJacobian(body, lift, state, p.Measured(t, n), p.sigmas, &by_rod);
+            MovingRodResidualWithJacobian(body, lift, posed, p.Measured(t, n), p.sigmas, &by_rod);
         by_state = by_rod.leftCols<8>();
       } else {
         r = p.weight *
-            FrameResidualWithJacobian(body, state, p.Measured(t, n), p.sigmas, &by_state);
+            FrameResidualWithJacobian(body, posed, p.Measured(t, n), p.sigmas, &by_state);
       }
       by_state *= p.weight;
       SetNarrowProduct(by_state, sensitivities.At(t, n), by_column);

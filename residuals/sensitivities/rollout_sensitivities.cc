@@ -273,6 +273,7 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       const Vector4<double>& previous = path->At(before, n).qd;
       const NetForce<double> force = forces.On(n, t, previous);
       const Vector4<double> a = forces.AccelerationOf(n, force);
+      sensitivities->AnglesAt(t, n) = force.angles;
       path->At(t + 1, n) = forces.Next(n, a, force, previous);
       const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
@@ -287,7 +288,11 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
       const auto now = sensitivities->At(t, n);
-      SetNarrowProduct(jacobian.by_state, now, by_column);
+      if (jacobian.by_state.leftCols<2>().isZero(0.0)) {  // only a user's law asks where one is
+        SetNarrowProduct(jacobian.by_state.rightCols<6>(), now.bottomRows<6>(), by_column);
+      } else {
+        SetNarrowProduct(jacobian.by_state, now, by_column);
+      }
       if (self.cart_derivative) {
         by_column.topRows<2>() +=
             jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
@@ -321,6 +326,9 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
           rod_now + scene.dt * rod->Velocity(step, now, sensitivities->At(before, n), rod_now);
     }
     received.Advance(forces);
+  }
+  for (int n = 0; n < people; ++n) {
+    sensitivities->AnglesAt(num_frames - 1, n) = Angles<double>(path->At(num_frames - 1, n).q);
   }
   return {};
 }

@@ -45,6 +45,7 @@ class RolloutSensitivities {
     num_columns_ = num_columns;
     const Eigen::Index all = static_cast<Eigen::Index>(num_frames) * num_people * num_columns;
     if (storage_.size() < 8 * all) storage_.resize(8 * all);
+    angles_.resize(static_cast<size_t>(num_frames) * num_people);
     rod_.resize(rod_moves ? all : 0);
     step_.resize(feet_step ? all : 0);
   }
@@ -53,6 +54,10 @@ class RolloutSensitivities {
   }
   Eigen::Map<const Block> At(int frame, int person) const {
     return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
+  }
+  // Of each state on the way, which those who go on with it need not take again.
+  Angles<double>& AnglesAt(int frame, int person) {
+    return angles_[static_cast<size_t>(frame) * num_people_ + person];
   }
   // d l / d columns; empty where the rod is constant.
   Row Rod(int frame, int person) {
@@ -77,6 +82,7 @@ class RolloutSensitivities {
   int num_people_ = 0, num_columns_ = 0;
   Eigen::VectorXd storage_;  // the blocks, one after the other; never shrinks
   Eigen::RowVectorXd rod_, step_;
+  std::vector<Angles<double>> angles_;
 };
 
 // Derivatives of NetForceAt: the analytic twin.
