@@ -113,12 +113,6 @@ void AddGram(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a
   }
 }
 
-inline Vector TanhOf(Vector x) {
-  const Exponential e = Expand(2.0 * Clamp(x, 20.0));  // +-1 beyond
-  const Vector expm1 = e.power * e.p + (e.power - 1.0);
-  return expm1 / (expm1 + 2.0);
-}
-
 inline Vector LogisticOf(Vector x) {
   const Exponential e = Expand(-Clamp(x, 700.0));
   return 1.0 / (1.0 + (e.power + e.power * e.p));

@@ -44,6 +44,13 @@ inline Vector Clamp(Vector x, double bound) {
   return below < -bound ? Vector{} - bound : below;
 }
 
+// To about two units in the last place, near zero too.
+inline Vector TanhOf(Vector x) {
+  const Exponential e = Expand(2.0 * Clamp(x, 20.0));  // +-1 beyond
+  const Vector expm1 = e.power * e.p + (e.power - 1.0);
+  return expm1 / (expm1 + 2.0);
+}
+
 // To about an ulp.
 inline Vector ExpOf(Vector x) {
   const Exponential e = Expand(Clamp(x, 700.0));

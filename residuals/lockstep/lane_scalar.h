@@ -42,6 +42,7 @@ inline Lanes sqrt(Lanes x) {
   return root;
 }
 inline Lanes exp(Lanes x) { return Lanes(ExpOf(x.v)); }
+inline Lanes tanh(Lanes x) { return Lanes(TanhOf(x.v)); }
 inline Lanes sin(Lanes x) { return Lanes(SinCosOf(x.v).sine); }
 inline Lanes cos(Lanes x) { return Lanes(SinCosOf(x.v).cosine); }
 
