@@ -14,7 +14,7 @@
 //   meaning    what it is
 //   when       when to free it
 //
-// Gains are quoted for the reference person (85 kg, rod 0.95 m); see GainScale in self_force.h.
+// Gains are quoted for the reference person (85 kg, rod 0.95 m); see GainScaleOf in self_terms.h.
 // Parameters of one term stand together: friction from kMu up to kKpX, contact from
 // kContactStiffness to kContactHeight, all that two people share from there to kLeanPhi.
 #pragma once
