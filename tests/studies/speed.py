@@ -29,6 +29,8 @@ ROWS = [
     ("one rollout of 72 frames", ["RolloutOfDoubles"]),
     ("Jacobian of the 32 recordings by forward sensitivities, P = 6 / 12 / 64",
      [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
+    ("normal equations of the 32 recordings side by side, `tail` (13 columns): 512-bit / 256 / 128",
+     [f"EquationsSideBySide/0/{w}" for w in (2, 1, 0)]),
     ("the same by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
     ("the same by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
     ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
