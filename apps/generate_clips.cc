@@ -3,15 +3,17 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
 #include "apps/show_forecast.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/generators/forecast_spread.h"
-#include "ident/generators/path_search.h"
+#include "ident/forecasts/forecast_spread.h"
+#include "ident/forecasts/path_search.h"
 #include "ident/parameters/option_names.h"
+#include "ident/problem/parallel.h"
 
 namespace pushid {
 namespace {
@@ -62,7 +64,7 @@ Result<size_t> FindWindow(const std::vector<ForecastWindow>& windows, const std:
     if (windows[i].action == of && found++ == number) return i;
   }
   return Error{"there are " + std::to_string(found) + " windows of " + Quoted(of) +
-               "; --window and --target_window count them from 0 on"};
+               "; --window and --target_window count from 0"};
 }
 
 // The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
@@ -79,7 +81,7 @@ MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& fla
                        {"log_likelihood_of_forecast", found.of_forecast},
                        {"iterations", found.iterations}};
     std::printf(
-        "the most probable path to the end of window %d, %s m from it: log likelihood %s, of the "
+        "most probable path to the end of window %d, %s m from it: log likelihood %s, that of the "
         "forecast %s (%d iterations)\n",
         flags.target_window, Rounded(found.distance, 3).c_str(),
         Rounded(found.log_likelihood, 4).c_str(), Rounded(found.of_forecast, 4).c_str(),
@@ -103,8 +105,8 @@ MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& fla
 }
 
 // The window's forecast and futures; of a search its outcome goes to `json`.
-Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                              const std::vector<ForecastWindow>& windows, Json* json) {
+Result<ForecastScene> SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                                    const std::vector<ForecastWindow>& windows, Json* json) {
   const Result<size_t> at = FindWindow(windows, flags.action, flags.window);
   if (!at.ok()) return at.error();
   const ForecastWindow& window = windows[at.value()];
@@ -139,8 +141,8 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
   if (mocap.value().skeleton.layout.names != layout.names) {
     return Fail(Error{"these clips have " +
                           std::to_string(mocap.value().skeleton.layout.num_particles()) +
-                          " particles, other ones than the " +
-                          std::to_string(layout.num_particles()) + " that the generator knows",
+                          " particles, which are not the " +
+                          std::to_string(layout.num_particles()) + " particles of the generator",
                       flags.folder});
   }
   const auto windows = MakeForecastWindows(mocap.value(), flags.protocol, flags.stride);
@@ -163,7 +165,7 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
     AddSpreadJson(spread, &json);
   }
   if (flags.Shows() || flags.target_window >= 0) {
-    const Result<ForecastScene> scene = SceneOf(loaded, flags, windows, &json);
+    const Result<ForecastScene> scene = SceneOfWindow(loaded, flags, windows, &json);
     if (!scene.ok()) return Fail(scene.error());
     if (MaybeError error = ShowForecast(scene.value(), flags)) return Fail(*error);
   }

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
@@ -11,7 +12,7 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/generators/long_forecast.h"
+#include "ident/forecasts/long_forecast.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/results/model_rollout.h"
 #include "ident/results/result_json.h"
@@ -75,10 +76,10 @@ MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
     if (!restoration.ok()) return restoration.error();
     loaded->restoration = std::move(restoration.value());
   }
-  std::printf("as cross-validation chose: %s\n",
+  std::printf("selected by cross-validation: %s\n",
               restores
                   ? "physics and restored bodies"
-                  : ("diffusion, " + Rounded(choice->blend, 3) + " of the way to physics").c_str());
+                  : ("diffusion, blended " + Rounded(choice->blend, 3) + " with physics").c_str());
   return std::nullopt;
 }
 

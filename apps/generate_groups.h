@@ -1,11 +1,11 @@
 // apps: groups that diffusion forecasts, with physics to blend with, and as pictures and files.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 
 #include "apps/flags/generate_flags.h"
-#include "ident/generators/group_spread.h"
+#include "ident/forecasts/group_spread.h"
 #include "ident/results/identified_model.h"
 
 namespace pushid {

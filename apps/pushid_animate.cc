@@ -68,7 +68,7 @@ int Run() {
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.mapping);
   if (!recording.ok() && flags.bodies_asked) return Fail(recording.error());
-  if (!recording.ok()) Warn(recording.error().ToString() + "; pendulums alone are shown");
+  if (!recording.ok()) Warn(recording.error().ToString() + "; only pendulums are shown");
 
   const PendulumRecording pendulum =
       MakePendulumRecording(recordings.value().front(), model.mapping);
@@ -107,11 +107,11 @@ int Run() {
 
 int main(int argc, char** argv) {
   pushid::JoinRepeated("set", pushid::kBetweenSets, argc, argv);
-  return pushid::RunApp(argc, argv,
-                        "pushid-animate shows recorded and predicted people, pendulums and net "
-                        "forces.\n\n  pushid-animate --model=model.json --restoration=restoration "
-                        "--recordings=M/manifest.json --id=NAME --out=motion.html "
-                        "--strip_out=poses.svg\n\nSeveral what-ifs lie over the model as it was "
-                        "fitted: --set=mu=10 --set=mu=60",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-animate shows recorded and predicted people, pendulums and net forces.\n\n"
+      "  pushid-animate --model=model.json --restoration=restoration --recordings=M/manifest.json "
+      "--id=NAME --out=motion.html --strip_out=poses.svg\n\n"
+      "Several what-ifs are shown over the fitted model: --set=mu=10 --set=mu=60",
+      Run);
 }

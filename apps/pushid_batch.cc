@@ -70,7 +70,7 @@ std::string TimeText(double seconds) {
 }
 
 // Of all jobs of the plan, whichever of them ran now.
-MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
+MaybeError ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   const std::vector<JobResult> rows = ReadResults(plan, all);
   if (MaybeError error = WriteSummary(plan, rows)) return error;
   std::printf("%s", SummaryText(rows).c_str());
@@ -78,7 +78,7 @@ MaybeError Summarize(const BatchPlan& plan, const std::vector<BatchJob>& all) {
 }
 
 int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
-  if (MaybeError error = Summarize(plan, all)) return Fail(*error);
+  if (MaybeError error = ShowSummary(plan, all)) return Fail(*error);
   std::map<std::string, int> rows;
   for (const JobResult& row : ReadResults(plan, all)) ++rows[NameOf(row.status.state)];
   std::printf("%d done, %d failed, %d open; results in %s\n", rows["done"], rows["failed"],
@@ -106,18 +106,18 @@ int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<Ba
   if (!outcome.ok()) return Fail(outcome.error());
   const BatchOutcome& o = outcome.value();
   if (flags.summary) {
-    if (MaybeError error = Summarize(plan, all)) return Fail(*error);
+    if (MaybeError error = ShowSummary(plan, all)) return Fail(*error);
   }
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
   if (o.elsewhere > 0) {
-    Warn("left to another pushid-batch that is at work on them: " + std::to_string(o.elsewhere) +
+    Warn("left to another pushid-batch that is running them: " + std::to_string(o.elsewhere) +
          (o.elsewhere == 1 ? " job" : " jobs") +
-         "; when it has ended, --gather writes the table of all");
+         "; when it has finished, --gather writes the complete table");
   }
   for (const std::string& reason : o.unrecorded) Warn("a job failed: " + reason);
   if (o.interrupted) {
-    std::fprintf(stderr, "pushid-batch: interrupted; the same command goes on from here\n");
+    std::fprintf(stderr, "pushid-batch: interrupted; run the same command to continue\n");
     return kInterrupted;
   }
   return o.failed > 0 ? kFitFailed : kDone;

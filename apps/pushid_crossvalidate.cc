@@ -1,6 +1,7 @@
 // apps: pushid-crossvalidate: how well configurations predict recordings they have not seen.
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/flags/command_line.h"
@@ -52,8 +53,8 @@ Result<Candidates> NoisyModels(const CrossvalidateFlags& flags, const FitOptions
   }
   if (Given("observed")) {
     return Error{
-        "--samples draws futures from frame 0 on, and --observed predicts from later: leave one "
-        "out"};
+        "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
+        "one out"};
   }
   if (noisy.empty()) {
     return Error{
@@ -83,8 +84,8 @@ MaybeError CheckNames(const Predictors& predictors) {
   std::set<std::string> names;
   for (const auto& predictor : predictors) {
     if (names.insert(predictor->name).second) continue;
-    return Error{"--compare: there is more than one '" + predictor->name +
-                 "'; name the configurations differently"};
+    return Error{"--compare has more than one '" + predictor->name +
+                 "'; give each configuration its own name"};
   }
   return std::nullopt;
 }
@@ -98,13 +99,14 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
   if (!candidates.ok()) return candidates.error();
   for (const auto& [name, candidate] : candidates.value()) {
     if (candidate.body_weight > 0.0) {
-      return Error{"--body_weight: '" + name +
-                   "' would be judged with a restoration that has seen the recordings held out; "
-                   "pushid-train-restoration --crossvalidate --body_weight trains both anew"};
+      return Error{
+          "--body_weight: '" + name +
+          "' would be scored with a restoration that was trained on the held-out recordings; "
+          "pushid-train-restoration --crossvalidate --body_weight retrains both"};
     }
     if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
       return Error{"--observed: '" + name +
-                   "' has no push tail, by which first frames are read; give it "
+                   "' has no push tail, which --observed estimates from the first frames; give it "
                    "--push_tail=exponential (the presets tail and group have it)"};
     }
     predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed));

@@ -1,6 +1,7 @@
 // apps: pushid-evaluate: how far a model's predictions are from recordings, beside the baselines.
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "apps/flags/command_line.h"

@@ -15,6 +15,7 @@
 #include "ident/bodies/body_data.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/parameters/parameter_glossary.h"
+#include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/results/fit.h"

@@ -1,5 +1,6 @@
 // apps: pushid-generate: motion continued by a learned generator, judged and shown.
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/flags/command_line.h"
@@ -12,17 +13,18 @@
 #include "datasets/files/random.h"
 #include "ident/bodies/body_report.h"
 #include "ident/generators/push_particles.h"
+#include "ident/problem/parallel.h"
 
 namespace {
 
 using namespace pushid;
 using Json = nlohmann::ordered_json;
 
-Result<ForecastScene> SceneOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                              const BodyRecording& recording) {
+Result<ForecastScene> SceneOfPerson(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                                    const BodyRecording& recording) {
   if (flags.person >= recording.num_people()) {
     return Error{"recording " + recording.pendulum.id + " has " +
-                 std::to_string(recording.num_people()) + " people; --person counts from 0 on"};
+                 std::to_string(recording.num_people()) + " people; --person counts from 0"};
   }
   const GeneratorSettings& settings = loaded.settings;
   const ObservedMotion whole = ParticlesOf(recording, flags.person).motion;
@@ -54,7 +56,7 @@ MaybeError ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
     for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
     return std::nullopt;
   }
-  const Result<ForecastScene> scene = SceneOf(loaded, flags, recording);
+  const Result<ForecastScene> scene = SceneOfPerson(loaded, flags, recording);
   return scene.ok() ? ShowForecast(scene.value(), flags) : MaybeError(scene.error());
 }
 
@@ -82,7 +84,7 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     if (recording.pendulum.id == flags.id) shown = &recording;
   }
   if (flags.Shows() && shown == nullptr) {
-    return Fail(Error{"--id is '" + flags.id + "', no recording of these"});
+    return Fail(Error{"--id is '" + flags.id + "', which is not one of the recordings"});
   }
   WarnOfPushKinds(loaded.settings, bodies.value());
   double seconds = 0.0;
@@ -142,9 +144,9 @@ int Run() {
 
 int main(int argc, char** argv) {
   return pushid::RunApp(argc, argv,
-                        "pushid-generate continues observed motion by a learned generator, and "
-                        "says how far it is from what was recorded.\n\n  pushid-generate "
-                        "--model=generator --dataset=cmu --folder=cmu_mocap "
+                        "pushid-generate continues observed motion with a learned generator and "
+                        "reports the error against the recording.\n\n"
+                        "  pushid-generate --model=generator --dataset=cmu --folder=cmu_mocap "
                         "--protocol=validation --json_out=errors.json",
                         Run);
 }

@@ -29,7 +29,8 @@ int Run() {
     if (flags.svg_out.empty()) continue;
     const Inspection& seen = found.value();
     if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
-      return Fail(file + ": a " + seen.format + " has nothing to draw; name a recording's file");
+      return Fail(file + ": a " + seen.format +
+                  " contains nothing to draw; give the file of a recording");
     }
     if (MaybeError error = WriteFileAtomically(flags.svg_out, InspectionSvg(found.value()))) {
       return Fail(*error);
@@ -44,10 +45,10 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-inspect shows what files hold (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and warns "
-      "of "
-      "what will matter: units, axes, rate, gaps, jumps, standing height, start, onset.\n\n  "
-      "pushid-inspect trial.c3d other.trc\n  pushid-inspect table.csv --mapping=mapping.json\n  "
-      "pushid-inspect trial.c3d --svg_out=trial.svg",
+      "pushid-inspect shows what files contain (BVH, C3D, TRC, STO, MOT, CSV, a manifest) and "
+      "warns about units, axes, rate, gaps, jumps, standing height, start and onset.\n\n"
+      "  pushid-inspect trial.c3d other.trc\n"
+      "  pushid-inspect table.csv --mapping=mapping.json\n"
+      "  pushid-inspect trial.c3d --svg_out=trial.svg",
       Run, &g_files);
 }

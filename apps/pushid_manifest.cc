@@ -57,7 +57,7 @@ Result<Manifest> Updated(const std::string& path, const std::vector<ManifestReco
   }
   std::printf("%zu recordings kept as they were, %zu added\n", known.size(), added.size());
   PrintIds("added", added);
-  PrintIds("kept, though the pattern does not find them", gone);
+  PrintIds("kept, although they do not match the pattern", gone);
   return manifest;
 }
 
@@ -80,7 +80,7 @@ int Run() {
   for (const std::string& id : made.value().without_push) Warn("recording " + id + " has no push");
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",
               manifest.recordings.size(), made.value().files, made.value().others, path.c_str());
-  std::printf("look at them with: pushid-inspect %s\n", path.c_str());
+  std::printf("check them with: pushid-inspect %s\n", path.c_str());
   return kDone;
 }
 
@@ -89,8 +89,8 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-manifest makes the manifest of recordings whose file names follow a pattern.\n\n  "
-      "pushid-manifest --folder=data --pattern='{setting}/{subject}_{magnitude}_{take}.c3d' "
+      "pushid-manifest writes the manifest of recordings whose file names follow a pattern.\n\n"
+      "  pushid-manifest --folder=data --pattern='{setting}/{subject}_{magnitude}_{take}.c3d' "
       "--push_pattern='push/{subject}_{take}.csv' --masses=masses.csv --out=data/manifest.json",
       Run);
 }

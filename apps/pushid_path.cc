@@ -1,5 +1,6 @@
 // apps: pushid-path: most probable paths under a model's process noise, and smoothed recordings.
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
@@ -56,7 +57,9 @@ int Between(const PathFlags& flags, const IdentifiedModel& model) {
   if (paths.size() > 1) {
     std::printf("most probable: %s\n", flags.end_names[best].c_str());
   }
-  std::printf("action: -log probability density of the path, up to a constant of its frames\n");
+  std::printf(
+      "action: -log probability density of the path, up to a constant that depends on its "
+      "frames\n");
   return Write(flags, paths[best], 1.0 / flags.fps, json);
 }
 

@@ -70,8 +70,8 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
   if (!push.ok()) return push.error();
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(flags.person, t) > 0.0) continue;
-    Warn("hip or ankles are not seen at frame " + std::to_string(t) +
-         " of the push: the force there is that of interpolated positions");
+    Warn("hip or ankles are missing at frame " + std::to_string(t) +
+         " of the push: the force there is computed from interpolated positions");
     break;
   }
   return MadePush{
@@ -86,8 +86,8 @@ void WarnOfFirstRow(const std::string& id, const MadePush& made) {
   if (!FirstRowStandsOut(made.push)) return;
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
   Warn("recording " + id + ": the first row, " + force +
-       " N, stands out: who moves before the window begins is not pushed there; begin earlier "
-       "(--first_frame), or --initial_velocity=estimated" +
+       " N, stands out: the person already moves when the window begins; begin earlier "
+       "(--first_frame), or set --initial_velocity=estimated" +
        (made.push.start_frame == 0 ? " in the manifest" : ""));
 }
 
@@ -103,23 +103,22 @@ void PrintPush(const RecordingsPush& of, double dt) {
               made.push.EndFrame() - made.push.start_frame, made.push.start_frame,
               made.how.c_str());
   if (made.start_speed > 0.0) {
-    std::printf("the cart moves at %s m/s where it begins\n", Rounded(made.start_speed, 3).c_str());
+    std::printf("the cart moves at %s m/s at its start\n", Rounded(made.start_speed, 3).c_str());
   }
   std::printf("impulse %s N s forwards, %s N s to the left; peak %s N\n",
               Rounded(impulse[0], 3).c_str(), Rounded(impulse[1], 3).c_str(),
               Rounded(peak, 3).c_str());
   if (std::fabs(impulse[1]) > std::fabs(impulse[0])) {
     Warn("recording " + of.id +
-         ": the push goes to the side rather than forwards; are `up` and `forward` of the manifest "
-         "right?");
+         ": the push is sideways rather than forwards; check `up` and `forward` in the manifest");
   }
   std::printf("written to %s\n", of.file.c_str());
 }
 
 void PrintEntry(const RecordingsPush& of) {
   std::printf(
-      "in the recording's entry of the manifest put, instead of any push_csv "
-      "(--into_manifest does it):\n");
+      "put into the recording's entry of the manifest, instead of any push_csv (--into_manifest "
+      "does this):\n");
   std::printf("  \"push_kind\": \"%s\",\n", Name(of.made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
               of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
@@ -140,12 +139,12 @@ MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* 
   };
   if (!there.empty() && !overwrite) {
     return where("has a push on person " + std::to_string(person) + " already, " + there +
-                 "; --overwrite puts the new one in its place");
+                 "; --overwrite replaces it");
   }
   const bool others_stay = !others.empty() || (there.empty() && !entry->push_csv.empty());
   if (others_stay && entry->push_kind != of.made.kind) {
     return where("has pushes on other people of the kind " + Name(entry->push_kind) +
-                 ", and this one is " + Name(of.made.kind) + "; an entry has one kind");
+                 ", and this one is " + Name(of.made.kind) + "; an entry can have only one kind");
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
   entry->pushes = std::move(others);
@@ -206,13 +205,13 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(
-      argc, argv,
-      "pushid-push finds the push of a recording: by inverse dynamics over a window "
-      "of its motion, or from a measured force.\n\n  pushid-push "
-      "--recordings=M/manifest.json --id=NAME --out=push.csv\n  pushid-push "
-      "--recordings=M/manifest.json --id=NAME --sensor=force.csv --height=0.9 "
-      "--out=push.csv\n  pushid-push --recordings=M/manifest.json --id=NAME --sensor=trial.c3d "
-      "--sensor_column=platform:1 --estimate_offset --out=push.csv",
-      Run);
+  return pushid::RunApp(argc, argv,
+                        "pushid-push computes the push of a recording: by inverse dynamics over a "
+                        "window of its motion, or from a measured force.\n\n"
+                        "  pushid-push --recordings=M/manifest.json --id=NAME --out=push.csv\n"
+                        "  pushid-push --recordings=M/manifest.json --id=NAME --sensor=force.csv "
+                        "--height=0.9 --out=push.csv\n"
+                        "  pushid-push --recordings=M/manifest.json --id=NAME --sensor=trial.c3d "
+                        "--sensor_column=platform:1 --estimate_offset --out=push.csv",
+                        Run);
 }

@@ -72,10 +72,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return RunApp(argc, argv,
-                "pushid-report prints an identified model, or draws it.\n\n"
-                "  pushid-report --model=model.json\n"
-                "  pushid-report --model=model.json --recordings=M/manifest.json "
-                "--html_out=report.html",
-                Run);
+  return RunApp(
+      argc, argv,
+      "pushid-report prints the report of an identified model, or writes it as an HTML page.\n\n"
+      "  pushid-report --model=model.json\n"
+      "  pushid-report --model=model.json --recordings=M/manifest.json --html_out=report.html",
+      Run);
 }

@@ -25,7 +25,8 @@ Result<IdentifiedModel> Truth(Stance stance, const ProcessNoiseTerms& noise) {
   if (!flags.file.empty()) {
     for (const char* flag : {"truth_stance", "truth_noise"}) {
       if (!Given(flag)) continue;
-      return Error{std::string("--model says what people are like; leave --") + flag + " out"};
+      return Error{std::string("--model sets the parameters of the people; leave --") + flag +
+                   " out"};
     }
     return LoadFlaggedModel();
   }
@@ -82,21 +83,22 @@ int Run() {
   }
   if (MaybeError error = WriteSyntheticRecordings(out, options, made.value())) return Fail(*error);
   PrintTruth(truth.value(), options);
-  std::printf(
-      "%zu recordings of %d people, joints noisy by %s mm: %s names the BVH and push files\n",
-      made.value().size(), options.subjects, Rounded(1000.0 * options.joint_noise_m, 3).c_str(),
-      (std::filesystem::path(out) / "manifest.json").c_str());
+  std::printf("%zu recordings of %d people, joint noise %s mm: %s lists the BVH and push files\n",
+              made.value().size(), options.subjects,
+              Rounded(1000.0 * options.joint_noise_m, 3).c_str(),
+              (std::filesystem::path(out) / "manifest.json").c_str());
   return kDone;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-simulate makes recordings of synthetic people whose parameters are "
-                        "known,\nor rolls an identified model out on a formation.\n\n"
-                        "  pushid-simulate --out=synthetic --people=4 --seed=1\n"
-                        "  pushid-simulate --model=model.json --formation=line --people=10 "
-                        "--push=80 --svg_out=wave.svg",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-simulate generates recordings of synthetic people with known parameters,\n"
+      "or rolls an identified model out on a formation.\n\n"
+      "  pushid-simulate --out=synthetic --people=4 --seed=1\n"
+      "  pushid-simulate --model=model.json --formation=line --people=10 --push=80 "
+      "--svg_out=wave.svg",
+      Run);
 }

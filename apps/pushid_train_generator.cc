@@ -1,6 +1,7 @@
 // apps: pushid-train-generator: learned generators of motion.
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "apps/flags/command_line.h"
@@ -15,6 +16,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
+#include "ident/problem/parallel.h"
 #include "ident/results/fit.h"
 #include "ident/results/fit_setup.h"
 #include "ident/results/result_json.h"
@@ -77,9 +79,9 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   line.Finish();
   if (!trained.ok()) return Fail(trained.error());
   GeneratorSettings& settings = trained.value().networks.settings;
-  settings.training = {{"version", Version()}, {"configuration", EffectiveFlags()}};
-  settings.training["data"] = data;
-  settings.training["curve"] = CurveJson(trained.value().curve);
+  settings.training = Json{{"version", Version()}, {"configuration", EffectiveFlags()}};
+  (*settings.training)["data"] = data;
+  (*settings.training)["curve"] = CurveJson(trained.value().curve);
   const std::string title = NameOf(flags.options.kind) + ", " + NameOf(flags.data) + ", " +
                             std::to_string(data.size()) + " motions";
   if (MaybeError error = WriteFileAtomically(Inside(flags.out, "curve.svg"),
@@ -212,10 +214,10 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return pushid::RunApp(argc, argv,
-                        "pushid-train-generator trains networks that continue observed motion, for "
-                        "pushid-generate.\nStarted again with the same --out, it goes on where it "
-                        "was broken off.\n\n  pushid-train-generator --kind=particles "
-                        "--dataset=cmu --folder=cmu_mocap --out=generator",
-                        Run);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-train-generator trains networks that continue observed motion, for pushid-generate.\n"
+      "Run again with the same --out, it continues an interrupted training.\n\n"
+      "  pushid-train-generator --kind=particles --dataset=cmu --folder=cmu_mocap --out=generator",
+      Run);
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
@@ -42,9 +43,9 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
   return kDone;
 }
 
-nlohmann::ordered_json Provenance(const std::vector<BodyRecording>& recordings,
-                                  const std::vector<BodyRecording>& more,
-                                  const TrainedRestoration& trained) {
+nlohmann::ordered_json TrainingJson(const std::vector<BodyRecording>& recordings,
+                                    const std::vector<BodyRecording>& more,
+                                    const TrainedRestoration& trained) {
   nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   json["recordings"] = nlohmann::ordered_json::array();
   for (const BodyRecording& recording : recordings) {
@@ -72,7 +73,7 @@ Result<TrainedRestoration> Learn(const TrainRestorationFlags& flags,
     SayWhenInterrupted(KeptCheckpoints(flags.out));
     return TrainFromRecordings(recordings, all, options, told);
   }
-  SayWhenInterrupted("nothing is kept of a training as a whole; the same command begins anew");
+  SayWhenInterrupted("joint training keeps no checkpoints; run the same command to start again");
   Result<TrainedChain> chain = TrainChain(recordings, all, options, told);
   if (!chain.ok()) return chain.error();
   return std::move(chain.value().restoration);
@@ -94,7 +95,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   if (!learnt.ok()) return Fail(learnt.error());
   const TrainedRestoration& trained = learnt.value();
   RestorationFile file = trained.file;
-  file.training = Provenance(recordings, options.more, trained);
+  file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = std::string(Name(options.training.kind)) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
@@ -104,7 +105,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   }
   if (MaybeError error = WriteRestorationFile(flags.out, file)) return Fail(*error);
   const TrainingPoint& last = trained.curve.back();
-  std::printf("%s: %zu points of the curve, held-out loss %s at the end, %s s%s; %s\n",
+  std::printf("%s: %zu points of the training curve, final held-out loss %s, %s s%s; %s\n",
               title.c_str(), trained.curve.size(), Rounded(last.validation_loss, 3).c_str(),
               Rounded(line.Seconds(), 3).c_str(),
               trained.resumed ? " (resumed from a checkpoint)" : "",
@@ -154,10 +155,10 @@ int Run() {
 
 int main(int argc, char** argv) {
   return pushid::RunApp(argc, argv,
-                        "pushid-train-restoration trains the networks that turn a pendulum's path "
-                        "into the motion of a body.\nStarted again with the same --out, it goes on "
-                        "where it was broken off.\n\n  pushid-train-restoration "
-                        "--recordings=M/manifest.json --setting=single --more_settings=groups "
-                        "--model=model.json --out=restoration",
+                        "pushid-train-restoration trains the networks that convert the path of a "
+                        "pendulum into the motion of a body.\n"
+                        "Run again with the same --out, it continues an interrupted training.\n\n"
+                        "  pushid-train-restoration --recordings=M/manifest.json --setting=single "
+                        "--more_settings=groups --model=model.json --out=restoration",
                         Run);
 }

@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tests/install_packages.sh
 source tests/install_packages.sh
 out=quickstart-output
-bin=build/quickstart/bin
+bin=build/release/bin
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 
 say() { printf '\n== %s\n' "$*"; }
@@ -19,11 +19,9 @@ echo "nothing is missing"
 
 say "Building the programs into $bin (some minutes the first time)"
 generator=()
-if [ ! -f build/quickstart/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-cmake --preset quickstart "${generator[@]}" >/dev/null
-cmake --build --preset quickstart --parallel "$(nproc)" --target \
-  pushid-simulate pushid-fit pushid-report pushid-evaluate pushid-predict pushid-inspect pushid-manifest pushid-push \
-  pushid-crossvalidate pushid-animate
+if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
+cmake --preset release "${generator[@]}" >/dev/null
+cmake --build --preset quickstart --parallel "$(nproc)"
 
 say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite

@@ -33,8 +33,8 @@ void AddPush(const Push& more, Push* sum) {
 }
 
 // As PushFromSensor takes it, but for the offset: vectors along the direction.
-TimedForce AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
-  TimedForce timed{record, sensor.start_s.value_or(0.0)};
+TimedRecord AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
+  TimedRecord timed{record, sensor.start_s.value_or(0.0)};
   if (record.is_vector) return timed;
   const Eigen::Vector3d along = sensor.direction.normalized();
   for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
@@ -49,9 +49,8 @@ std::string CutShort(const SensorRecord& record) {
     const double force = (first ? record.force.front() : record.force.back()).norm();
     if (!(force > kCutShort * peak)) continue;
     return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
-           Rounded(force, 3) + " N, of " + Rounded(peak, 3) +
-           " N at most: part of the push is missing, or it reads a force at rest "
-           "(--sensor_zero)";
+           Rounded(force, 3) + " N, with a maximum of " + Rounded(peak, 3) +
+           " N: part of the push is missing, or the sensor has an offset (--sensor_zero)";
   }
   return "";
 }
@@ -92,7 +91,7 @@ std::string HowRead(const SensorFlags& flags, const ReadSensors& read) {
 Result<SensorOffset> Offset(const SensorFlags& flags, const ReadSensors& read,
                             const PendulumRecording& recording, int person, SensorPush* result) {
   if (!flags.estimate_offset) return SensorOffset();
-  std::vector<TimedForce> timed;
+  std::vector<TimedRecord> timed;
   for (std::size_t i = 0; i < read.records.size(); ++i) {
     timed.push_back(AsVectors(read.records[i], read.choices[i]));
   }
@@ -101,8 +100,8 @@ Result<SensorOffset> Offset(const SensorFlags& flags, const ReadSensors& read,
   if (!offset.ok()) return offset;
   const double gain = offset.value().gain;
   if (gain < 1.0 / kOddGain || gain > kOddGain) {
-    result->warnings.push_back("the motion fits " + Rounded(gain, 2) +
-                               " times the force best: check its unit and gain, and the mass");
+    result->warnings.push_back("the motion fits best with " + Rounded(gain, 2) +
+                               " times the force: check its unit and gain, and the mass");
   }
   result->how += "; clock at frame 0 moved by " + Rounded(offset.value().offset_s, 4) + " +- " +
                  Rounded(offset.value().standard_error_s, 2) + " s (estimated)";
@@ -133,7 +132,7 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
     options.idle_force = sensor.idle_force;
     if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
-      result.how += "; contact at the hip's height (--height and --height_m say another)";
+      result.how += "; contact at the hip's height (--height and --height_m change it)";
     }
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
@@ -141,8 +140,8 @@ Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& re
     if (!cut_short.empty()) result.warnings.push_back(cut_short);
     if (record.height_m && *record.height_m < 0.1) {
       result.warnings.push_back(sensor.file + ": " + sensor.column +
-                                " lies on the floor: what it measures is the ground's force on "
-                                "the person who stands there, not a push");
+                                " lies on the floor: it measures the ground reaction force of the "
+                                "person standing there, not a push");
     }
     AddPush(push.value(), &result.push);
   }

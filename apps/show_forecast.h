@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/flags/generate_flags.h"
-#include "ident/generators/forecast_scene.h"
+#include "ident/forecasts/forecast_scene.h"
 
 namespace pushid {
 

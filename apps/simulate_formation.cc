@@ -81,7 +81,7 @@ void PrintPeople(const FormationRun& run, bool named) {
 // What the fit warned of holds for what is simulated with it.
 void PrintFitWarnings(const FittedModel& model) {
   for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
-    std::printf("the fit warned: %s\n", warning.c_str());
+    std::printf("warning of the fit: %s\n", warning.c_str());
   }
 }
 
@@ -101,15 +101,15 @@ constexpr int kMostPeopleForBands = 60;
 std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
   const SpeedBand& band = bands.speed;
   std::string text = "; from person " + std::to_string(wave.from) + " to " +
-                     std::to_string(wave.to) + " the onset went " + Rounded(wave.metres, 3) +
+                     std::to_string(wave.to) + " the onset propagated " + Rounded(wave.metres, 3) +
                      " m in " + Rounded(wave.seconds, 3) +
                      " s: " + Rounded(wave.MetresPerSecond(), 3) + " m/s";
   if (band.known()) {
-    text += " (90 % of what the parameters leave open: " + Rounded(band.from, 3) + " to " +
-            Rounded(band.to, 3) + ", each draw's own wave, in " + std::to_string(band.moved) +
+    text += " (90 % interval from the uncertainty of the parameters: " + Rounded(band.from, 3) +
+            " to " + Rounded(band.to, 3) + ", from the waves of " + std::to_string(band.moved) +
             " of " + std::to_string(band.draws) + " draws)";
   } else if (band.draws > 0) {
-    text += " (no interval: the push goes on in only " + std::to_string(band.moved) + " of " +
+    text += " (no interval: the push propagates in only " + std::to_string(band.moved) + " of " +
             std::to_string(band.draws) + " draws of the parameters)";
   }
   if (bands.failed > 0) {
@@ -129,7 +129,7 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, bool as_setting)
   if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands);
   std::printf("%s\n", text.c_str());
   if (as_setting) {
-    std::printf("no intervals: a model does not hold how sure the values of one setting are\n");
+    std::printf("no intervals: a model has no covariance of the values of one setting\n");
   }
 }
 
@@ -138,7 +138,7 @@ constexpr double kUsualFps = 60.0;
 
 std::string LeftDomainAdvice(double fps) {
   return fps < kUsualFps - 0.5
-             ? "the steps are long: try --fps=60, and if that does not help a weaker --push"
+             ? "the time step is long: try --fps=60, and if that does not help a weaker --push"
              : "the person falls: try a weaker or longer push (--push, --push_duration), or a "
                "higher "
                "--fps "

@@ -25,7 +25,7 @@ Result<std::vector<Pose>> FirstPosesFrom(const std::string& manifest, double rod
   return FirstPoses(bodies.value());
 }
 
-BodyScene SceneOf(const FormationRun& run, std::vector<BodyMotion> bodies) {
+BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
   BodyScene scene;
   scene.id = run.recording.id;
   scene.dt = run.recording.scene.dt;
@@ -98,7 +98,7 @@ MaybeError WriteFormationBodies(const FormationBodyFlags& flags, const Formation
                      : FormationBodies(run, plan.first_poses, *plan.restoration,
                                        flags.restoration.postprocess);
   if (!bodies.ok()) return bodies.error();
-  const BodyScene scene = SceneOf(run, std::move(bodies.value()));
+  const BodyScene scene = SceneOfRun(run, std::move(bodies.value()));
   Animation animation;
   animation.title = title + (plan.generator ? "; bodies by diffusion" : "");
   animation.dt = scene.dt;

@@ -74,7 +74,7 @@
   X(kBx, "b_x", "b_x", "m/s/rad", 0, -50, 50, 2, kIdentity, \
     true, false, \
     "cart force from the lean's rate, x", \
-    "with many recordings: it is told from a_x by fast motion only") \
+    "with many recordings: only fast motion separates it from a_x") \
   X(kBy, "b_y", "b_y", "m/s/rad", 0, -50, 50, 2, kIdentity, \
     true, false, \
     "cart force from the lean's rate, y", \
@@ -186,7 +186,7 @@
   X(kAnkleReach, "ankle_reach", "r_a", "1", 1.5, 0.2, 10, 1, kLog, \
     m.stance == Stance::kThreshold, false, \
     "largest ankle torque over the weight times the support", \
-    "never: few of those recorded stand to the limit; 1 is a foot as long as the support") \
+    "never: few recorded people reach the limit; 1 is a foot as long as the support") \
   X(kStepGain, "step_gain", "kappa", "1", 1, 0.05, 5, 1, kLog, \
     m.stance == Stance::kThreshold, false, \
     "speed of stepping feet over that of the capture point", \

@@ -1,8 +1,9 @@
 // models: local cubic least squares.
 #include "models/savitzky_golay.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "models/decompositions.h"
 
 namespace pushid {
 
@@ -21,7 +22,7 @@ std::vector<SmoothedSample> SavitzkyGolay(const std::vector<Eigen::Vector4d>& sa
   // One pseudo-inverse serves every window: columns 1, k, k^2, k^3 over k = 0 .. width - 1.
   Eigen::MatrixXd basis(width, 4);
   for (int k = 0; k < width; ++k) basis.row(k) << 1.0, k, k * k, k * k * k;
-  const Eigen::MatrixXd inverse = basis.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = PseudoInverse(basis);
   Eigen::MatrixXd window_samples(width, 4);
   for (int i = 0; i < n; ++i) {
     const int first = std::clamp(i - width / 2, 0, n - width);

@@ -30,7 +30,7 @@ struct JacobianTolerance {
 };
 
 // What one call of Evaluate wrote; NaN where it wrote nothing.
-struct Evaluation {
+struct CostEvaluation {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   bool ok = false;
   Eigen::VectorXd residuals;
@@ -38,10 +38,10 @@ struct Evaluation {
 };
 
 // wanted: which blocks' Jacobians to ask for; empty means none at all (a null pointer).
-inline Evaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
+inline CostEvaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
                                const std::vector<bool>& wanted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Evaluation result;
+  CostEvaluation result;
   result.residuals = Eigen::VectorXd::Constant(cost.num_residuals(), nan);
   std::vector<const double*> parameters;
   std::vector<double*> pointers;
@@ -49,7 +49,7 @@ inline Evaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterB
   for (size_t b = 0; b < blocks.size(); ++b) {
     const Eigen::Index columns = cost.parameter_block_sizes()[b];
     parameters.push_back(blocks[b].data());
-    result.jacobians.push_back(Evaluation::RowMajor::Constant(cost.num_residuals(), columns, nan));
+    result.jacobians.push_back(CostEvaluation::RowMajor::Constant(cost.num_residuals(), columns, nan));
     pointers.push_back(!wanted.empty() && wanted[b] ? result.jacobians[b].data() : nullptr);
   }
   result.ok = cost.Evaluate(parameters.data(), result.residuals.data(),
@@ -80,12 +80,12 @@ inline void ExpectSameResiduals(const Eigen::VectorXd& actual, const Eigen::Vect
 }
 
 // Names the wrong entries, the first few of them one by one.
-inline void ExpectSameJacobians(const Evaluation& actual, const Evaluation& expected,
+inline void ExpectSameJacobians(const CostEvaluation& actual, const CostEvaluation& expected,
                                 const JacobianTolerance& tolerance) {
   constexpr int kMaxNamed = 8;
   int wrong = 0;
   for (size_t b = 0; b < expected.jacobians.size(); ++b) {
-    const Evaluation::RowMajor& right = expected.jacobians[b];
+    const CostEvaluation::RowMajor& right = expected.jacobians[b];
     for (Eigen::Index column = 0; column < right.cols(); ++column) {
       const double allowed =
           tolerance.relative * right.col(column).cwiseAbs().maxCoeff() + tolerance.absolute;
@@ -106,15 +106,15 @@ inline void ExpectSameJacobians(const Evaluation& actual, const Evaluation& expe
 // Without Jacobians, with each block's alone and with each block's missing: the same numbers, and
 // nothing written where nothing was asked for.
 inline void ExpectPartialJacobians(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
-                                   const Evaluation& full, double residual_tolerance) {
-  const Evaluation none = EvaluateCost(cost, blocks, {});
+                                   const CostEvaluation& full, double residual_tolerance) {
+  const CostEvaluation none = EvaluateCost(cost, blocks, {});
   ASSERT_TRUE(none.ok) << "Evaluate failed without Jacobians";
   ExpectSameResiduals(none.residuals, full.residuals, residual_tolerance);
   for (size_t chosen = 0; chosen < blocks.size(); ++chosen) {
     for (bool alone : {true, false}) {
       std::vector<bool> wanted(blocks.size(), !alone);
       wanted[chosen] = alone;
-      const Evaluation partial = EvaluateCost(cost, blocks, wanted);
+      const CostEvaluation partial = EvaluateCost(cost, blocks, wanted);
       ASSERT_TRUE(partial.ok);
       EXPECT_EQ(partial.residuals, full.residuals);
       for (size_t b = 0; b < blocks.size(); ++b) {
@@ -139,8 +139,8 @@ inline void ExpectCorrectJacobian(const ceres::CostFunction& cost,
   ExpectSameShape(cost, oracle, blocks);
   if (testing::Test::HasFatalFailure()) return;
   const std::vector<bool> all(blocks.size(), true);
-  const Evaluation actual = EvaluateCost(cost, blocks, all);
-  const Evaluation expected = EvaluateCost(oracle, blocks, all);
+  const CostEvaluation actual = EvaluateCost(cost, blocks, all);
+  const CostEvaluation expected = EvaluateCost(oracle, blocks, all);
   ASSERT_TRUE(expected.ok) << "the oracle could not be evaluated: a test of nothing";
   ASSERT_TRUE(actual.ok) << "Evaluate failed where the oracle did not";
   ExpectSameResiduals(actual.residuals, expected.residuals, tolerance.residual);

@@ -25,7 +25,7 @@ std::string Joined(const std::vector<std::string>& sentences) {
 }
 
 // A value that is not the data's own says so.
-std::string Shown(double value, double error, EstimateStatus status) {
+std::string EstimateText(double value, double error, EstimateStatus status) {
   const std::string text = Rounded(value, 4);
   return (std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text) +
          (status == EstimateStatus::kIdentified ? "" : " (" + NameOf(status) + ")");
@@ -60,7 +60,7 @@ JobColumn ParameterColumn(const std::string& name) {
             const auto found = row.parameters.find(name);
             if (found == row.parameters.end()) return Nothing();
             return JobCell{DoubleText(found->second),
-                           Shown(found->second, row.errors.at(name), row.statuses.at(name)),
+                           EstimateText(found->second, row.errors.at(name), row.statuses.at(name)),
                            found->second};
           }};
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "apps/support/app_support.h"
 #include "datasets/files/content_hash.h"
@@ -42,15 +43,15 @@ MaybeError HashFiles(const nlohmann::ordered_json& json, const std::string& mani
 // What the manifest says of all its recordings.
 Result<std::string> CommonHash(const Manifest& manifest) {
   ContentHash hash;
-  AddPiece(manifest.json.dump(), &hash);
-  if (MaybeError error = HashFiles(manifest.json, manifest.path, &hash)) return *error;
+  AddPiece(manifest.json->dump(), &hash);
+  if (MaybeError error = HashFiles(*manifest.json, manifest.path, &hash)) return *error;
   return hash.Hex();
 }
 
 Result<std::string> RecordingHash(const ManifestRecording& entry) {
   ContentHash hash;
-  AddPiece(entry.json.dump(), &hash);
-  if (MaybeError error = HashFiles(entry.json, entry.manifest, &hash)) return *error;
+  AddPiece(entry.json->dump(), &hash);
+  if (MaybeError error = HashFiles(*entry.json, entry.manifest, &hash)) return *error;
   return hash.Hex();
 }
 

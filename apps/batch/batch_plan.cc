@@ -34,18 +34,18 @@ const std::set<std::string> kFileFlags = {"self_from", "interaction_network"};
 
 // Flags that no variant has, and what to do instead.
 const std::map<std::string, std::string> kOwnFlags = {
-    {"recordings", "say it in [data]"},
-    {"setting", "say it in [data]"},
-    {"ids", "say it in [data]"},
-    {"leave_out", "say it in [data]"},
-    {"seed", "say it in [jobs]"},
-    {"crossvalidate", "say folds in [jobs]"},
-    {"model", "every job trains for its own fit"},
-    {"resample", "bootstrap in [jobs] sets it"},
+    {"recordings", "set it in [data]"},
+    {"setting", "set it in [data]"},
+    {"ids", "set it in [data]"},
+    {"leave_out", "set it in [data]"},
+    {"seed", "set it in [jobs]"},
+    {"crossvalidate", "set folds in [jobs]"},
+    {"model", "each job uses the model of its own fit"},
+    {"resample", "set bootstrap in [jobs]"},
     {"num_threads", "a job has one thread; pushid-batch --jobs runs several at a time"},
-    {"model_out", "every job has its own"},
-    {"quiet", "every job is"},
-    {"flagfile", "write its flags into the plan"}};
+    {"model_out", "each job writes its own"},
+    {"quiet", "jobs are always quiet"},
+    {"flagfile", "copy its flags into the plan"}};
 
 class PlanReader {
  public:
@@ -78,7 +78,7 @@ class PlanReader {
       if (std::find(keys.begin(), keys.end(), name) != keys.end()) continue;
       std::string list;
       for (const std::string& known : keys) list += (list.empty() ? "" : ", ") + known;
-      Fail(value, what + " has no key '" + name + "'; it may have " + list);
+      Fail(value, what + " has no key '" + name + "'; known keys: " + list);
     }
   }
 
@@ -109,7 +109,7 @@ class PlanReader {
   void GetStrings(const toml::table& table, const char* key, std::vector<std::string>* values) {
     const toml::node* node = table.get(key);
     if (node == nullptr) return;
-    const std::string wrong = std::string(key) + " must be a list of texts: [\"...\"]";
+    const std::string wrong = std::string(key) + " must be a list of strings: [\"...\"]";
     if (!node->is_array()) return Fail(*node, wrong);
     for (const toml::node& entry : *node->as_array()) {
       const auto text = entry.value_exact<std::string>();
@@ -138,12 +138,13 @@ class PlanReader {
     Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
     KeepLines(*data);
     std::string manifest;
-    Get(*data, "recordings", "a text: the manifest's path, or several, comma-separated", &manifest);
+    Get(*data, "recordings", "a string: the manifest's path, or several, comma-separated",
+        &manifest);
     if (manifest.empty()) Fail(*data, "[data] needs recordings = \"M/manifest.json\"");
     for (const std::string& path : ManifestPaths(manifest)) {
       plan_.manifest += (plan_.manifest.empty() ? "" : ",") + Resolve(path);
     }
-    Get(*data, "setting", "a text", &plan_.setting);
+    Get(*data, "setting", "a string", &plan_.setting);
     GetStrings(*data, "ids", &plan_.ids);
     GetStrings(*data, "leave_out", &plan_.leave_out);
   }
@@ -155,7 +156,7 @@ class PlanReader {
           {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"});
     KeepLines(*jobs);
     std::string group_by = "none";
-    Get(*jobs, "group_by", "a text", &group_by);
+    Get(*jobs, "group_by", "a string", &group_by);
     const std::vector<std::pair<std::string, GroupBy>> names = {{"none", GroupBy::kNone},
                                                                 {"recording", GroupBy::kRecording},
                                                                 {"subject", GroupBy::kSubject},
@@ -202,7 +203,7 @@ class PlanReader {
       const toml::table& table = *entry.as_table();
       Known(table, "[[variant]]", {"name", "flags", "restoration"});
       BatchVariant variant;
-      Get(table, "name", "a text", &variant.name);
+      Get(table, "name", "a string", &variant.name);
       if (variant.name.empty()) Fail(table, "a [[variant]] needs a name");
       if (!names.insert(variant.name).second) {
         Fail(table, "two variants are called '" + variant.name + "'");
@@ -232,7 +233,7 @@ class PlanReader {
       const auto kind = flag.rfind(peer, 0) == 0 ? RestorationKindFromName(flag.substr(peer.size()))
                                                  : std::nullopt;
       if (kind && !RowOf(*kind).follows_pendulum) {
-        Fail(*node, flag + " is a peer, which restores no pendulum; compare with it by " +
+        Fail(*node, flag + " is a peer, which does not follow a pendulum; compare with it by " +
                         "pushid-train-restoration --crossvalidate");
       }
     }
@@ -240,7 +241,7 @@ class PlanReader {
 
   void CheckFlag(const toml::node& at, const std::string& flag) {
     if (flag.rfind("--", 0) != 0) {
-      return Fail(at, "'" + flag + "' is no flag; write \"--name=value\"");
+      return Fail(at, "'" + flag + "' is not a flag; write \"--name=value\"");
     }
     const std::string name = flag.substr(2, flag.find('=') - 2);
     const auto own = kOwnFlags.find(name);
@@ -248,11 +249,11 @@ class PlanReader {
       Fail(at, "--" + name + " is set by the batch itself: " + own->second);
     }
     if (IsOutputFlag(name)) {
-      Fail(at, "--" + name + " would be written by every job of the variant; leave it out");
+      Fail(at, "--" + name + " would be overwritten by every job of the variant; leave it out");
     }
     if (name.rfind("help", 0) == 0 || name == "version" || name == "check" ||
         name == "list_parameters") {
-      Fail(at, "--" + name + " makes no fit; leave it out");
+      Fail(at, "--" + name + " does not run a fit; leave it out");
     }
   }
 
@@ -261,7 +262,7 @@ class PlanReader {
     if (output == nullptr) return;
     Known(*output, "[output]", {"dir"});
     std::string dir;
-    Get(*output, "dir", "a text", &dir);
+    Get(*output, "dir", "a string", &dir);
     if (dir.empty()) Fail(*output, "[output] needs dir = \"out\"");
     plan_.dir = Resolve(dir);
   }
@@ -288,7 +289,7 @@ Error BatchPlan::ErrorAt(const std::string& key, const Error& error) const {
 Result<BatchPlan> ReadPlan(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    return Error{"is a folder; name the plan in it, a TOML file", path};
+    return Error{"is a folder; give the plan in it, a TOML file", path};
   }
   if (!std::filesystem::is_regular_file(path, ignored)) {
     return Error{"cannot be read: no such file", path};

@@ -167,7 +167,7 @@ class Pool {
 
   std::string ReasonOf(const Running& running, const ChildEnd& end) const {
     if (running.out_of_time) {
-      return "out of time after " + DoubleText(options_.time_limit_s) + " s";
+      return "timed out after " + DoubleText(options_.time_limit_s) + " s";
     }
     const std::string last = LastLine(running.folder + "/stderr.txt");
     if (options_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
@@ -176,7 +176,7 @@ class Pool {
     }
     if (end.signal != 0) {
       return std::string("killed by signal ") + strsignal(end.signal) +
-             (last.empty() ? "" : "; it last said: " + last);
+             (last.empty() ? "" : "; last message: " + last);
     }
     if (!last.empty()) return last;
     if (end.exit_code == 0) return running.commands[0][0] + " wrote no model.json";

@@ -1,6 +1,8 @@
 // apps: collecting a batch's results.
 #include "apps/batch/batch_summary.h"
 
+#include <nlohmann/json.hpp>
+
 #include "apps/batch/batch_columns.h"
 #include "apps/batch/batch_tables.h"
 #include "apps/support/app_support.h"
@@ -24,7 +26,7 @@ TextTable FullTable(const std::vector<JobResult>& rows) {
   const std::vector<JobColumn> columns = JobColumns(rows);
   std::vector<std::string> header;
   for (const JobColumn& column : columns) header.push_back(column.name);
-  TextTable table(header, std::vector<bool>(header.size(), true));
+  TextTable table(header, AllWords(header.size()));
   for (const JobResult& row : rows) {
     std::vector<std::string> cells;
     for (const JobColumn& column : columns) cells.push_back(column.cell(row).exact);
@@ -83,16 +85,15 @@ Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   const TextTable bootstrap = BootstrapTable(rows), warned = WarningTable(rows);
   const TextTable held_out = HeldOutTable(rows);
   if (held_out.rows().size() > 1) {
-    variants.tables.push_back({"errors of what the folds held out", held_out});
+    variants.tables.push_back({"errors on held-out recordings", held_out});
   }
   if (bootstrap.rows().size() > 1) {
-    variants.tables.push_back({"bootstrap: each group over its replicas", bootstrap});
+    variants.tables.push_back({"bootstrap: spread over the replicas of each group", bootstrap});
   }
   failures.id = "failures";
   failures.title = "Failures";
   const TextTable failed = FailureTable(rows);
-  failures.paragraphs = {failed.rows().size() > 1 ? "Failed jobs are tried again by the next run."
-                                                  : "None."};
+  failures.paragraphs = {failed.rows().size() > 1 ? "The next run retries failed jobs." : "None."};
   failures.tables = {{"", failed}};
   warnings.id = "warnings";
   warnings.title = "Warnings";
@@ -102,7 +103,7 @@ Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   jobs.title = "Jobs";
   if (rows.size() > kMostRowsOnPage) {
     jobs.paragraphs = {"The first " + std::to_string(kMostRowsOnPage) +
-                       "; all of them are in summary.csv."};
+                       "; summary.csv has all of them."};
   }
   jobs.tables = {{"", JobTable(rows)}};
   report.sections = {variants, failures, warnings, jobs};

@@ -123,7 +123,7 @@ TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   const std::vector<Metric> metrics = HeldOutMetrics(rows);
   for (const Metric& metric : metrics) {
     header.push_back(std::string("held-out ") + metric.name + ", " + metric.unit);
-    header.push_back("beside the first variant");
+    header.push_back("minus the first variant");
   }
   header.push_back("folds missing");
   std::vector<bool> words(header.size(), false);

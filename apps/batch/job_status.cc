@@ -2,6 +2,7 @@
 #include "apps/batch/job_status.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"

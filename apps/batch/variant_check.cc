@@ -39,7 +39,7 @@ MaybeError CheckRestoration(const BatchPlan& plan, const BatchVariant& variant,
   };
   std::error_code ignored;
   if (!std::filesystem::exists(trainer, ignored)) {
-    return wrong("a restoration needs " + trainer + ", which is built where LibTorch is found");
+    return wrong("a restoration needs " + trainer + ", which is only built with LibTorch");
   }
   // Which model and where to is said by each job.
   std::vector<std::string> command = {trainer, "--check", "--model=model.json",

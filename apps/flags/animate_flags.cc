@@ -9,11 +9,10 @@ DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
 DEFINE_string(strip_out, "", "a strip of poses (SVG)");
 DEFINE_int32(poses, pushid::AnimateFlags{}.poses, "poses of the strip");
-DEFINE_string(
-    explain, "",
-    "tell the forces on this person in words, and draw them beside the motion: an id of the "
-    "recording, or auto (the bystander with most to tell)");
-DEFINE_bool(recorded, pushid::AnimateFlags{}.recorded, "show the recorded bodies too");
+DEFINE_string(explain, "",
+              "describe the forces on this person in words and plot them beside the motion: a "
+              "person's id, or auto (the bystander with the most events)");
+DEFINE_bool(recorded, pushid::AnimateFlags{}.recorded, "also show the recorded bodies");
 
 namespace pushid {
 

@@ -12,19 +12,20 @@ DEFINE_bool(
     list, false,
     "only list the jobs (CSV): id, variant, group, replica, numbers of recordings fitted and "
     "held out, folder");
-DEFINE_bool(dry_run, false, "only print the commands of every job that is not done yet");
-DEFINE_int32(jobs, pushid::BatchFlags{}.jobs, "jobs at a time");
+DEFINE_bool(dry_run, false, "only print the commands of the unfinished jobs");
+DEFINE_int32(jobs, pushid::BatchFlags{}.jobs, "number of jobs run in parallel");
 DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
-DEFINE_string(job, "", "only the job of this id (or the start of one)");
+DEFINE_string(job, "", "only the job with this id (or the start of its id)");
 DEFINE_bool(resume, pushid::BatchFlags{}.resume,
-            "skip jobs that are done; false does all of them again, and drops what was there");
-DEFINE_bool(keep_going, pushid::BatchFlags{}.keep_going, "go on after a job that failed");
+            "skip finished jobs; false runs all jobs again and discards earlier results");
+DEFINE_bool(keep_going, pushid::BatchFlags{}.keep_going, "continue after a failed job");
 DEFINE_bool(summary, pushid::BatchFlags{}.summary,
-            "write summary.csv, summary.json and summary.html; false with shards "
-            "that run at the same time");
-DEFINE_bool(gather, false, "run nothing; only write the summary of what is there");
-DEFINE_double(time_limit, 0.0, "seconds for one job, instead of the plan's; 0: none");
-DEFINE_int32(memory_limit, 0, "MB of one job's address space, instead of the plan's; 0: none");
+            "write summary.csv, summary.json and summary.html; set to false for shards that run at "
+            "the same time");
+DEFINE_bool(gather, false, "run nothing; only write the summary of existing results");
+DEFINE_double(time_limit, 0.0, "time limit of one job, s, instead of the plan's; 0: none");
+DEFINE_int32(memory_limit, 0,
+             "limit of one job's address space, MB, instead of the plan's; 0: none");
 
 namespace pushid {
 namespace {

@@ -56,7 +56,7 @@ void PrintHelp(const std::string& usage) {
         flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
     std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
   }
-  std::printf("  --flagfile=FILE\n      read flags from a file, one a line\n");
+  std::printf("  --flagfile=FILE\n      read flags from a file, one per line\n");
   std::printf("  --help, -h\n      print this\n");
   std::printf("  --version\n      print the version\n");
 }
@@ -162,7 +162,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
-  SayWhenInterrupted("files are written whole or not at all; the same command begins anew");
+  SayWhenInterrupted("no partial file is left; run the same command to start again");
   try {
     return CheckPrinted(run());
   } catch (const std::bad_alloc&) {
@@ -240,9 +240,9 @@ MaybeError CheckEnding(const std::string& file) {
   for (const char* other : {"fbx", "obj", "usd", "png", "jpg", "jpeg", "gif", "mp4", "avi", "webm",
                             "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
     if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
-    return Error{"nothing writes ." + std::string(other) +
-                     "; pages are .html, pictures .svg, bodies .bvh, .gltf or .glb, tables .csv, "
-                     "models and scores .json",
+    return Error{"no program writes ." + std::string(other) +
+                     "; use .html for pages, .svg for pictures, .bvh, .gltf or .glb for bodies, "
+                     ".csv for tables, .json for models and scores",
                  file};
   }
   return std::nullopt;

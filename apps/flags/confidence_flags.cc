@@ -20,31 +20,31 @@
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
-              "nothing after --profile): of every free one");
+              "--profile alone): every free parameter");
 DEFINE_int32(bootstrap, 0,
-             "refit so many resamples of the people or recordings; 199 is a good number");
+             "number of refits to resampled people or recordings; 199 is a good number");
 DEFINE_string(bootstrap_by, NameOf(pushid::BootstrapOptions{}.by),
-              "what a bootstrap (and --resample) draws: subject (all recordings of a person), "
-              "recording, or auto: as --cluster; where people share recordings, recordings");
+              "unit drawn by a bootstrap (and --resample): subject (all recordings of a person), "
+              "recording, or auto (as --cluster, but recordings where people share them)");
 DEFINE_string(bootstrap_file, "",
-              "keeps finished replicas, so that a run that was interrupted goes on from there");
+              "file that keeps finished replicas, so that an interrupted run can continue");
 DEFINE_string(design, "",
-              "which further push would lower the standard error of this parameter most (all: of "
-              "all together), and what a force sensor and more people would");
+              "find which further push would lower the standard error of this parameter most (all: "
+              "of all parameters together), and how much a force sensor or more people would");
 
 DEFINE_bool(population, false,
-            "print how recordings differ from the mean one: the spread of a factor on tail_gain, "
-            "and the effect of each");
-DEFINE_bool(push_check, false,
-            "fit again with pushes that might as well have been recorded: other windows and "
-            "smoothing of inverse dynamics, sensor noise, a frame's shift and 0.1 m of height of "
-            "measured ones");
+            "print how recordings differ from the mean: the spread of a factor on tail_gain, and "
+            "each recording's effect");
+DEFINE_bool(
+    push_check, false,
+    "refit with other plausible pushes: other windows and smoothing for inverse dynamics; sensor "
+    "noise, a shift of one frame and of 0.1 m in contact height for measured pushes");
 DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
-              "noise of the push's sensor, as a share of the push's peak, for --push_check");
-DEFINE_bool(prior_check, false, "refit with centres and widths of all priors halved, and doubled");
-DEFINE_bool(horizon_check, false,
-            "fit again the first 8, 16, 32 and 64 frames: a parameter that means something keeps "
-            "its value");
+              "noise of the push sensor, as a fraction of the push's peak, for --push_check");
+DEFINE_bool(prior_check, false, "refit with the means and widths of all priors halved and doubled");
+DEFINE_bool(
+    horizon_check, false,
+    "refit the first 8, 16, 32 and 64 frames: a parameter with physical meaning keeps its value");
 
 namespace pushid {
 namespace {
@@ -83,7 +83,7 @@ MaybeError CheckConfidenceFlags() {
   }
   if (!(FLAGS_push_check_noise >= 0.0 && FLAGS_push_check_noise <= 1.0)) {
     return Error{"--push_check_noise is " + DoubleText(FLAGS_push_check_noise) +
-                 "; it must be from 0 to 1, a share of the push's peak"};
+                 "; it must be from 0 to 1, a fraction of the push's peak"};
   }
   if (Given("push_check_noise") && !FLAGS_push_check) {
     return Error{"--push_check_noise needs --push_check"};
@@ -106,25 +106,24 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
   const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
   if (stopped_early && (FLAGS_bootstrap > 0 || !FLAGS_profile.empty())) {
     return Error{
-        "--profile and --bootstrap follow the least cost, which a fit with --early_stopping never "
-        "reaches; let --network_prior guard the training instead"};
+        "--profile and --bootstrap need the minimum of the cost, which a fit with --early_stopping "
+        "does not reach; prevent overfitting with --network_prior instead"};
   }
   if (NeedsGradientTraining(options) &&
       (FLAGS_push_check || FLAGS_horizon_check || FLAGS_prior_check)) {
     return Error{
-        "--push_check, --horizon_check and --prior_check fit many times, and this network is "
-        "trained by its "
-        "gradient; choose a smaller one"};
+        "--push_check, --horizon_check and --prior_check refit many times, and this network is too "
+        "large for that (trained by its gradient); choose a smaller one"};
   }
   if (options.likelihood != Likelihood::kTrajectory && FLAGS_horizon_check) {
     return Error{
-        "--horizon_check compares rollouts of many lengths, single steps among them; leave "
+        "--horizon_check compares rollouts of many lengths, including single steps; leave "
         "--likelihood out"};
   }
   if (FLAGS_population && options.model.push_tail == PushTail::kNone) {
     return Error{
-        "--population: the model has no push tail, by whose factor recordings differ; give "
-        "it --push_tail=exponential (the presets tail and group have it)"};
+        "--population estimates a factor on the push tail, and the model has none; add "
+        "--push_tail=exponential (the presets tail and group have it)"};
   }
   if (FLAGS_design.empty() || FLAGS_design == "all") return std::nullopt;
   std::string known = "all";
@@ -132,7 +131,7 @@ MaybeError CheckConfidence(const FitOptions& options, int recordings) {
     known += ", " + options.table[id].name;
     if (options.table[id].name == FLAGS_design) return std::nullopt;
   }
-  return Error{"--design: there is no error of '" + FLAGS_design + "' to reduce; choose from " +
+  return Error{"--design: '" + FLAGS_design + "' has no standard error to reduce; choose from " +
                known};
 }
 
@@ -152,8 +151,8 @@ MaybeError AddConfidence(const std::vector<PendulumRecording>& recordings, Fitte
     options.num_threads = NumThreads();
     options.by = BootstrapBy();
     if (!options.file.empty()) {
-      SayWhenInterrupted("replicas so far are in " + options.file +
-                         ", and the same command goes on from there");
+      SayWhenInterrupted("finished replicas are in " + options.file +
+                         "; run the same command to continue");
     }
     if (MaybeError error =
             AddBootstrap(recordings, options, Show(&line, "bootstrap replica"), model)) {

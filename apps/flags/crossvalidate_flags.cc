@@ -14,23 +14,23 @@ const pushid::CrossvalidateFlags kDefaults;
 }
 
 DEFINE_string(scheme, pushid::NameOf(kDefaults.scheme),
-              "what is held out: stratified (folds by setting, strength and subject), "
-              "interleaved (a setting dealt out in turn), "
-              "subject or setting (one at a time), strong (all strong pushes)");
+              "what is held out: stratified (folds by setting, strength and subject), interleaved "
+              "(recordings of a setting assigned to folds in turn), subject or setting (one at a "
+              "time), strong (all strong pushes)");
 DEFINE_int32(folds, kDefaults.folds, "folds of the stratified and the interleaved scheme");
 DEFINE_string(folds_file, "",
-              "the folds, instead of --scheme: JSON, {\"folds\": [{\"name\": \"1\", "
+              "file with the folds, instead of --scheme: JSON, {\"folds\": [{\"name\": \"1\", "
               "\"held_out\": [ids]}]}; all other recordings are fitted");
 DEFINE_int32(repeats, kDefaults.repeats, "repeats of the stratified scheme, each with new folds");
 DEFINE_string(compare, "",
               "further candidates, semicolon-separated: name: --flag=value ... added to the flags "
               "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
 DEFINE_bool(yardsticks, kDefaults.baselines,
-            "also the baselines: static, constant velocity and ridge regression");
+            "also score the baselines: static, constant velocity and ridge regression");
 DEFINE_string(frontier_out, "",
-              "draw accuracy against settling, a point for each configuration, here (SVG)");
+              "plot accuracy against settling, one point per configuration, here (SVG)");
 DEFINE_bool(bands, kDefaults.bands,
-            "also how often predictive 50 and 90 % bands hold the recordings that were not fitted");
+            "also score how often predictive 50 and 90 % bands contain the held-out recordings");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace pushid {
@@ -60,7 +60,7 @@ Result<CrossvalidateFlags> CrossvalidateFlagsFromCommandLine() {
   if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &flags.scheme)) return *error;
   for (const char* one : {"scheme", "folds", "repeats"}) {
     if (FLAGS_folds_file.empty() || !Given(one)) continue;
-    return Error{std::string("--folds_file gives the folds; leave --") + one + " out"};
+    return Error{std::string("--folds_file already gives the folds; leave --") + one + " out"};
   }
   if (MaybeError error = ReadCandidates(FLAGS_compare, &flags)) return *error;
   flags.folds_file = FLAGS_folds_file;

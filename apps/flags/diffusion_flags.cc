@@ -10,12 +10,12 @@ namespace {
 const pushid::DiffusionGeneratorOptions kOptions;
 }  // namespace
 
-DEFINE_int32(averaged, kOptions.averaged, "diffusion: samples that a forecast is the mean of");
+DEFINE_int32(averaged, kOptions.averaged, "diffusion: number of samples averaged into a forecast");
 DEFINE_string(sampler, pushid::NameOf(kOptions.sampler),
-              "diffusion: way back from noise: renoised, ddpm or ddim");
-DEFINE_int32(sampling_steps, kOptions.steps, "diffusion: steps of the way back");
+              "diffusion: sampler: renoised, ddpm or ddim");
+DEFINE_int32(sampling_steps, kOptions.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kOptions.blend,
-              "diffusion: share of the way from the forecast hip to that of physics");
+              "diffusion: blend of the hip paths, from 0 (forecast) to 1 (physics)");
 
 namespace pushid {
 

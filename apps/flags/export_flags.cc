@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
@@ -12,8 +13,8 @@
 
 DEFINE_string(out, "", "the folder to write");
 DEFINE_string(format, "bids",
-              "bids: a data set of Motion-BIDS with everybody's joints and the pushes; txt or "
-              "sqlite: a file a recording with everybody's hip, for PedPy and JuPedSim");
+              "bids: a Motion-BIDS data set with all joints and pushes; txt or sqlite: one file "
+              "per recording with everybody's hip, for PedPy and JuPedSim");
 
 namespace pushid {
 namespace {
@@ -44,7 +45,7 @@ MaybeError CheckFolder(const std::string& folder) {
   for (const char* name : {"dataset_description.json", "participants.tsv", "manifest.json"}) {
     const fs::path file = fs::path(folder) / name;
     if (!fs::exists(file, ignored)) continue;
-    return Error{"is no output of pushid-export and would be overwritten; name another --out",
+    return Error{"is not an output of pushid-export and would be overwritten; choose another --out",
                  file.string()};
   }
   return std::nullopt;

@@ -4,12 +4,11 @@
 #include <gflags/gflags.h>
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
-DEFINE_int32(
-    resample, pushid::FitFlags{}.resample,
-    "fit replica k of a bootstrap: as many people or recordings (--bootstrap_by) drawn with "
-    "replacement by --seed and k; 0: the recordings as they are");
+DEFINE_int32(resample, pushid::FitFlags{}.resample,
+             "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
+             "replacement from --seed and k; 0: the recordings as they are");
 DEFINE_string(body_restoration, "",
-              "folder of pushid-train-restoration --kind=window: the bodies of --body_weight");
+              "folder that pushid-train-restoration --kind=window wrote, for --body_weight");
 DEFINE_bool(check, pushid::FitFlags{}.check,
             "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, pushid::FitFlags{}.list_parameters,

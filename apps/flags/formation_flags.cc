@@ -19,31 +19,28 @@ DECLARE_double(fps);
 
 DEFINE_string(
     formation, "",
-    "line, diamond or grid, or a file of trajectories (.txt, .sqlite): instead of recordings, roll "
-    "--model out on --people who stand together, or as they stand in the file's "
-    "--formation_frame; its table judges everybody 2 s after the last push (or the onset, where "
-    "that is later), never at the end");
+    "line, diamond or grid, or a trajectory file (.txt, .sqlite): instead of making recordings, "
+    "roll --model out on a group of --people, or on the people at --formation_frame of the file; "
+    "the table judges everybody 2 s after the last push (or after the onset, if later)");
 DEFINE_int32(
     formation_frame, 0,
-    "formation from a file: the file's frame in which people are placed (default: its first)");
-DEFINE_double(spacing, 0.45, "formation: between neighbours, cart to cart, m");
+    "formation from a file: frame of the file that gives the positions (default: its first)");
+DEFINE_double(spacing, 0.45, "formation: distance between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
-              "formation: who is pushed, comma-separated; people count from 0, from the back "
-              "forwards and in a "
-              "row from right to left");
-DEFINE_string(
-    push, "80",
-    "formation: pushes at the hip along +x, comma-separated, N s or N s@start in s, as in "
-    "80@0,80@1,112@2; every push acts on everybody of --pushed");
+              "formation: who is pushed, comma-separated numbers; people are counted from 0, from "
+              "back to front, and in a row from right to left");
+DEFINE_string(push, "80",
+              "formation: pushes at the hip along +x, comma-separated, N s or N s@start in s, as "
+              "in 80@0,80@1,112@2; every push acts on all of --pushed");
 DEFINE_double(push_duration, pushid::HipPush{}.duration,
-              "formation: of every push, a half-sine, s");
-DEFINE_double(mass, 80.0, "formation: of everybody, kg");
+              "formation: duration of each push (a half-sine), s");
+DEFINE_double(mass, 80.0, "formation: mass of each person, kg");
 DEFINE_double(rod_length, pushid::kReferenceRod,
-              "formation: rod from ankles to hip, of everybody, m");
-DEFINE_double(duration, 0.0, "formation: how long, s; 0: until 6 s after the last push");
+              "formation: rod length (ankles to hip) of each person, m");
+DEFINE_double(duration, 0.0, "formation: duration, s; 0: until 6 s after the last push");
 DEFINE_string(as_setting, "",
-              "formation: with the parameters of this setting, where the model has them by setting "
-              "(default: the shared ones)");
+              "formation: use the parameters of this setting, for models with parameters by "
+              "setting (default: the shared ones)");
 
 namespace pushid {
 namespace {
@@ -71,7 +68,7 @@ Result<FormationShape> Shape() {
   if (FLAGS_formation == "diamond") return FormationShape::kDiamond;
   if (FLAGS_formation == "grid") return FormationShape::kGrid;
   return Error{"--formation is '" + FLAGS_formation +
-               "'; it must be line, diamond or grid, or a file of trajectories (.txt, .sqlite)"};
+               "'; it must be line, diamond or grid, or a trajectory file (.txt, .sqlite)"};
 }
 
 struct Places {
@@ -83,7 +80,7 @@ Result<Places> PlacesOfFile() {
   for (const char* flag : {"people", "spacing"}) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
-                 " says who stands where"};
+                 " gives the positions"};
   }
   const Result<std::vector<CrowdPlace>> read =
       Given("formation_frame") ? ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame)
@@ -105,7 +102,7 @@ Result<Places> PlacesOfFile() {
 Result<Places> FormationPlaces() {
   if (FromFile()) return PlacesOfFile();
   if (Given("formation_frame")) {
-    return Error{"--formation_frame goes with a file of trajectories (.txt, .sqlite)"};
+    return Error{"--formation_frame needs a trajectory file (.txt, .sqlite)"};
   }
   const Result<FormationShape> shape = Shape();
   if (!shape.ok()) return shape.error();
@@ -119,14 +116,15 @@ Result<std::vector<int>> PushedPeople(const Places& places) {
   for (const std::string& word : Split(FLAGS_pushed, ',')) {
     std::int64_t person = 0;
     if (!ParseInteger(word, &person)) {
-      return Error{"--pushed: " + Quoted(word) + " is no person; give numbers as in 0,1,3"};
+      return Error{"--pushed: " + Quoted(word) +
+                   " is not a person's number; give numbers as in 0,1,3"};
     }
     const int count = static_cast<int>(places.positions.size());
     if (person < 0 || person >= count) {
       const auto named = std::find(places.names.begin(), places.names.end(), word);
       if (named != places.names.end()) {
-        return Error{"--pushed counts people from the back; the file's id " + word + " is person " +
-                     std::to_string(named - places.names.begin())};
+        return Error{"--pushed counts people from the back, from 0; the file's id " + word +
+                     " is person " + std::to_string(named - places.names.begin())};
       }
       return Error{"--pushed names person " + word + ", but " +
                    (FromFile() ? "the " + std::to_string(count) + " people of the file count"
@@ -139,7 +137,7 @@ Result<std::vector<int>> PushedPeople(const Places& places) {
     people.push_back(static_cast<int>(person));
   }
   if (people.empty())
-    return Error{"--pushed is empty; name the people who are pushed, as in 0,1,3"};
+    return Error{"--pushed is empty; give the numbers of the pushed people, as in 0,1,3"};
   return people;
 }
 
@@ -150,13 +148,13 @@ Result<HipPush> ParsePush(const std::string& word) {
   const std::string start = at == std::string::npos ? "0" : word.substr(at + 1);
   if (!ParseDouble(word.substr(0, at), &push.impulse) || !ParseDouble(start, &push.start)) {
     return Error{"--push: " + Quoted(word) +
-                 " is no push; give N s, or N s@start in s, as in 80@0,80@1.5"};
+                 " is not a push; give N s, or N s@start in s, as in 80@0,80@1.5"};
   }
   if (push.impulse <= 0.0 || push.impulse > 2000.0) {
-    return Error{"--push: " + Quoted(word) + " has an impulse that is not within 0 to 2000 N s"};
+    return Error{"--push: " + Quoted(word) + " has an impulse outside 0 to 2000 N s"};
   }
   if (push.start < 0.0 || push.start > 3600.0) {
-    return Error{"--push: " + Quoted(word) + " starts at a time that is not within 0 to 3600 s"};
+    return Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};
   }
   return push;
 }
@@ -172,7 +170,7 @@ Result<std::vector<HipPush>> Pushes() {
   return pushes;
 }
 
-MaybeError CheckNumbers() {
+MaybeError CheckFormationNumbers() {
   for (MaybeError error :
        {CheckRange("people", FLAGS_people, 1, kMostPeople), CheckRange("fps", FLAGS_fps, 10, 10000),
         CheckRange("spacing", FLAGS_spacing, 0.05, 100),
@@ -199,7 +197,7 @@ std::string PeopleText(int people) {
   return text.str();
 }
 
-std::string Title(int people, const std::vector<HipPush>& pushes) {
+std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   std::ostringstream text;
   text << PeopleText(people);
   const char* separator = "; ";
@@ -219,7 +217,7 @@ MaybeError CheckNoneOfRecordings() {
         "subject_spread", "seed", "truth_stance", "truth_noise"}) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag +
-                 " belongs to recordings of single people, not to --formation"};
+                 " applies to recordings of single people, not to --formation"};
   }
   return std::nullopt;
 }
@@ -260,7 +258,7 @@ const char* GivenFormationFlag() {
 
 Result<FormationFlags> FormationFlagsFromCommandLine() {
   if (MaybeError error = CheckNoneOfRecordings()) return *error;
-  if (MaybeError error = CheckNumbers()) return *error;
+  if (MaybeError error = CheckFormationNumbers()) return *error;
   const Result<Places> placed = FormationPlaces();
   if (!placed.ok()) return placed.error();
   const std::vector<Eigen::Vector2d>& positions = placed.value().positions;
@@ -271,7 +269,7 @@ Result<FormationFlags> FormationFlagsFromCommandLine() {
   if (!pushes.ok()) return pushes.error();
 
   FormationFlags flags;
-  flags.title = Title(people, pushes.value());
+  flags.title = RunTitle(people, pushes.value());
   flags.names = placed.value().names;
   flags.as_setting = FLAGS_as_setting;
   flags.scene = FormationScene(positions, {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);

@@ -11,33 +11,30 @@
 #include "datasets/exchange/hip_trajectories.h"
 #include "ident/formations/formation_pictures.h"
 
-DEFINE_string(csv_out, "", "formation: trajectories, one row a frame and person (CSV)");
+DEFINE_string(csv_out, "", "formation: trajectories, one row per frame and person (CSV)");
 DEFINE_string(trajectories_out, "",
-              "formation: hips as trajectories of a crowd, for PedPy and JuPedSim (.txt, or "
-              ".sqlite)");
-DEFINE_string(forces_out, "", "formation: net forces, one row a frame, person and part (CSV)");
+              "formation: trajectories of the hips, for PedPy and JuPedSim (.txt, or .sqlite)");
+DEFINE_string(forces_out, "", "formation: net forces, one row per frame, person and part (CSV)");
 DEFINE_string(bvh_out, "",
               "formation: folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "",
               "formation: picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "formation: picture of the net forces with their parts (SVG)");
 DEFINE_bool(forces_own_scale, false,
-            "formation: with --forces_svg_out, every panel on a scale of its own");
+            "formation: with --forces_svg_out, give each panel its own scale");
 
 DEFINE_string(generator, "",
               "formation: whole bodies by diffusion instead of --restoration: the folder that "
               "pushid-train-generator --kind=diffusion --out wrote");
 DEFINE_string(poses_from, "",
-              "formation with bodies: manifest.json of recordings whose first poses (with "
-              "skeleton and lean, in their order) the people take (default: the synthetic "
-              "skeleton, upright)");
+              "formation with bodies: manifest.json of recordings whose first poses (skeleton and "
+              "lean) are used, in their order (default: the synthetic skeleton, upright)");
 DEFINE_string(html_out, "", "formation: page of the moving people (HTML)");
 DEFINE_string(strip_out, "", "formation: strip of poses (SVG)");
 DEFINE_string(joints_out, "", "formation with bodies: joint positions (CSV)");
-DEFINE_string(
-    bodies_out, "",
-    "formation with bodies: the bodies (.gltf or .glb: all in one animated file; otherwise "
-    "BVH, one file a person, named after this one)");
+DEFINE_string(bodies_out, "",
+              "formation with bodies: the bodies (.gltf or .glb: all in one animated file; "
+              "otherwise BVH, one file per person, named after this one)");
 
 namespace pushid {
 namespace {
@@ -58,15 +55,15 @@ MaybeError CheckWayToBodies(bool restores) {
     return Error{"--restoration and --generator both make the bodies; give one of them"};
   }
   if (generates && Given("postprocess")) {
-    return Error{"--postprocess goes with --restoration; a generator finishes its bodies itself"};
+    return Error{"--postprocess needs --restoration; a generator does its own postprocessing"};
   }
   if (const char* flag = generates ? nullptr : FirstGiven(DiffusionFlagNames())) {
-    return Error{std::string("--") + flag + " goes with --generator"};
+    return Error{std::string("--") + flag + " needs --generator"};
   }
   if (const char* flag = restores || generates ? nullptr : FirstGiven(kOfBodies)) {
     return Error{std::string("--") + flag +
-                 " needs bodies: name the folder of pushid-train-restoration by --restoration, or "
-                 "that of pushid-train-generator by --generator"};
+                 " needs bodies: give the folder of pushid-train-restoration as --restoration, or "
+                 "that of pushid-train-generator as --generator"};
   }
   return std::nullopt;
 }

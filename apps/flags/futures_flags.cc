@@ -9,7 +9,7 @@
 #include "ident/prediction/futures.h"
 
 DEFINE_int32(samples, pushid::FuturesFlags{}.samples,
-             "draw so many futures from the model's process noise; 0: none");
+             "number of futures drawn from the model's process noise; 0: none");
 DEFINE_uint64(samples_seed, pushid::FuturesFlags{}.seed, "with --samples: seed of the draws");
 DEFINE_string(samples_out, "",
               "with --samples: write every future here (CSV: draw, frame, person, hip, angles)");
@@ -21,22 +21,23 @@ MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
   gflags::CommandLineFlagInfo observed;  // not of every program
   if (gflags::GetCommandLineFlagInfo("observed", &observed) && !observed.is_default) {
     return Error{
-        "--samples draws futures from frame 0 on, and --observed predicts from later: leave one "
-        "out"};
+        "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
+        "one out"};
   }
   return CheckDrawsFrom(model);
 }
 
 Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes) {
   if (MaybeError error = CheckRange("samples", FLAGS_samples, 0, 100000)) return *error;
-  if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: ask for 2 or more"};
+  if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: give 2 or more"};
   for (const char* flag : {"samples_seed", "samples_out"}) {
     if (FLAGS_samples > 0 || !Given(flag)) continue;
     return Error{std::string("--") + flag + " needs --samples, the number of futures"};
   }
   if (!writes && Given("samples_out")) {
     return Error{
-        "--samples_out is of pushid-predict and pushid-simulate: here futures are only scored"};
+        "--samples_out is for pushid-predict and pushid-simulate; this program only scores "
+        "futures"};
   }
   if (MaybeError error = CheckOutputFiles({FLAGS_samples_out})) return *error;
   return FuturesFlags{FLAGS_samples, FLAGS_samples_seed, FLAGS_samples_out};
@@ -56,11 +57,11 @@ int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
   std::printf("%zu drawn futures, hips at the last frame (median and central 90 %%):\n%s",
               futures.paths.size(), LastFrameText(futures).c_str());
   if (futures.failed > 0) {
-    std::printf("%d more left the model's domain\n", futures.failed);
+    std::printf("%d more draws left the model's domain\n", futures.failed);
   }
   if (flags.out.empty()) return kDone;
   if (MaybeError error = WriteFuturesCsv(flags.out, futures)) return Fail(*error);
-  std::printf("all of them written to %s\n", flags.out.c_str());
+  std::printf("all futures written to %s\n", flags.out.c_str());
   return kDone;
 }
 

@@ -6,8 +6,8 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/diffusion_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "ident/generators/forecast_scene.h"
-#include "ident/generators/forecast_spread.h"
+#include "ident/forecasts/forecast_scene.h"
+#include "ident/forecasts/forecast_spread.h"
 #include "ident/parameters/option_names.h"
 
 namespace {
@@ -16,53 +16,53 @@ const pushid::GenerateFlags kFlags;
 
 DEFINE_string(model, "", "folder that pushid-train-generator --out wrote");
 DEFINE_string(dataset, pushid::NameOf(kFlags.data),
-              "what is forecast: cmu (motion-capture clips in --folder) or pushes (--recordings, "
-              "which says so by itself)");
-DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json in it or one higher");
+              "what to forecast: cmu (motion-capture clips in --folder) or pushes (--recordings, "
+              "which implies it)");
+DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json in it or in its parent");
 DEFINE_string(protocol, pushid::NameOf(kFlags.protocol),
-              "cmu: which windows: test (eight drawn per clip, of test/ where there is one), "
-              "validation (of the last clip of every action) or all");
+              "cmu: windows to forecast: test (eight drawn per clip, from test/ if there is one), "
+              "validation (from the last clip of every action) or all");
 DEFINE_int32(stride, kFlags.stride,
-             "cmu: every so many starts a window (validation, all); 0: 8 in clips of more than a "
-             "thousand windows, otherwise 2");
-DEFINE_int32(samples, kFlags.samples,
-             "sampled futures of every window: coverage, CRPS, energy score, and the fan in "
-             "pictures; of groups by diffusion: how often the recorded hips lie among them; 0: "
-             "none");
-DEFINE_uint64(seed, kFlags.seed, "of the sampled futures");
-DEFINE_double(ridge_share, -1.0, "of the linear forecast in the blend; -1: as trained");
+             "cmu: frames from one window's start to the next (validation, all); 0: 8 in clips of "
+             "more than a thousand windows, otherwise 2");
+DEFINE_int32(
+    samples, kFlags.samples,
+    "number of sampled futures per window, for coverage, CRPS, energy score and the fan in "
+    "pictures; for groups by diffusion, for how often the recorded hips lie among them; 0: none");
+DEFINE_uint64(seed, kFlags.seed, "seed of the sampled futures");
+DEFINE_double(ridge_share, -1.0, "share of the linear forecast in the blend; -1: as trained");
 DEFINE_bool(project_bones, kFlags.changes.project_bones,
-            "give all bones the lengths of the last observed frame");
+            "keep the bone lengths of the last observed frame");
 DEFINE_double(noise_memory, kFlags.changes.noise_memory,
-              "of sampled futures: correlation of the noise of one frame with the next");
+              "sampled futures: correlation of the noise between one frame and the next");
 DEFINE_double(noise_scale, kFlags.changes.noise_scale,
-              "of sampled futures: multiplies the noise that was learned");
+              "sampled futures: factor on the learned noise");
 DEFINE_bool(correlated_noise, kFlags.changes.correlated_noise,
-            "of sampled futures: coordinates are moved together, as the drift was seen to miss "
-            "them; off: each by itself");
-DEFINE_bool(mirror, kFlags.changes.mirror,
-            "forecast the mirror image too, and average: as a second network would, without its "
-            "training");
-DEFINE_int32(observed, kFlags.observed,
-             "diffusion: frames that it is shown, 1 for the first poses and the push; 0: as it was "
-             "made for");
+            "sampled futures: noise is correlated across coordinates, like the errors of the "
+            "drift; off: independent");
+DEFINE_bool(
+    mirror, kFlags.changes.mirror,
+    "average with the forecast of the mirror image: like a second network, without training one");
+DEFINE_int32(
+    observed, kFlags.observed,
+    "diffusion: number of observed frames, 1 for the first poses and the push; 0: as trained");
 DEFINE_string(physics, "",
-              "diffusion: model that pushid-fit --model_out wrote, to blend with, and to show");
+              "diffusion: model that pushid-fit --model_out wrote, to blend with and to show");
 DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
               "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_int32(frames, kFlags.frames,
-             "diffusion: frames of the motion that is shown, also past the recording's end, and "
-             "what all groups do in each of its seconds; 0: as many as the recording has");
+             "diffusion: length of the forecast, frames, also past the recording's end; a table "
+             "shows the motion of all groups second by second; 0: as long as the recording");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
-DEFINE_int32(person, kFlags.person, "pushes, particles: which person of it");
+DEFINE_int32(person, kFlags.person, "pushes, particles: which person of the recording");
 DEFINE_int32(target_window, kFlags.target_window,
              "cmu: show the most probable path that ends like this window of the action: with "
              "--samples among those, otherwise by minimization; -1: no search");
 DEFINE_double(target_distance, kFlags.target_distance,
-              "--target_window with --samples: what counts as ending there, mean distance of "
-              "joints, m");
+              "--target_window with --samples: largest mean distance of the joints that counts as "
+              "reaching it, m");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
@@ -100,25 +100,25 @@ MaybeError CheckRanges() {
 MaybeError CheckData(const GenerateFlags& flags) {
   if (flags.data == GeneratorData::kCmu) {
     for (const char* flag : {"id", "person", "recordings", "setting"}) {
-      if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=pushes"};
+      if (Given(flag)) return Error{std::string("--") + flag + " needs --dataset=pushes"};
     }
     if (Given("target_distance") && (flags.target_window < 0 || flags.samples == 0)) {
-      return Error{"--target_distance chooses among --samples that end like --target_window"};
+      return Error{"--target_distance needs --samples and --target_window"};
     }
     return Require("folder", FLAGS_folder, "name the folder of the clips");
   }
   for (const char* flag :
        {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
-    if (Given(flag)) return Error{std::string("--") + flag + " goes with --dataset=cmu"};
+    if (Given(flag)) return Error{std::string("--") + flag + " needs --dataset=cmu"};
   }
   if (flags.Shows()) {
     if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
   }
   if (Given("push_spread") && flags.samples == 0) {
-    return Error{"--push_spread is between sampled futures: give --samples"};
+    return Error{"--push_spread needs --samples"};
   }
   if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
-    return Error{"--blend needs to know with what: give --physics"};
+    return Error{"--blend needs --physics, the model to blend with"};
   }
   return CheckRecordingFlags();
 }
@@ -130,8 +130,8 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   const bool pushes = flags.data == GeneratorData::kPushes;
   if (pushes && !diffuses && flags.samples > 0 && !flags.Shows()) {
     return Error{
-        "with pushes and particles --samples only makes a fan for --poses_out, --strip_out or "
-        "--page_out"};
+        "with pushes and particles, --samples only adds a fan to --poses_out, --strip_out or "
+        "--page_out; give one of them"};
   }
   std::vector<const char*> foreign = {"ridge_share", "project_bones",    "noise_memory",
                                       "noise_scale", "correlated_noise", "mirror",
@@ -142,7 +142,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   }
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
-    return Error{std::string("--") + flag + " says nothing to a generator of " + NameOf(kind),
+    return Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
                  FLAGS_model};
   }
   return std::nullopt;

@@ -13,7 +13,7 @@ namespace pushid {
 
 Result<InspectFlags> InspectFlagsFromCommandLine(const std::vector<std::string>& files) {
   if (files.empty()) {
-    return Error{"name one or more files to look at; see pushid-inspect --help"};
+    return Error{"name one or more files to inspect; see pushid-inspect --help"};
   }
   InspectFlags flags;
   flags.svg_out = FLAGS_svg_out;

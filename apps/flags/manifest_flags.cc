@@ -7,42 +7,43 @@
 #include "apps/flags/overwrite_flag.h"
 #include "datasets/manifest/recording_names.h"
 
-DEFINE_string(folder, "", "the folder that holds the recordings, in it and below");
+DEFINE_string(folder, "", "the folder of the recordings, searched with its subfolders");
 DEFINE_string(pattern, "",
               "paths of the motion files in the folder, as in {setting}/{subject}_{take}.c3d; "
-              "setting, subject, magnitude, condition and person are understood, any other "
-              "{name} tells recordings apart, * does not matter");
+              "{setting}, {subject}, {magnitude}, {condition} and {person} have a meaning, any "
+              "other {name} only tells recordings apart, * matches anything");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with names of --pattern");
 DEFINE_string(masses, "",
               "masses of the subjects: a CSV file id,mass_kg, or participants.tsv of Motion-BIDS");
 DEFINE_double(mass_kg, pushid::ManifestOptions{}.mass_kg,
-              "mass of everybody who is not in --masses");
-DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: as each file says");
+              "mass of everybody not listed in --masses");
+DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
 DEFINE_int32(pushed_person, pushid::ManifestOptions{}.pushed_person,
              "who is pushed in recordings of several people, from 0");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
-              "setting, where the pattern does not say");
+              "setting, if the pattern does not give it");
 DEFINE_string(magnitude, pushid::ManifestOptions{}.magnitude,
-              "strength of the push, where the pattern does not say");
+              "strength of the push, if the pattern does not give it");
 DEFINE_string(push_kind, pushid::Name(pushid::ManifestOptions{}.push_kind),
               "net, net_without_friction or external");
 DEFINE_string(mapping, "", "mapping file for all recordings: joints, columns, unit, axes, rate");
 DEFINE_string(up, "", "the files' axis that points up (z unless given)");
 DEFINE_string(forward, "", "the files' axis that points in the push direction (x unless given)");
 DEFINE_string(length_unit, "", "the files' unit: mm, cm or m");
-DEFINE_double(length_scale, 0.0, "instead of a unit, the metres in one of the files' lengths");
+DEFINE_double(length_scale, 0.0, "instead of a unit: metres per length unit of the files");
 DEFINE_string(out, "", "write the manifest here (JSON)");
 DEFINE_bool(update, pushid::ManifestFlags{}.update,
-            "add to the manifest that is there: its entries stay as they are, by id");
+            "add to the existing manifest; entries whose id it already has stay unchanged");
 
 namespace pushid {
 namespace {
 
 MaybeError CheckManifestFlags() {
-  for (MaybeError missing : {Require("folder", FLAGS_folder, "name the folder of the recordings"),
-                             Require("pattern", FLAGS_pattern,
-                                     "say how the files are named, as in {subject}_{take}.bvh"),
-                             Require("out", FLAGS_out, "name the manifest to write")}) {
+  for (MaybeError missing :
+       {Require("folder", FLAGS_folder, "name the folder of the recordings"),
+        Require("pattern", FLAGS_pattern,
+                "give the pattern of the file names, as in {subject}_{take}.bvh"),
+        Require("out", FLAGS_out, "name the manifest to write")}) {
     if (missing) return missing;
   }
   if (!(FLAGS_mass_kg >= 0.0 && FLAGS_mass_kg <= 400.0)) {
@@ -77,7 +78,7 @@ MaybeError ReadNamed(ManifestOptions* options) {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);
     if (!problem.empty()) return Error{"--length_scale " + problem};
     if (!FLAGS_length_unit.empty()) {
-      return Error{"--length_scale is given beside --length_unit; give one of them"};
+      return Error{"--length_scale is given together with --length_unit; give one of them"};
     }
     options->length_scale = FLAGS_length_scale;
   }

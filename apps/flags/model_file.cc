@@ -9,6 +9,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/merged_manifest.h"
+#include "ident/problem/parallel.h"
 
 namespace pushid {
 namespace {

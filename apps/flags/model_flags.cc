@@ -7,7 +7,7 @@
 #include "ident/results/result_json.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
-DEFINE_string(set, "", "what-if: parameters replaced, name=value comma-separated, as in mu=20");
+DEFINE_string(set, "", "what-if: replace parameters, name=value comma-separated, as in mu=20");
 
 namespace pushid {
 

@@ -7,8 +7,8 @@
 #include "ident/prediction/evaluation.h"
 
 DEFINE_int32(observed, 0,
-             "frames of a recording that are seen before the rest is predicted, frame 0 among "
-             "them; 1 is what there is without the flag");
+             "number of observed frames before the predicted ones, including frame 0; 1 is the "
+             "default: only the first frame");
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 
 #include "datasets/files/json_file.h"
 
-DEFINE_bool(overwrite, false, "replace what is there: recordings, a manifest, a push");
+DEFINE_bool(overwrite, false, "replace existing recordings, manifests and pushes");
 
 namespace pushid {
 
@@ -16,8 +16,8 @@ bool OverwriteGiven() { return FLAGS_overwrite; }
 MaybeError CheckNew(const std::string& flag, const std::string& file, const std::string& besides) {
   std::error_code ignored;
   if (FLAGS_overwrite || !std::filesystem::exists(file, ignored)) return std::nullopt;
-  return Error{
-      "is there already; --overwrite replaces it" + besides + "; or name another --" + flag, file};
+  return Error{"already exists; --overwrite replaces it" + besides + "; or name another --" + flag,
+               file};
 }
 
 MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {
@@ -33,8 +33,9 @@ MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder)
   if (document.ok() && document.value().content.contains("synthetic")) {
     return CheckNew(flag, manifest);
   }
-  return Error{"is no output of pushid-simulate and would be overwritten; name another --" + flag,
-               manifest};
+  return Error{
+      "is not an output of pushid-simulate and would be overwritten; choose another --" + flag,
+      manifest};
 }
 
 }  // namespace pushid

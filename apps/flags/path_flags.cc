@@ -9,15 +9,13 @@
 #include "apps/flags/model_flags.h"
 #include "datasets/files/number_text.h"
 
-DEFINE_string(
-    from, "",
-    "where a path begins: x, y (m), theta, phi (rad), xd, yd (m/s), thetad, phid (rad/s), "
-    "comma-separated, as in theta=0.05,xd=0.3; what is not named is 0");
-DEFINE_string(
-    to, "",
-    "where it ends, the same; velocities are free where none is named, and all are held where "
-    "one is. Several ends, separated by semicolons: the most probable one is named. "
-    "Models whose noise grows with speed have no such path");
+DEFINE_string(from, "",
+              "initial state of the path: x, y (m), theta, phi (rad), xd, yd (m/s), thetad, phid "
+              "(rad/s), comma-separated, as in theta=0.05,xd=0.3; components not named are 0");
+DEFINE_string(to, "",
+              "final state, in the same form; if no velocity is named all are free, otherwise all "
+              "are fixed. With several ends, separated by semicolons, the most probable one is "
+              "reported. Not for models whose noise grows with speed");
 DEFINE_int32(frames, pushid::PathFlags{}.frames, "frames of the path, both ends included");
 DEFINE_double(fps, pushid::PathFlags{}.fps, "frames a second");
 DEFINE_double(mass, pushid::kReferenceMass, "the person's mass, kg");
@@ -43,14 +41,14 @@ MaybeError ReadEnds(PathFlags* flags) {
     if (name.empty()) return Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
     if (!flags->to.empty() && to.value().rates_held != flags->to.front().rates_held) {
       return Error{
-          "--to holds velocities in some ends and leaves them free in others, whose probabilities "
-          "cannot be compared; name a velocity in all of them or in none"};
+          "--to fixes velocities in some ends and leaves them free in others, so their "
+          "probabilities cannot be compared; name a velocity in all ends or in none"};
     }
     flags->to.push_back(to.value());
     flags->end_names.push_back(name);
   }
   if (!flags->to.empty()) return std::nullopt;
-  return Require("to", FLAGS_to, "say where the path ends, as in --to=x=0.5,xd=0");
+  return Require("to", FLAGS_to, "give the final state, as in --to=x=0.5,xd=0");
 }
 
 }  // namespace
@@ -64,9 +62,8 @@ Result<PathFlags> PathFlagsFromCommandLine() {
   } else {
     for (const char* flag : {"from", "to", "frames", "fps", "mass", "rod"}) {
       if (!Given(flag)) continue;
-      return Error{std::string("--id smooths a recording, which says where it begins and ends; "
-                               "leave --") +
-                   flag + " out"};
+      return Error{std::string("--id smooths a recording, which gives both ends; leave --") + flag +
+                   " out"};
     }
   }
   for (MaybeError error :

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/prediction/most_probable_path.h"
+#include "ident/forecasts/most_probable_path.h"
 
 namespace pushid {
 

@@ -6,8 +6,8 @@
 #include <sstream>
 
 DEFINE_string(postprocess, "fade,bones,feet",
-              "what makes restored bodies fit: fade (begin at the first pose), bones (keep their "
-              "length), feet (standing feet stay), comma-separated; or none");
+              "corrections of restored bodies: fade (start at the first pose), bones (constant "
+              "lengths), feet (standing feet do not slide), comma-separated; or none");
 
 namespace pushid {
 

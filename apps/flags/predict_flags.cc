@@ -7,12 +7,11 @@
 #include "apps/flags/model_flags.h"
 #include "ident/bodies/body_files.h"
 
-DEFINE_string(id, "", "the recording whose first frame and push are taken");
-DEFINE_string(
-    out, "",
-    "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
-    "the bodies instead, where the name ends with .bvh (one file a person), or with .gltf "
-    "or .glb (all in one animated glTF file)");
+DEFINE_string(id, "", "the recording that gives the first frame and the push");
+DEFINE_string(out, "",
+              "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
+              "the bodies instead, if the name ends in .bvh (one file per person), or in .gltf or "
+              ".glb (all in one animated glTF file)");
 DEFINE_int32(frames, pushid::PredictFlags{}.frames,
              "frames to predict; 0: as many as the recording has");
 DEFINE_string(joints_out, "",

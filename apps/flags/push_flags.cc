@@ -17,22 +17,22 @@ constexpr char kAuto[] = "auto";
 }
 
 DEFINE_string(id, "", "the recording; or several by --ids");
-DEFINE_int32(person, pushid::PushFlags{}.person, "who is pushed, counted from 0");
-DEFINE_string(out, "", "write the push here (CSV); {id} in it stands for the recording's id");
+DEFINE_int32(person, pushid::PushFlags{}.person, "number of the pushed person, counted from 0");
+DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
 DEFINE_bool(into_manifest, pushid::PushFlags{}.into_manifest,
             "write the push's entry into the manifest");
 
 DEFINE_int32(first_frame, pushid::PushFlags{}.window.start,
-             "inverse dynamics: first frame of the window; -1: found by itself");
+             "inverse dynamics: first frame of the window; -1: detected");
 DEFINE_int32(end_frame, pushid::PushFlags{}.window.end,
-             "inverse dynamics: frame after the window; -1: found by itself");
+             "inverse dynamics: frame after the window; -1: detected");
 DEFINE_int32(smoothing, pushid::PushFlags{}.smoothing,
              "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
-             "noise then make 600 N)");
+             "noise then cause 600 N)");
 
 DEFINE_string(initial_velocity, kAuto,
-              "inverse dynamics: how fast the person is where the window begins: zero, estimated, "
-              "or auto (estimated where the hip moves faster than 0.1 m/s)");
+              "inverse dynamics: velocity of the person at the start of the window: zero, "
+              "estimated, or auto (estimated where the hip moves faster than 0.1 m/s)");
 
 namespace pushid {
 namespace {
@@ -50,7 +50,7 @@ bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string
 MaybeError CheckInverseDynamics() {
   for (const char* flag : {"first_frame", "end_frame", "smoothing", "initial_velocity"}) {
     if (SensorGiven() && Given(flag)) {
-      return Error{std::string("--") + flag + " belongs to inverse dynamics, not to --sensor"};
+      return Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
     }
   }
   if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
@@ -72,8 +72,8 @@ MaybeError CheckRecordings(const PushFlags& flags) {
                   [](const SensorChoice& sensor) { return HasPlace(sensor.file); });
   if (ids.size() > 1 && !each_its_own) {
     return Error{
-        "a sensor measured one recording; name it by --id, or put {id} into the sensor's file, as "
-        "in force/{id}.csv"};
+        "a sensor file belongs to one recording; name it by --id, or put {id} into the sensor's "
+        "file, as in force/{id}.csv"};
   }
   const std::string manifest = RecordingFlagsFromCommandLine().manifest;
   if (flags.into_manifest && ManifestPaths(manifest).size() > 1) {

@@ -11,15 +11,15 @@
 
 DEFINE_string(recordings, "", "manifest.json of the recordings, or several, comma-separated");
 DEFINE_string(setting, pushid::LoadOptions{}.setting,
-              "which recordings: settings of the manifest, comma-separated; groups (more than one "
+              "recordings to use: settings of the manifest, comma-separated; groups (more than one "
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
-DEFINE_string(leave_out, "", "not these recordings, comma-separated ids");
+DEFINE_string(leave_out, "", "all but these recordings, comma-separated ids");
 DEFINE_string(length_unit, "",
-              "unit of the files' lengths, mm, cm or m, whatever they and the manifest say");
+              "length unit of the files, mm, cm or m; overrides the files and the manifest");
 DEFINE_double(
     length_scale, 0.0,
-    "instead of --length_unit, the metres in one of the files' lengths: 0.0564; 0: a unit");
+    "instead of --length_unit: metres per length unit of the files, as in 0.0564; 0: use the unit");
 DEFINE_double(max_gap_s, pushid::PreparationOptions{}.max_gap_s,
               "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
 DEFINE_double(lowpass_hz, pushid::PreparationOptions{}.lowpass_hz,
@@ -54,7 +54,7 @@ Result<LoadOptions> LoadOptionsOfFlags() {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);
     if (!problem.empty()) return Error{"--length_scale " + problem};
     if (options.length_unit) {
-      return Error{"--length_scale is given beside --length_unit; give one of them"};
+      return Error{"--length_scale is given together with --length_unit; give one of them"};
     }
     options.length_scale = FLAGS_length_scale;
   }

@@ -31,8 +31,8 @@ MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
   if (!alone.ok()) return alone.error();
   if (alone.value()) {
     Warn(flags.name +
-         " learned from people who were pushed alone; in a group its bodies stay on tiptoe where "
-         "others push them on: train one with --more_settings=groups");
+         " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
+         "push them: train one with --more_settings=groups");
   }
   return std::nullopt;
 }
@@ -42,7 +42,7 @@ MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
 MaybeError CheckRod(const std::string& flag, bool rod_moves) {
   if (!rod_moves) return std::nullopt;
   return Error{
-      "the model's rod moves, and bodies are carried by rods of constant length; fit one with "
+      "the model's rod changes length, and bodies need a rod of constant length; fit one with "
       "--rod=constant for --" +
       flag};
 }

@@ -8,14 +8,14 @@
 
 DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
-              "(a setting dealt out in turn)");
+              "(recordings of a setting assigned to folds in turn)");
 
 namespace pushid {
 
 Result<FoldScheme> SchemeFromCommandLine(bool takes_folds) {
   FoldScheme scheme = FoldScheme::kStratified;
   if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &scheme)) return *error;
-  if (!takes_folds && Given("scheme")) return Error{"--scheme goes with --crossvalidate"};
+  if (!takes_folds && Given("scheme")) return Error{"--scheme needs --crossvalidate"};
   return scheme;
 }
 

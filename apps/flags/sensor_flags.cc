@@ -12,7 +12,7 @@ DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
               "with --sensor_column");
 DEFINE_string(sensors, "",
-              "several force sensors that push together: a JSON list, see datasets/README.md");
+              "several force sensors that act together: a JSON list, see datasets/README.md");
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
@@ -22,7 +22,7 @@ DEFINE_string(
     "force sensor: its axis that points up, for vectors; empty: that of the motion when it "
     "is the same file, otherwise z");
 DEFINE_double(sensor_zero, pushid::SensorChoice{}.zero_n,
-              "force sensor: what it reads at rest, in N, taken off; for sensors of one number");
+              "force sensor: offset (reading at rest), N, subtracted; for single-axis sensors");
 DEFINE_string(sensor_forward, "",
               "force sensor: its axis that points forward, for vectors; empty: that of the motion, "
               "or x");
@@ -30,16 +30,16 @@ DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the p
 DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
               "force sensor: contact height as a fraction of the rod (1: the hip)");
 DEFINE_double(height_m, 0.0,
-              "force sensor: contact height in m above the recording's zero instead");
+              "force sensor: contact height in m above the recording's zero, instead of --height");
 DEFINE_double(sensor_start, 0.0,
-              "force sensor: its clock at frame 0, s; unless given, that of the motion when it is "
-              "the same file, otherwise 0");
+              "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
+              "one file, otherwise 0");
 DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
-              "force sensor: forces up to this many N are idling");
+              "force sensor: forces up to this one, N, count as no push");
 DEFINE_bool(estimate_offset, pushid::SensorFlags{}.estimate_offset,
-            "force sensors: estimate how far their clocks are off from the motion");
+            "force sensors: estimate the offset of their clocks from the motion's");
 DEFINE_double(max_offset_s, pushid::SensorFlags{}.max_offset_s,
-              "how far --estimate_offset looks on either side, s");
+              "search range of --estimate_offset on either side, s");
 
 namespace pushid {
 namespace {

@@ -11,24 +11,24 @@
 
 DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");
 DEFINE_int32(people, pushid::SyntheticOptions{}.subjects,
-             "how many people: of random mass and size, or in the formation");
+             "number of people: of random mass and size, or in the formation");
 DEFINE_int32(recordings_per_person, pushid::SyntheticOptions{}.recordings_per_subject,
-             "pushes of each person: weak, medium and strong in turn");
+             "pushes per person: weak, medium and strong in turn");
 DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recording");
 DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames a second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
 DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
               "net (only the push's first part, the tail follows) or external");
+DEFINE_string(truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
+              "without --model: behaviour of the synthetic people's feet: slide, or threshold "
+              "(hold, then step)");
 DEFINE_string(
-    truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
-    "without --model, what the feet of the people made do: slide, or threshold (hold, then step)");
-DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
-              "without --model, the process noise that drives the people made: none, diagonal or "
-              "full; with speed and push, comma-separated, as --process_noise of pushid-fit "
-              "(--set=sigma_x=...)");
+    truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
+    "without --model: process noise of the synthetic people: none, diagonal or full; with speed "
+    "and push, comma-separated, as --process_noise of pushid-fit (--set=sigma_x=...)");
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
-              "how much all parameters vary between recordings (standard deviation of the "
+              "variation of all parameters between recordings (standard deviation of the "
               "logarithm; 0.1 is about 10 %)");
 DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread, "the same between people");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
@@ -37,7 +37,7 @@ namespace pushid {
 namespace {
 
 // The library checks them too, but knows no flags.
-MaybeError CheckNumbers() {
+MaybeError CheckRecordingNumbers() {
   for (MaybeError error :
        {CheckRange("people", FLAGS_people, 1, 10000),
         CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000),
@@ -57,10 +57,10 @@ Result<SimulateFlags> SimulateFlagsFromCommandLine() {
     return Error{std::string("--") + flag + " needs --formation: line, diamond or grid"};
   }
   for (const char* flag : {"samples", "samples_seed", "samples_out"}) {
-    if (Given(flag)) return Error{std::string("--") + flag + " draws futures of a --formation"};
+    if (Given(flag)) return Error{std::string("--") + flag + " needs --formation"};
   }
   for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
-                           CheckOutputFolder("out", FLAGS_out), CheckNumbers()}) {
+                           CheckOutputFolder("out", FLAGS_out), CheckRecordingNumbers()}) {
     if (error) return *error;
   }
   const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);

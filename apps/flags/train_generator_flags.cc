@@ -14,95 +14,93 @@ const pushid::TrainGeneratorFlags kFlags;
 const pushid::GeneratorTrainingOptions kOptions;
 const pushid::ParticleTrainingOptions kParticles;
 const pushid::DiffusionTrainingOptions kDiffusion;
-const char* const kOfKind = "0: what suits the kind";
+const char* const kOfKind = "0: default of the kind";
 std::string OfKind(const std::string& what) { return what + "; " + kOfKind; }
 const std::string kObserved = OfKind(
-    "pushes: frames that the generator is shown (diffusion: when it is used and judged); 1: the "
-    "first pose, and the push");
-const std::string kSeeds = OfKind("networks of different seeds that are averaged");
-const std::string kSteps = OfKind("training steps (particles: of the drift), for every seed");
-const std::string kBatch = OfKind("windows, or groups of people, of a step");
-const std::string kRate = OfKind("the largest learning rate, after the warm-up");
+    "pushes: number of observed frames (diffusion: in use and in scoring); 1: the first pose and "
+    "the push");
+const std::string kSeeds = OfKind("number of networks of different seeds that are averaged");
+const std::string kSteps = OfKind("training steps (particles: of the drift) per seed");
+const std::string kBatch = OfKind("batch size of a step: windows, or groups of people");
+const std::string kRate = OfKind("peak learning rate, after the warm-up");
 }  // namespace
 
 DEFINE_string(kind, pushid::NameOf(kOptions.kind),
-              "what is trained: particles (displacements that follow learned drift and noise) or "
-              "diffusion (whole groups, who see each other)");
-DEFINE_string(
-    dataset, pushid::NameOf(kFlags.data),
-    "what it learns from: cmu (motion-capture clips in --folder) or pushes (--recordings; "
-    "diffusion learns from nothing else)");
-DEFINE_string(
-    accuracy, pushid::NameOf(kFlags.accuracy),
-    "diffusion: best compares it by four folds with physics and restored bodies, and with "
-    "blends of both, trains all of them, and pushid-generate uses what was nearest (broken off, it "
-    "compares anew); or usual");
+              "kind of generator: particles (displacements with learned drift and noise) or "
+              "diffusion (whole groups of interacting people)");
+DEFINE_string(dataset, pushid::NameOf(kFlags.data),
+              "training data: cmu (motion-capture clips in --folder) or pushes (--recordings; "
+              "required by diffusion)");
+DEFINE_string(accuracy, pushid::NameOf(kFlags.accuracy),
+              "diffusion: best cross-validates it (four folds) against physics with restored "
+              "bodies and against blends of both, trains all of them, and pushid-generate uses the "
+              "most accurate (if interrupted, the comparison starts again); or usual");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
-            "cmu: learn from the validation clips too, which then judge nothing");
+            "cmu: also train on the validation clips, which then cannot validate");
 DEFINE_int32(observed, 0, kObserved.c_str());
 DEFINE_double(held_out, kFlags.held_out,
-              "pushes: share of the recordings that only show how the training goes");
+              "pushes: fraction of the recordings held out to monitor the training");
 DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg");
 DEFINE_int32(crossvalidate, kFlags.crossvalidate,
-             "pushes: folds; instead of writing a generator, train in every fold and score the "
-             "recordings held out; 0: off");
+             "pushes: number of folds: instead of writing a generator, train in every fold and "
+             "score the held-out recordings; 0: off");
 DEFINE_string(physics, "",
-              "diffusion: model that pushid-fit --model_out wrote; its pendulum is fitted anew to "
-              "the recordings learnt from, for --pendulum_input and --blend");
+              "diffusion: model that pushid-fit --model_out wrote; its pendulum is refitted to the "
+              "training recordings, for --pendulum_input and --blend");
 DEFINE_bool(pendulum_input, kFlags.pendulum_input,
-            "diffusion: told where the pendulum of --physics (fitted to other recordings) has the "
-            "hips, it learns what that leaves over");
+            "diffusion: the hips of the pendulum of --physics (fitted to other recordings) are an "
+            "input, and it learns the difference");
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
-    "diffusion, --crossvalidate: share of the way from the forecast hip to the pendulum's");
-DEFINE_int32(
-    samples, kFlags.samples,
-    "diffusion, --crossvalidate: sampled futures of every recording held out, and how often "
-    "it lies among them; 0: none");
+    "diffusion, --crossvalidate: blend of the hip paths, from 0 (forecast) to 1 (pendulum)");
+DEFINE_int32(samples, kFlags.samples,
+             "diffusion, --crossvalidate: number of sampled futures per held-out recording, for "
+             "how often it lies among them; 0: none");
 DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
               "diffusion, --samples: spread of the logarithm of the push between sampled futures");
-DEFINE_string(
-    pooling, pushid::NameOf(kDiffusion.structure.pooling),
-    "diffusion: how people see each other: local (by distance, ahead and behind), mean (all "
-    "alike), attention, none");
+DEFINE_string(pooling, pushid::NameOf(kDiffusion.structure.pooling),
+              "diffusion: interaction between people: local (by distance, ahead and behind), mean "
+              "(all equal), attention, none");
 DEFINE_double(bystanders, kDiffusion.bystanders,
-              "diffusion: share of the groups that people are put beside who stand far off");
+              "diffusion: fraction of the training groups to which people far away are added");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_int32(seeds, 0, kSeeds.c_str());
 DEFINE_int32(steps, 0, kSteps.c_str());
 DEFINE_int32(noise_steps, kParticles.noise_steps,
-             "training steps of the noise; 0: no noise learned");
+             "training steps of the noise; 0: do not learn noise");
 DEFINE_int32(batch, 0, kBatch.c_str());
 DEFINE_double(learning_rate, 0.0, kRate.c_str());
-DEFINE_double(jitter, kParticles.jitter, "of the pose that goes in, in its standard deviations");
+DEFINE_double(jitter, kParticles.jitter,
+              "noise added to the input pose, in its standard deviations");
 DEFINE_string(cell, pushid::NameOf(kParticles.structure.cell), "memory of the network: gru, lstm");
-DEFINE_bool(skip, kParticles.structure.skip,
-            "the drift begins as the last displacement, and adds "
-            "a linear function of the last nine");
+DEFINE_bool(
+    skip, kParticles.structure.skip,
+    "initialize the drift with the last displacement and add a linear function of the last nine");
 DEFINE_bool(pose_operator, kParticles.structure.pose_operator,
-            "displacements are predicted and summed up; off: the next pose itself is predicted");
+            "predict displacements and sum them; off: predict the next pose itself");
 DEFINE_bool(particles, kParticles.structure.particles,
-            "displacements go in beside the pose; off: poses alone, in and out");
+            "displacements are an input besides the pose; off: poses only, as input and output");
 DEFINE_bool(correction, kOptions.correction,
-            "cmu: what the sum of displacements gets wrong over the forecast is corrected at once, "
-            "by a few slow waves");
+            "cmu: correct the error of the summed displacements over the whole forecast by a few "
+            "low frequencies");
 DEFINE_double(squared_weight, kParticles.squared,
               "weight of squared distances (SDE's Eq. 10) in the loss");
 DEFINE_double(bone_weight, kParticles.bones, "weight of bone lengths (SDE's Eq. 11) in the loss");
 DEFINE_double(critic_weight, kParticles.critic,
               "weight of a Wasserstein critic (SDE's Eq. 12) in the loss");
-DEFINE_string(noise_loss, pushid::NameOf(kParticles.noise_loss),
-              "how noise is learned: likelihood, or squared (without the determinant, whose noise "
-              "goes to nothing)");
+DEFINE_string(
+    noise_loss, pushid::NameOf(kParticles.noise_loss),
+    "loss of the noise: likelihood, or squared (without the determinant; its noise vanishes)");
 DEFINE_double(ridge_share, kOptions.ridge_share,
-              "cmu: of the linear forecast in the blend; 0: none");
-DEFINE_double(ridge_penalty, kOptions.ridge_penalty, "cmu: of the linear forecast, m^2");
+              "cmu: share of the linear forecast in the blend; 0: none");
+DEFINE_double(ridge_penalty, kOptions.ridge_penalty,
+              "cmu: ridge penalty of the linear forecast, m^2");
 DEFINE_double(checkpoint_seconds, kOptions.checkpoint_seconds,
               "time between two checkpoints in --out");
-DEFINE_uint64(seed, kParticles.seed, "the first of --seeds, and that of folds");
+DEFINE_uint64(seed, kParticles.seed, "the first of --seeds, and the seed of the folds");
 DEFINE_int32(num_threads, kParticles.num_threads,
-             "threads of the training; only one repeats to the last bit");
+             "threads of the training; only a single thread is bit-reproducible");
 
 namespace pushid {
 namespace {
@@ -140,12 +138,12 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   const auto refuse = [](std::initializer_list<const char*> flags,
                          const std::string& goes_with) -> MaybeError {
     for (const char* flag : flags) {
-      if (Given(flag)) return Error{std::string("--") + flag + " goes with " + goes_with};
+      if (Given(flag)) return Error{std::string("--") + flag + " needs " + goes_with};
     }
     return std::nullopt;
   };
   if (is_cmu && diffuses) {
-    return Error{"--kind=diffusion learns groups that are pushed; give --dataset=pushes"};
+    return Error{"--kind=diffusion trains on pushed groups; give --dataset=pushes"};
   }
   const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
   const std::string particles = "--kind=particles", diffusion = "--kind=diffusion";
@@ -165,16 +163,17 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   }
   if (Best() && (FLAGS_crossvalidate > 0 || FLAGS_pendulum_input)) {
     return Error{
-        "--accuracy=best takes its own folds, and blends with physics afterwards; leave out "
+        "--accuracy=best makes its own folds and blends with physics afterwards; leave out "
         "--crossvalidate and --pendulum_input"};
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
   if (uses_physics && FLAGS_physics.empty()) {
-    return Error{"--blend and --pendulum_input need to know which pendulum: give --physics"};
+    return Error{"--blend and --pendulum_input need --physics, the pendulum's model"};
   }
   if (!uses_physics && !Best() && !FLAGS_physics.empty()) {
     return Error{
-        "--physics is there for --pendulum_input, --blend and --accuracy=best: give one of them"};
+        "--physics is only used by --pendulum_input, --blend and --accuracy=best: give one of "
+        "them"};
   }
   return std::nullopt;
 }
@@ -184,8 +183,8 @@ MaybeError CheckData(GeneratorKind kind, GeneratorData data) {
   if (data == GeneratorData::kCmu) {
     if (FLAGS_crossvalidate != 0) {
       return Error{
-          "--crossvalidate takes folds of pushes; --dataset=cmu has a validation split, "
-          "by which pushid-generate judges"};
+          "--crossvalidate makes folds of pushes; --dataset=cmu has a validation split, which "
+          "pushid-generate scores"};
     }
     if (MaybeError missing = Require("folder", FLAGS_folder, "name the folder of the clips")) {
       return missing;

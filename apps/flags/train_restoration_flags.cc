@@ -11,20 +11,19 @@
 #include "ident/results/result_json.h"
 #include "models/learned_terms.h"
 
-DEFINE_string(model, "", "model that pushid-fit --model_out wrote: which pendulum is fitted");
-DEFINE_string(
-    kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name,
-    "what is trained: window (fast, default), cvae (LDP's chain), or a peer for --peer of "
-    "pushid-evaluate: simlpe (siMLPe, which continues 12 given frames), mrt (MRT, which continues "
-    "20 given frames of a whole group)");
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");
+DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name,
+              "kind of restoration: window (fast, default), cvae (LDP's chain), or a peer for "
+              "--peer of pushid-evaluate: simlpe (siMLPe, which continues 12 given frames), mrt "
+              "(MRT, which continues 20 given frames of a whole group)");
 DEFINE_string(mrt_size, pushid::NameOf(pushid::RestorationTrainingOptions{}.mrt_size),
               "mrt: small (0.3 million weights), or published (the published widths, 5 million)");
 DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
-              "cvae: joints against the rod's tip (tip), or against the hip at frame 0 (ldp)");
+              "cvae: joints relative to the rod's tip (tip), or to the hip at frame 0 (ldp)");
 DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
-              "what poses follow: the person's pendulum (pendulum), those of the neighbours too "
-              "(neighbours, of window), or none, to compare with (pose: window has the first pose "
-              "and the push, cvae the pose before)");
+              "input of the poses: the person's pendulum (pendulum), also those of the neighbours "
+              "(neighbours, window only), or none, for comparison (pose: window uses the first "
+              "pose and the push, cvae the previous pose)");
 DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
@@ -32,27 +31,27 @@ DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_bool(check, pushid::TrainRestorationFlags{}.check,
             "only check the flags: nothing is read, trained or written");
 DEFINE_int32(crossvalidate, pushid::TrainRestorationFlags{}.crossvalidate,
-             "folds: instead of writing a restoration, refit pendulum and restoration in every "
-             "fold and score the recordings held out; 0: off");
+             "number of folds: instead of writing a restoration, refit pendulum and restoration in "
+             "every fold and score the held-out recordings; 0: off");
 DEFINE_int32(inner_folds, pushid::RestorationRunOptions{}.inner_folds,
-             "folds of the out-of-fold pendulum predictions");
+             "number of folds for the out-of-fold pendulum predictions");
 DEFINE_double(held_out, pushid::RestorationRunOptions{}.held_out,
-              "share of the recordings by which training stops early");
+              "fraction of the recordings held out for early stopping");
 DEFINE_double(checkpoint_seconds, pushid::RestorationTrainingOptions{}.checkpoint_seconds,
               "time between two checkpoints in --out");
 DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
-              "multiplies the number of training steps");
+              "factor on the number of training steps");
 DEFINE_double(body_weight, 0.0,
-              "window: train as a whole: fit the pendulum to the restored bodies too, with this "
-              "weight, train the network on the new pendulums, and so on; 0: apart");
+              "window: joint training: fit the pendulum also to the restored bodies, with this "
+              "weight, retrain the network on the new pendulums, and repeat; 0: separate training");
 DEFINE_int32(rounds, pushid::RestorationRunOptions{}.rounds,
-             "with --body_weight: how often, if nothing stops moving before");
+             "with --body_weight: largest number of rounds, unless it converges earlier");
 DEFINE_bool(predicted_pendulums, pushid::RestorationRunOptions{}.predicted_pendulums,
-            "learn from out-of-fold predicted pendulums too");
-DEFINE_bool(mirrored, pushid::RestorationRunOptions{}.mirrored, "learn from mirrored copies too");
+            "also train on out-of-fold predicted pendulums");
+DEFINE_bool(mirrored, pushid::RestorationRunOptions{}.mirrored, "also train on mirrored copies");
 DEFINE_string(more_settings, "",
-              "also learn how bodies follow recorded pendulums from these settings (as --setting "
-              "names them); their pendulums are not fitted and nothing of them is scored");
+              "also train the bodies on the recorded pendulums of these settings (named as in "
+              "--setting); they are neither fitted nor scored");
 DEFINE_uint64(seed, pushid::RestorationTrainingOptions{}.seed,
               "seed of weights, batches, noise and folds");
 DEFINE_int32(num_threads, pushid::RestorationTrainingOptions{}.num_threads,
@@ -64,29 +63,28 @@ namespace {
 // What goes with which kind.
 MaybeError CheckKind(RestorationKind kind, RestorationView view) {
   if (view != RestorationView::kPendulum && !RowOf(kind).follows_pendulum) {
-    return Error{"--sees says what follows pendulums, and --kind=" + FLAGS_kind +
+    return Error{"--sees is for kinds that follow a pendulum, and --kind=" + FLAGS_kind +
                  " continues recorded bodies"};
   }
   if (view == RestorationView::kNeighbours && kind != RestorationKind::kWindow) {
-    return Error{"--sees=neighbours goes with --kind=window"};
+    return Error{"--sees=neighbours needs --kind=window"};
   }
   if (FLAGS_mrt_size != NameOf(RestorationTrainingOptions{}.mrt_size) &&
       kind != RestorationKind::kMrt) {
-    return Error{"--mrt_size goes with --kind=mrt"};
+    return Error{"--mrt_size needs --kind=mrt"};
   }
   if (ObservedFrames() > 0 && !RowOf(kind).follows_pendulum) {
     return Error{
-        "--observed says what a pendulum is predicted from; a peer is always given the "
-        "frames that --kind=" +
+        "--observed is for predicted pendulums; a peer always gets the number of frames that "
+        "--kind=" +
         FLAGS_kind + " takes"};
   }
   const bool chain = kind == RestorationKind::kCvae;
-  if (!FLAGS_halves && !chain) return Error{"--nohalves goes with --kind=cvae"};
+  if (!FLAGS_halves && !chain) return Error{"--nohalves needs --kind=cvae"};
   if (FLAGS_coordinates == Name(RestorationTrainingOptions{}.coordinates)) return std::nullopt;
   if (!chain || view == RestorationView::kPose) {
     return Error{
-        "--coordinates goes with --kind=cvae --sees=pendulum: without a pendulum there is "
-        "no tip"};
+        "--coordinates needs --kind=cvae --sees=pendulum: without a pendulum there is no tip"};
   }
   return std::nullopt;
 }
@@ -114,12 +112,12 @@ MaybeError CheckFlags() {
     return Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
   if (ObservedFrames() > 0 && FLAGS_crossvalidate == 0) {
-    return Error{"--observed goes with --crossvalidate: a training sees whole recordings"};
+    return Error{"--observed needs --crossvalidate: training uses whole recordings"};
   }
   if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
       (*kind != RestorationKind::kWindow || view != RestorationView::kPendulum)) {
-    return Error{"--body_weight goes with --kind=window and --sees=pendulum"};
+    return Error{"--body_weight needs --kind=window and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
   if (FLAGS_body_weight == 0.0 && FLAGS_rounds != RestorationRunOptions{}.rounds) {
@@ -148,7 +146,7 @@ Result<RestorationRunOptions> RunOptions() {
   options.fit = model.value().fit.options;
   if (RodMoves(options.fit.model)) {
     return Error{
-        "its rod moves, and bodies are carried by rods of constant length; fit --rod=constant",
+        "its rod changes length, and bodies need a rod of constant length; fit --rod=constant",
         FLAGS_model};
   }
   options.fit.num_threads = FLAGS_num_threads;

@@ -92,8 +92,8 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
                            right = TracksOf("right_ankle", right_ankle);
   if (left.size() != hips.size() || right.size() != hips.size() || mass.size() != hips.size() ||
       (!subjects.empty() && subjects.size() != hips.size())) {
-    Raise(Fault::kData, Error{"hip is of " + std::to_string(hips.size()) +
-                              " people; ankles, mass and subjects must be of as many"});
+    Raise(Fault::kData, Error{"hip has " + std::to_string(hips.size()) +
+                              " people; ankles, mass and subjects must have as many"});
   }
   if (pushed_person < 0 || pushed_person >= static_cast<int>(hips.size())) {
     Raise(Fault::kUsage, Error{"pushed_person is " + std::to_string(pushed_person) +

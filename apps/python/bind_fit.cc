@@ -2,6 +2,7 @@
 // say.
 #include <algorithm>
 #include <ctime>
+#include <nlohmann/json.hpp>
 
 #include "apps/python/model.h"
 #include "datasets/files/atomic_file.h"
@@ -200,8 +201,8 @@ py::list OptionList() {
 
 std::shared_ptr<const FittedTo> DataOf(const Model& model) {
   if (model.to) return model.to;
-  Raise(Fault::kUsage, Error{"this result was loaded or unpickled, and its recordings are not with "
-                             "it; give them by result.attach(recordings)"});
+  Raise(Fault::kUsage, Error{"this result was loaded or unpickled without its recordings; give "
+                             "them by result.attach(recordings)"});
 }
 
 IdentifiedModel IdentifiedOf(const Model& model) { return ModelOf(model.fitted->fit); }

@@ -5,7 +5,7 @@
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_bands.h"
 #include "ident/formations/wave_speed.h"
-#include "ident/prediction/most_probable_path.h"
+#include "ident/forecasts/most_probable_path.h"
 #include "models/formation.h"
 
 namespace pushid {

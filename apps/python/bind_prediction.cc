@@ -116,7 +116,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
                                std::to_string(observed)});
   }
   if (samples > 0 && observed == 0 && !set.empty() && !identified.options.process_noise.Any()) {
-    Raise(Fault::kUsage, Error{"samples draw the parameters, which set=... holds; give one of "
+    Raise(Fault::kUsage, Error{"samples draws the parameters, which set=... fixes; give one of "
                                "them, or observed=... too"});
   }
   WarnOfInputs(identified, seen);
@@ -166,7 +166,7 @@ class Online {
       for (const auto& [track, array] : tracks) {
         track->emplace_back(array->at(n, 0), array->at(n, 1), array->at(n, 2));
         if (!track->back().allFinite()) {
-          Raise(Fault::kData, Error{"a frame with a value that is not finite; wait for the next"});
+          Raise(Fault::kData, Error{"the frame has a value that is not finite; skip it"});
         }
         if (track->size() > 2) track->erase(track->begin());
       }

@@ -62,7 +62,8 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
     const std::string problem = LengthScaleProblem(length_scale);
     if (!problem.empty()) Raise(Fault::kUsage, Error{"length_scale " + problem});
     if (options.length_unit) {
-      Raise(Fault::kUsage, Error{"length_scale is given beside length_unit; give one of them"});
+      Raise(Fault::kUsage,
+            Error{"length_scale is given together with length_unit; give one of them"});
     }
     options.length_scale = length_scale;
   }

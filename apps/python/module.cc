@@ -1,6 +1,7 @@
 // apps: the Python module: errors, and what the other parts share.
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "apps/python/bindings.h"
@@ -102,8 +103,8 @@ PYBIND11_MODULE(_pushid, module) {
   module.doc() = "The C++ library behind pushid.";
   module.attr("version") = PUSHID_VERSION;
   const std::pair<const char*, const char*> errors[] = {
-      {"DataError", "What was given as data cannot be used: what is wrong, where, what to do."},
-      {"UsageError", "What was asked for cannot be: which option, and what it must be."},
+      {"DataError", "Invalid data: the problem, its location and its remedy."},
+      {"UsageError", "Invalid request: the option, and its valid values."},
       {"FitError", "The fit failed, or a rollout left the model's domain."}};
   for (int i = 0; i < 3; ++i) {
     const std::string name = std::string("pushid.") + errors[i].first;

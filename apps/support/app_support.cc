@@ -3,8 +3,9 @@
 
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
+
+#include "ident/problem/parallel.h"
 
 namespace pushid {
 namespace {
@@ -13,10 +14,6 @@ std::string g_program = "pushid";
 bool g_show_progress = true;
 
 }  // namespace
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void SetProgramName(const std::string& path) {
   g_program = path.substr(path.find_last_of('/') + 1);

@@ -21,9 +21,6 @@ int Fail(const Error& error);
 int Fail(const std::string& message);
 void Warn(const std::string& message);
 
-// s, by a clock that only goes forwards.
-double Now();
-
 std::string Version();
 std::string HostName();
 

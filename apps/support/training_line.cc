@@ -3,10 +3,12 @@
 
 #include <cmath>
 
+#include "ident/problem/parallel.h"
+
 namespace pushid {
 
 std::string KeptCheckpoints(const std::string& folder) {
-  return "the last checkpoint is in " + folder + ", and the same command goes on from there";
+  return "the last checkpoint is in " + folder + ", and the same command continues from there";
 }
 
 TrainingLine::TrainingLine() : made_(Now()) {}

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"

@@ -64,13 +64,13 @@ std::string OddSpacing(const std::vector<CrowdPlace>& places) {
     for (std::size_t k = 0; k < i; ++k) {
       if ((places[i].position - places[k].position).norm() > kClosestPeople) continue;
       return "people " + places[k].name + " and " + places[i].name +
-             " (the file's ids) stand no more than 5 cm apart";
+             " (the file's ids) are no more than 5 cm apart";
     }
   }
   const double spacing = MedianSpacing(places);
   if (spacing < kFarApart) return "";
-  return "the nearest other stands " + Rounded(spacing, 3) +
-         " m away (median); are the lengths metres? The comment '# id frame x/cm y/cm' says cm";
+  return "the nearest neighbour is " + Rounded(spacing, 3) +
+         " m away (median); are the lengths metres? The comment '# id frame x/cm y/cm' declares cm";
 }
 
 Result<std::vector<CrowdPlace>> ReadCrowdPlaces(const std::string& path,

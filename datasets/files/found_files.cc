@@ -59,7 +59,7 @@ MaybeError CheckTogether(const std::string& id, const std::vector<FoundFile>& fi
                      (people && same ? "person " + Quoted(a.values.at("person")) + " of " : "") +
                      "recording " + Quoted(id) +
                      (rest(a.values) == rest(b.values)
-                          ? "; give what differs a name in the pattern instead of *"
+                          ? "; replace the * that differs by a name in the pattern"
                           : "; give one of them another name"),
                  folder};
   }

@@ -2,6 +2,7 @@
 #include "datasets/files/json_file.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "datasets/files/atomic_file.h"

@@ -27,8 +27,7 @@ Result<NamePattern> NamePattern::Parse(const std::string& text) {
     } else if (text[i] == '{') {
       const std::size_t end = text.find_first_of("{}", i + 1);
       if (end == std::string::npos || text[end] != '}' || end == i + 1) {
-        return Error{"the pattern " + Quoted(text) +
-                     " has a { that opens no name, as in {subject}"};
+        return Error{"the pattern " + Quoted(text) + " has a { without a name, as in {subject}"};
       }
       end_plain();
       const std::string name = text.substr(i + 1, end - i - 1);
@@ -36,7 +35,7 @@ Result<NamePattern> NamePattern::Parse(const std::string& text) {
       if (!pattern.Has(name)) pattern.names_.push_back(name);
       i = end;
     } else if (text[i] == '}') {
-      return Error{"the pattern " + Quoted(text) + " has a } that closes nothing"};
+      return Error{"the pattern " + Quoted(text) + " has a } without a {"};
     } else {
       plain += text[i];
     }
@@ -44,7 +43,7 @@ Result<NamePattern> NamePattern::Parse(const std::string& text) {
   end_plain();
   if (pattern.names_.empty()) {
     return Error{"the pattern " + Quoted(text) +
-                 " names nothing; {subject} stands for the person's id, for instance"};
+                 " contains no names; {subject}, for instance, stands for the person's id"};
   }
   return pattern;
 }

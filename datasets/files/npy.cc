@@ -47,7 +47,7 @@ Result<std::vector<float>> ReadNpy(const std::string& path) {
   if (!file.ok()) return file.error();
   const std::string& bytes = file.value();
   if (bytes.size() < kPrefix || bytes.compare(0, kMagicSize, kMagic, kMagicSize) != 0) {
-    return NotNpy(path, "this is no .npy file of version 1.0");
+    return NotNpy(path, "this is not a .npy file of version 1.0");
   }
   const size_t length = static_cast<uint8_t>(bytes[8]) + 256u * static_cast<uint8_t>(bytes[9]);
   if (bytes.size() < kPrefix + length) return NotNpy(path, "the file is cut off in its header");
@@ -63,8 +63,9 @@ Result<std::vector<float>> ReadNpy(const std::string& path) {
   }
   const size_t data = bytes.size() - kPrefix - length;
   if (data != static_cast<uint64_t>(count) * sizeof(float)) {
-    return NotNpy(path, "the file holds " + std::to_string(data) + " bytes of numbers where its " +
-                            "header announces " + std::to_string(count) + " numbers");
+    return NotNpy(path, "the file contains " + std::to_string(data) +
+                            " bytes of numbers, but its " + "header declares " +
+                            std::to_string(count) + " numbers");
   }
   std::vector<float> values(static_cast<size_t>(count));
   if (count > 0) std::memcpy(values.data(), bytes.data() + kPrefix + length, data);

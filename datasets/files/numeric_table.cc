@@ -47,7 +47,7 @@ class TableReader {
     const int rows = table_.num_rows();
     if (rows == 0) return reader_.ErrorHere("the table has no rows");
     if (announced_rows_ >= 0 && rows != announced_rows_) {
-      return reader_.ErrorHere("the head announces " + std::to_string(announced_rows_) +
+      return reader_.ErrorHere("the header declares " + std::to_string(announced_rows_) +
                                " rows, the file has " + std::to_string(rows));
     }
     table_.content_hash = reader_.HashHex();
@@ -131,8 +131,8 @@ class TableReader {
     }
     if (announced_columns_ >= 0 &&
         announced_columns_ != static_cast<std::int64_t>(table_.names.size())) {
-      return reader_.ErrorHere("the head announces " + std::to_string(announced_columns_) +
-                               " columns, here are " + std::to_string(table_.names.size()));
+      return reader_.ErrorHere("the header declares " + std::to_string(announced_columns_) +
+                               " columns, but there are " + std::to_string(table_.names.size()));
     }
     return Choose();
   }

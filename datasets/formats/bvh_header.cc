@@ -24,7 +24,7 @@ class HierarchyParser {
   Result<BvhSkeleton> Parse() {
     if (!EqualsIgnoringCase(Next(), "HIERARCHY")) {
       if (reader_.error()) return *reader_.error();
-      return reader_.ErrorHere("this is no BVH file: it does not start with HIERARCHY");
+      return reader_.ErrorHere("this is not a BVH file: it does not start with HIERARCHY");
     }
     while (true) {
       const std::string_view token = Next();
@@ -86,12 +86,11 @@ class HierarchyParser {
     rest_ = brace == std::string_view::npos ? std::string_view() : rest_.substr(brace);
     if (name.empty()) return reader_.ErrorHere("a joint has no name");
     if (root != open_.empty()) {
-      return reader_.ErrorHere(root ? "ROOT " + name +
-                                          " stands inside another joint; is a } missing?"
-                                    : "JOINT " + name + " stands outside of any ROOT");
+      return reader_.ErrorHere(root ? "ROOT " + name + " is inside another joint; is a } missing?"
+                                    : "JOINT " + name + " is outside of any ROOT");
     }
     if (!root && open_.back() == kEndSite) {
-      return reader_.ErrorHere("JOINT " + name + " stands inside an End Site");
+      return reader_.ErrorHere("JOINT " + name + " is inside an End Site");
     }
     if (!names_.insert(name).second) {
       return reader_.ErrorHere("two joints are called " + Quoted(name) + "; names must be unique");
@@ -109,7 +108,7 @@ class HierarchyParser {
   MaybeError OpenEndSite() {
     if (!EqualsIgnoringCase(Next(), "Site")) return reader_.ErrorHere("Site must follow End");
     if (open_.empty() || open_.back() == kEndSite) {
-      return reader_.ErrorHere("an End Site stands outside of any joint");
+      return reader_.ErrorHere("an End Site is outside of any joint");
     }
     open_.push_back(kEndSite);
     end_site_has_offset_ = false;
@@ -117,7 +116,7 @@ class HierarchyParser {
   }
 
   MaybeError ParseOffset() {
-    if (open_.empty()) return reader_.ErrorHere("an OFFSET stands outside of any joint");
+    if (open_.empty()) return reader_.ErrorHere("an OFFSET is outside of any joint");
     Eigen::Vector3d offset;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view token = Next();
@@ -141,7 +140,7 @@ class HierarchyParser {
 
   MaybeError ParseChannels() {
     if (open_.empty() || open_.back() == kEndSite) {
-      return reader_.ErrorHere("CHANNELS stand outside of any joint");
+      return reader_.ErrorHere("CHANNELS are outside of any joint");
     }
     BvhJoint& joint = skeleton_.joints[open_.back()];
     if (has_channels_[open_.back()])
@@ -171,7 +170,7 @@ class HierarchyParser {
       }
       if (!known) {
         return reader_.ErrorHere("joint " + Quoted(joint.name) + ": " + Quoted(token) +
-                                 " is no channel; " + std::to_string(count) +
+                                 " is not a channel; " + std::to_string(count) +
                                  " of Xposition, Yposition, Zposition, Xrotation, Yrotation, "
                                  "Zrotation must follow");
       }
@@ -180,7 +179,7 @@ class HierarchyParser {
   }
 
   MaybeError Close() {
-    if (open_.empty()) return reader_.ErrorHere("a } closes nothing");
+    if (open_.empty()) return reader_.ErrorHere("a } has no matching {");
     const int closed = open_.back();
     open_.pop_back();
     if (closed == kEndSite ? !end_site_has_offset_ : !has_offset_[closed]) {
@@ -193,13 +192,13 @@ class HierarchyParser {
 
   MaybeError CheckComplete() {
     if (!open_.empty()) {
-      return reader_.ErrorHere("MOTION stands inside the hierarchy: " +
-                               std::to_string(open_.size()) + " closing } missing");
+      return reader_.ErrorHere("MOTION is inside the hierarchy: " + std::to_string(open_.size()) +
+                               " closing } missing");
     }
     if (skeleton_.joints.empty()) return reader_.ErrorHere("the hierarchy has no ROOT");
     if (skeleton_.num_channels() == 0) return reader_.ErrorHere("no joint has any channels");
     if (!Trimmed(rest_).empty()) {
-      return reader_.ErrorHere(Quoted(Trimmed(rest_)) + " stands behind MOTION");
+      return reader_.ErrorHere(Quoted(Trimmed(rest_)) + " follows MOTION");
     }
     return std::nullopt;
   }

@@ -23,8 +23,8 @@ std::string ChannelName(const BvhSkeleton& skeleton, int index) {
 }
 
 // Fills values[0 .. count) from a row of numbers.
-MaybeError ParseRow(const LineReader& reader, std::string_view line, const BvhSkeleton& skeleton,
-                    int count, double* values) {
+MaybeError ParseFrame(const LineReader& reader, std::string_view line, const BvhSkeleton& skeleton,
+                      int count, double* values) {
   const char* at = line.data();
   const char* const end = at + line.size();
   for (int i = 0;; ++i) {
@@ -57,17 +57,17 @@ MaybeError ParseRow(const LineReader& reader, std::string_view line, const BvhSk
 
 // Calls take_row(values) for every row; checks that there are as many as announced.
 template <typename TakeRow>
-MaybeError ReadRows(LineReader* reader, const BvhHeader& header, const TakeRow& take_row) {
+MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const TakeRow& take_row) {
   const int channels = header.skeleton.num_channels();
   std::vector<double> values(channels);
   std::int64_t rows = 0;
   std::string_view line;
   while (reader->NextNonBlank(&line)) {
     if (rows == header.num_frames) {
-      return reader->ErrorHere("wrong frame count: Frames: says " +
+      return reader->ErrorHere("wrong frame count: Frames: is " +
                                std::to_string(header.num_frames) + ", but here is one row more");
     }
-    if (MaybeError failed = ParseRow(*reader, line, header.skeleton, channels, values.data())) {
+    if (MaybeError failed = ParseFrame(*reader, line, header.skeleton, channels, values.data())) {
       return failed;
     }
     take_row(values);
@@ -75,9 +75,9 @@ MaybeError ReadRows(LineReader* reader, const BvhHeader& header, const TakeRow& 
   }
   if (reader->error()) return reader->error();
   if (rows < header.num_frames) {
-    return reader->ErrorHere("wrong frame count: Frames: says " +
-                             std::to_string(header.num_frames) + ", but the file ends after " +
-                             std::to_string(rows) + ": it is truncated, or the count is wrong");
+    return reader->ErrorHere("wrong frame count: Frames: is " + std::to_string(header.num_frames) +
+                             ", but the file ends after " + std::to_string(rows) +
+                             ": it is truncated, or the count is wrong");
   }
   return std::nullopt;
 }
@@ -134,7 +134,7 @@ Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options
   motion.values.reserve(FramesToReserve(reader, header.value()) *
                         header.value().skeleton.num_channels());
   MaybeError failed =
-      ReadRows(&reader, header.value(), [&motion](const std::vector<double>& values) {
+      ReadFrames(&reader, header.value(), [&motion](const std::vector<double>& values) {
         motion.values.insert(motion.values.end(), values.begin(), values.end());
       });
   if (failed) return *std::move(failed);
@@ -161,7 +161,7 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPosition
   BvhKinematics kinematics(header.value().skeleton, metres, result.joints);
   int frame = 0;
   std::vector<Eigen::Vector3d> positions(result.joints.size());
-  MaybeError failed = ReadRows(&reader, header.value(), [&](const std::vector<double>& values) {
+  MaybeError failed = ReadFrames(&reader, header.value(), [&](const std::vector<double>& values) {
     kinematics.Positions(values.data(), positions.data());
     if (frame++ == options.kept_frame) result.kept_values = values;
     for (std::size_t i = 0; i < positions.size(); ++i) result.positions[i].push_back(positions[i]);

@@ -25,7 +25,7 @@ std::string SkeletonProblem(const BvhSkeleton& skeleton) {
     }
     while (!path.empty() && path.back() != joint.parent) path.pop_back();
     if (path.empty() && joint.parent != -1) {
-      return "joint " + Quoted(joint.name) + " does not stand in depth-first order";
+      return "joint " + Quoted(joint.name) + " is not in depth-first order";
     }
     path.push_back(static_cast<int>(i));
     if (!joint.offset.allFinite()) return "the offset of " + Quoted(joint.name) + " is not finite";

@@ -14,6 +14,8 @@
 
 namespace pushid {
 
+inline constexpr std::size_t kC3dBlock = 512;  // bytes; the sections of a file begin with one
+
 class C3dBytes {
  public:
   C3dBytes() = default;

@@ -43,7 +43,7 @@ class ParameterReader {
       if (distance < 2) {
         return C3dError(
             path_, distance_at,
-            "the next parameter stands inside this one (" + name + "): the file is damaged");
+            "the next parameter begins inside this one (" + name + "): the file is damaged");
       }
       at = distance_at + distance;
     }

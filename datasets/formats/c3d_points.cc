@@ -9,7 +9,7 @@ namespace pushid {
 namespace {
 
 // The file's axis that the screen shows as up: "+Z" -> "+z"; empty when it is none.
-std::string UpAxis(const std::string& screen_y) {
+std::string UpOfScreen(const std::string& screen_y) {
   if (screen_y.size() != 2 || (screen_y[0] != '+' && screen_y[0] != '-')) return "";
   const char axis = static_cast<char>(screen_y[1] | 0x20);
   return axis >= 'x' && axis <= 'z' ? std::string{screen_y[0], axis} : "";
@@ -26,7 +26,7 @@ Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOption
   motion.rate_hz = file.point_rate_hz;
   motion.unit_text = file.point_unit;
   motion.unit = LengthUnitFromName(file.point_unit);
-  motion.up = UpAxis(file.screen_y);
+  motion.up = UpOfScreen(file.screen_y);
   motion.names = std::move(file.point_names);
   motion.content_hash = file.content_hash;
   if (options.choose) {

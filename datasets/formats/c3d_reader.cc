@@ -14,7 +14,6 @@
 namespace pushid {
 namespace {
 
-constexpr std::size_t kBlock = 512;
 constexpr int kMagic = 0x50;
 constexpr int kMostWords = 65535;  // of a 16-bit count
 constexpr int kMaxPoints = 32767;
@@ -49,19 +48,20 @@ class Reader {
   }
 
   MaybeError ReadSections() {
-    if (text_.size() < kBlock) {
-      return Error{"the file has " + std::to_string(text_.size()) +
-                       " bytes; a C3D file starts with a header of 512: it is truncated or no C3D",
-                   path_};
+    if (text_.size() < kC3dBlock) {
+      return Error{
+          "the file has " + std::to_string(text_.size()) +
+              " bytes; a C3D file starts with a header of 512: it is truncated or not a C3D file",
+          path_};
     }
     const C3dBytes head(text_, C3dProcessor::kIntel);
     if (head.Byte(1) != kMagic || head.Byte(0) == 0) {
-      return At(1, "this is no C3D file: its second byte is " + std::to_string(head.Byte(1)) +
+      return At(1, "this is not a C3D file: its second byte is " + std::to_string(head.Byte(1)) +
                        ", not 80");
     }
-    const std::size_t begin = (head.Byte(0) - std::size_t{1}) * kBlock;
+    const std::size_t begin = (head.Byte(0) - std::size_t{1}) * kC3dBlock;
     if (!head.Has(begin, 4)) {
-      return At(begin, "the parameters should stand here, but the file ends before");
+      return At(begin, "the parameters should be here, but the file ends before");
     }
     const int processor = head.Byte(begin + 3);
     if (processor < 84 || processor > 86) {
@@ -91,7 +91,7 @@ class Reader {
       return At(18, "there are analog samples, but none per frame");
     }
     if (samples_per_frame_ > 0 && samples % samples_per_frame_ != 0) {
-      return At(4, std::to_string(samples) + " analog samples per frame are no multiple of " +
+      return At(4, std::to_string(samples) + " analog samples per frame are not a multiple of " +
                        std::to_string(samples_per_frame_));
     }
     num_channels_ = samples_per_frame_ > 0 ? samples / samples_per_frame_ : 0;
@@ -103,8 +103,8 @@ class Reader {
                         " per second; it must be above 0 and at most 100000");
     }
     file_.analog_rate_hz = file_.point_rate_hz * std::max(1, samples_per_frame_);
-    if (data_ == 0) return At(16, "the header does not say where the data start");
-    data_ = (data_ - 1) * kBlock;
+    if (data_ == 0) return At(16, "the header does not give the start of the data");
+    data_ = (data_ - 1) * kC3dBlock;
     return CountFrames();
   }
 

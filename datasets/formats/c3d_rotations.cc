@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 constexpr char kGroup[] = "ROTATION";
-constexpr std::size_t kBlock = 512, kReal = 4, kRealsOfPose = 17, kColumns = 4;
+constexpr std::size_t kReal = 4, kRealsOfPose = 17, kPoseColumns = 4;
 constexpr int kMostSegments = 32767;
 constexpr double kNoRotation = 0.1;  // of a determinant from 1
 
@@ -31,11 +31,12 @@ std::string SegmentName(const std::string& label) {
 Eigen::Vector3d Origin(const C3dBytes& bytes, std::size_t at) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   Eigen::Matrix4d pose;
-  for (std::size_t i = 0; i < kColumns * kColumns; ++i) {
-    pose(static_cast<int>(i % kColumns), static_cast<int>(i / kColumns)) =
+  for (std::size_t i = 0; i < kPoseColumns * kPoseColumns; ++i) {
+    pose(static_cast<int>(i % kPoseColumns), static_cast<int>(i / kPoseColumns)) =
         bytes.Real(at + kReal * i);
   }
-  const bool seen = bytes.Real(at + kReal * kColumns * kColumns) >= 0.0 && pose.allFinite() &&
+  const bool seen = bytes.Real(at + kReal * kPoseColumns * kPoseColumns) >= 0.0 &&
+                    pose.allFinite() &&
                     std::abs(pose.topLeftCorner<3, 3>().determinant() - 1.0) < kNoRotation;
   return seen ? Eigen::Vector3d(pose.topRightCorner<3, 1>()) : Eigen::Vector3d(kNaN, kNaN, kNaN);
 }
@@ -51,7 +52,7 @@ MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
   const double block = C3dNumber(file->parameters, kGroup, "DATA_START", 0, 0.0);
   if (block == 0.0) return C3dError(file->path, 0, "ROTATION:DATA_START is missing");
   const std::size_t begin =
-      (static_cast<std::size_t>(block < 0.0 ? block + 65536.0 : block) - 1) * kBlock;
+      (static_cast<std::size_t>(block < 0.0 ? block + 65536.0 : block) - 1) * kC3dBlock;
   const std::size_t frame_size =
       kReal * kRealsOfPose * segments * Whole(*file, "RATIO", 1, kMostSegments, 1);
   const std::size_t frames = file->num_frames();

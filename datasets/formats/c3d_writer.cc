@@ -10,7 +10,6 @@
 namespace pushid {
 namespace {
 
-constexpr std::size_t kBlock = 512;
 constexpr double kLargestInteger = 32000.0;
 constexpr std::size_t kLongestName = 127;
 constexpr std::size_t kMostEntries = 255;  // of one dimension
@@ -44,7 +43,7 @@ std::string WritingProblem(const C3dFile& file) {
 
 // Rounded up to a whole number of 512-byte blocks.
 void FillBlock(std::string* bytes) {
-  bytes->resize((bytes->size() + kBlock - 1) / kBlock * kBlock, '\0');
+  bytes->resize((bytes->size() + kC3dBlock - 1) / kC3dBlock * kC3dBlock, '\0');
 }
 
 class Writer {
@@ -87,7 +86,7 @@ class Writer {
     Word(file_.first_frame + file_.num_frames() - 1.0, &header_);
     Word(0, &header_);
     Real(file_.floating ? -scale_ : scale_, &header_);
-    Word(1.0 + static_cast<double>((kBlock + parameters_.size()) / kBlock), &header_);
+    Word(1.0 + static_cast<double>((kC3dBlock + parameters_.size()) / kC3dBlock), &header_);
     Word(file_.samples_per_frame(), &header_);
     Real(file_.point_rate_hz, &header_);
     FillBlock(&header_);
@@ -177,7 +176,7 @@ class Writer {
     EventParameters();
     parameters_.append(2, '\0');  // a name of length 0 ends the list
     FillBlock(&parameters_);
-    parameters_[2] = static_cast<char>(parameters_.size() / kBlock);
+    parameters_[2] = static_cast<char>(parameters_.size() / kC3dBlock);
   }
 
   void AnalogParameters() {

@@ -8,6 +8,9 @@
 
 namespace pushid {
 
+// In a metre. A float is exact here, and scales floats as floats, doubles as doubles.
+inline constexpr float kMillimetres = 1e3f;
+
 enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
 
 // Metres in one unit: 0.001, 0.01 or 1.

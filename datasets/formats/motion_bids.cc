@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/files/atomic_file.h"
@@ -22,7 +23,7 @@ constexpr std::array<const char*, 4> kPushChannels = {"push_fx", "push_fy", "pus
 constexpr std::array<const char*, 4> kPushUnits = {"N", "N", "N m", "N m"};
 constexpr std::array<const char*, 4> kPushComponents = {"x", "y", "n/a", "n/a"};
 
-int AxisOf(const std::string& component) {
+int AxisNamed(const std::string& component) {
   if (component.size() != 1) return -1;
   const char axis = static_cast<char>(component[0] | 0x20);
   return axis >= 'x' && axis <= 'z' ? axis - 'x' : -1;
@@ -32,7 +33,7 @@ int AxisOf(const std::string& component) {
 std::vector<TablePoint> TrackedPoints(const std::vector<BidsChannel>& channels) {
   std::vector<TablePoint> points;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    const int axis = AxisOf(channels[i].component);
+    const int axis = AxisNamed(channels[i].component);
     if (!EqualsIgnoringCase(channels[i].type, "POS") || axis < 0) continue;
     auto found = std::find_if(points.begin(), points.end(), [&](const TablePoint& point) {
       return point.name == channels[i].tracked_point;
@@ -268,7 +269,7 @@ MaybeError WriteMotionBids(const std::string& stem, const std::string& task,
   const std::string path = stem + "_motion.tsv";
   if (std::set<std::string>(motion.names.begin(), motion.names.end()).size() !=
       motion.names.size()) {
-    return Error{"two points have one name; Motion-BIDS tells them apart by it", path};
+    return Error{"two points have the same name, which Motion-BIDS identifies them by", path};
   }
   std::vector<Column> columns = PointColumnsOf(motion);
   const Result<std::vector<Column>> push = PushColumnsOf(path, motion.num_frames(), pushes);

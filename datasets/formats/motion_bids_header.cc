@@ -1,6 +1,7 @@
 // datasets: the files beside a Motion-BIDS table.
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -169,7 +170,8 @@ Result<std::vector<BidsChannel>> ReadChannels(const std::string& file, ContentHa
 
 // "+y" where the second letter of "ARS" ... is S, of the positions' reference frame; empty where
 // the files do not say it.
-std::string UpAxis(const nlohmann::json& json, const std::vector<BidsChannel>& channels) {
+std::string UpOfReferenceFrame(const nlohmann::json& json,
+                               const std::vector<BidsChannel>& channels) {
   const auto position = std::find_if(channels.begin(), channels.end(), [](const BidsChannel& one) {
     return EqualsIgnoringCase(one.type, "POS");
   });
@@ -210,7 +212,7 @@ Result<BidsHeader> ReadBidsHeader(const std::string& motion_path) {
   header.channels = std::move(read.value());
   const Result<nlohmann::json> frames = MergedJson(Sidecars(motion_path, "_channels.json"), &hash);
   if (!frames.ok()) return frames.error();
-  header.up = UpAxis(frames.value(), header.channels);
+  header.up = UpOfReferenceFrame(frames.value(), header.channels);
   header.content_hash = hash.Hex();
   return header;
 }

@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 constexpr char kHeader[] = "frame,fx,fy,ftheta,fphi";
-constexpr const char* kColumns[] = {"frame", "fx", "fy", "ftheta", "fphi"};
+constexpr const char* kPushColumns[] = {"frame", "fx", "fy", "ftheta", "fphi"};
 constexpr int kNumColumns = 5;
 
 // Cuts the next field off `line`; a line ends its last field, and `more` says whether a comma came.
@@ -26,7 +26,7 @@ std::string_view NextField(std::string_view* line, bool* more) {
 bool IsHeader(std::string_view line) {
   bool more = true;
   for (int i = 0; i < kNumColumns; ++i) {
-    if (!more || NextField(&line, &more) != kColumns[i]) return false;
+    if (!more || NextField(&line, &more) != kPushColumns[i]) return false;
   }
   return !more;
 }
@@ -42,7 +42,7 @@ MaybeError ParseRow(const LineReader& reader, std::string_view line, std::int64_
     const std::string_view field = NextField(&line, &more);
     if (i > 0) {
       if (!ParseDouble(field, &(*force)[i - 1])) {
-        return reader.ErrorHere(std::string(kColumns[i]) + ": " + NumberProblem(field));
+        return reader.ErrorHere(std::string(kPushColumns[i]) + ": " + NumberProblem(field));
       }
       continue;
     }

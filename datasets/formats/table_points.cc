@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "datasets/files/numeric_table.h"
+#include "datasets/files/text_ends.h"
 
 namespace pushid {
 namespace {
@@ -20,10 +21,6 @@ std::string WithoutSeparator(std::string stem) {
     stem.pop_back();
   }
   return stem;
-}
-
-bool Holds(const std::string& name, const char* word) {
-  return name.find(word) != std::string::npos;
 }
 
 Result<std::vector<TablePoint>> NamedPoints(const std::string& path,

@@ -20,7 +20,7 @@ bool TrajectoryRows::Add(std::int64_t person, std::int64_t frame, const Eigen::V
 }
 
 MaybeError TrajectoryRows::Fill(const PointReadOptions& options, PointMotion* motion) const {
-  if (people_.empty()) return Error{"the file holds no positions", motion->path};
+  if (people_.empty()) return Error{"the file contains no positions", motion->path};
   std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
   for (const auto& [id, track] : people_) {
     motion->chosen.push_back(static_cast<int>(motion->names.size()));

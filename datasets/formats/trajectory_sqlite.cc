@@ -36,7 +36,7 @@ constexpr double kMargin = 1.0;        // m, of the walkable area
 constexpr std::int64_t kGeometry = 1;  // the one there is
 
 Error Failed(sqlite3* database, const std::string& path) {
-  return Error{std::string("is no SQLite file of JuPedSim: ") + sqlite3_errmsg(database), path};
+  return Error{std::string("is not a SQLite file of JuPedSim: ") + sqlite3_errmsg(database), path};
 }
 
 Result<Statement> Prepare(sqlite3* database, const char* sql, const std::string& path) {

@@ -6,6 +6,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
+#include "datasets/files/text_ends.h"
 #include "datasets/formats/frame_rate.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/trajectory_rows.h"
@@ -20,10 +21,6 @@ double NumberIn(std::string_view comment) {
     if (ParseDouble(word, &number)) return number;
   }
   return 0.0;
-}
-
-bool Holds(std::string_view text, std::string_view word) {
-  return text.find(word) != std::string_view::npos;
 }
 
 void ReadComment(std::string_view comment, PointMotion* motion) {
@@ -86,7 +83,7 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   const std::string problem = FrameRateProblem(motion.rate_hz);
   if (!problem.empty()) {
     return Error{
-        "no comment says the frames per second as a number; there must be a line such as '# "
+        "no comment gives the frames per second as a number; there must be a line such as '# "
         "framerate: 16'",
         path};
   }

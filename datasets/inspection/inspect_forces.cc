@@ -48,7 +48,7 @@ void TakeOffRest(std::vector<double>* force, Inspection* found) {
   double peak = 0.0;
   for (double value : *force) peak = std::max(peak, std::fabs(value - rest));
   if (!(std::fabs(rest) > kRest * peak)) return;
-  found->Fact("at rest", Rounded(rest, 3) + " N, taken off below; pushid-push --sensor_zero=" +
+  found->Fact("at rest", Rounded(rest, 3) + " N, subtracted below; pushid-push --sensor_zero=" +
                              Rounded(rest, 3) + " does the same");
   for (double& value : *force) value -= rest;
 }

@@ -62,7 +62,7 @@ class MotionInspector {
                     " frames per second");
       }
     } else {
-      found_.Warn("the file does not say its frame rate: give fps in the manifest");
+      found_.Warn("the file does not give its frame rate: give fps in the manifest");
     }
     found_.Fact("frames", text);
     if (frames < 3) found_.Warn("at least three frames are needed");
@@ -102,7 +102,7 @@ class MotionInspector {
     while (first < frames && !(hip[first] + left[first] + right[first]).allFinite()) ++first;
     Places(joints);
     if (first == frames) {
-      found_.Warn("hip and both ankles are never seen together: there is no rod to fit");
+      found_.Warn("hip and both ankles are never visible together: there is no rod to fit");
       return;
     }
     if (first > 0) {
@@ -149,7 +149,7 @@ class MotionInspector {
           found_.Warn(
               motion_.names[index] + " is hidden for up to " + std::to_string(longest) + " frames" +
               (motion_.rate_hz > 0.0 ? " (" + Seconds(longest / motion_.rate_hz) + ")" : "") +
-              ": --max_gap_s says how long a gap is interpolated");
+              ": --max_gap_s sets the longest gap that is interpolated");
         }
       }
     }
@@ -164,25 +164,26 @@ class MotionInspector {
     }
     const LengthUnit unit = motion_.unit ? *motion_.unit : fits.value_or(LengthUnit::kMillimetre);
     metres_ = MetresPer(unit);
-    found_.Fact("unit", Name(unit) + (motion_.unit ? ", as the file says"
+    found_.Fact("unit", Name(unit) + (motion_.unit ? ", as given in the file"
                                       : fits       ? ", by the length of the rod"
                                                    : ", assumed"));
     if (!motion_.unit && !motion_.unit_text.empty()) {
-      found_.Warn("the file's unit is " + Quoted(motion_.unit_text) + ", which is not known here");
+      found_.Warn("the file's unit is " + Quoted(motion_.unit_text) + ", which is unknown");
     }
     if (fits && motion_.unit && *fits != unit) {
-      found_.Warn("the file says " + Name(unit) + ", but the person looks like " + Name(*fits) +
+      found_.Warn("the file gives " + Name(unit) + ", but the person looks like " + Name(*fits) +
                   ": set length_unit");
     }
     if (!motion_.unit && unit != LengthUnit::kMillimetre) {
-      found_.Warn("lengths look like " + Name(unit) + "; mm is assumed unless length_unit says so");
+      found_.Warn("lengths look like " + Name(unit) +
+                  "; mm is assumed unless length_unit is given");
     }
     found_.Fact("standing height", "hip " + Rounded(rod * metres_, 3) + " m above the ankles");
     if (!fits) {
       found_.Warn(
-          "no unit makes a standing person of it: hip " + Rounded(rod * metres_, 3) +
-          " m above the ankles; check hip and ankles, or say the unit by length_scale (about " +
-          Rounded(kUsualRod / rod, 2) + " makes a person of it)");
+          "no unit gives a standing person: hip " + Rounded(rod * metres_, 3) +
+          " m above the ankles; check hip and ankles, or give the unit by length_scale (about " +
+          Rounded(kUsualRod / rod, 2) + " gives a person)");
     }
   }
 
@@ -193,8 +194,8 @@ class MotionInspector {
     found_.Fact("axes", up_ + " is up, the person faces " + faces + " (by " + facing.by +
                             (facing.doubt.empty() ? ")" : ", unsure)"));
     if (!facing.doubt.empty()) {
-      found_.Warn("where the person faces is unsure: " + facing.doubt +
-                  "; set \"forward\" by how the room was");
+      found_.Warn("the facing direction is uncertain: " + facing.doubt +
+                  "; set \"forward\" according to the room");
     }
     if (up_ != "z") {
       found_.Warn(up_ + " is up in the file: set \"up\" and \"forward\" in the manifest");
@@ -217,7 +218,7 @@ class MotionInspector {
     const double speed =
         (found_.hip[last] - found_.hip[first]).norm() * motion_.rate_hz / (last - first);
     if (found_.onset_frame >= 0 && found_.onset_frame <= last && PushedFromRest(first)) {
-      found_.Fact("start", "the push begins at once");
+      found_.Fact("start", "the push begins at the first frame");
       return;
     }
     const bool still = speed <= kStaticSpeed;
@@ -225,7 +226,7 @@ class MotionInspector {
                 std::string(still ? "static" : "moving") + " (hip " + Rounded(speed, 2) + " m/s)");
     if (!still) {
       found_.Warn(
-          "the person moves at the start: cut it by first_frame, or set initial_velocity "
+          "the person moves at the start: skip the motion by first_frame, or set initial_velocity "
           "to estimated or free");
     }
   }
@@ -255,7 +256,7 @@ class MotionInspector {
       if (across.norm() > farthest.norm()) farthest = across;
     }
     if (found_.onset_frame < 0) {
-      found_.Warn("the hip never moves by 2 cm: there is no push to be seen");
+      found_.Warn("the hip never moves by 2 cm: there is no push");
       return;
     }
     found_.Fact(

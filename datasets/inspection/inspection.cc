@@ -95,7 +95,8 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   found->format += ", " + Name(file.processor) + (file.floating ? ", floats" : ", integers");
   if (file.num_frames() < file.announced_frames) {
     found->Warn("the file ends after " + std::to_string(file.num_frames()) + " of " +
-                std::to_string(file.announced_frames) + " frames: it is truncated; fits refuse it");
+                std::to_string(file.announced_frames) +
+                " frames: it is truncated and cannot be fitted");
   }
   if (!file.points.empty()) {
     PointReadOptions options;
@@ -213,7 +214,7 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   if (!format) {
     const std::string first = FirstLine(path);
     if (first.empty() || first[0] != '{') {
-      return Error{"what this is cannot be told: names end in " + MotionFileEndings() +
+      return Error{"unknown kind of file: names must end in " + MotionFileEndings() +
                        ", or .json for a manifest",
                    path};
     }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/files/found_files.h"
@@ -69,7 +70,7 @@ class Maker {
     if (!massless_.empty()) {
       std::string names;
       for (const std::string& name : massless_) names += (names.empty() ? "" : ", ") + name;
-      return Error{"no mass is known of " + names +
+      return Error{"no mass is given for " + names +
                    "; list them in a file with the columns id,mass_kg"};
     }
     WarnOfUnusedMasses();
@@ -158,7 +159,7 @@ class Maker {
       recording.fps = rate.value();  // in the end that of the first
     }
     if (!(recording.fps > 0.0)) {
-      return Error{"it does not say its frame rate; give --fps",
+      return Error{"it does not give its frame rate; give --fps",
                    (fs::path(options_.folder) / files->front().path).string()};
     }
     recording.setting = Value(values, "setting", options_.setting);
@@ -191,7 +192,7 @@ class Maker {
     if (options_.up.empty() && options_.forward.empty()) return;
     if (!options_.up.empty()) recording->up = options_.up;
     if (!options_.forward.empty()) recording->forward = options_.forward;
-    recording->json = {{"up", recording->up}, {"forward", recording->forward}};
+    *recording->json = {{"up", recording->up}, {"forward", recording->forward}};
   }
 
   // The mapping is named from where the program runs.
@@ -245,9 +246,8 @@ class Maker {
   void CheckPush(const std::string& file) {
     const auto push = ReadPushCsv(file);
     if (push.ok()) return;
-    made_.warnings.push_back(
-        push.error().ToString() +
-        "; if it is a sensor's record, pushid-push --sensor makes a push of it");
+    made_.warnings.push_back(push.error().ToString() +
+                             "; if it is a sensor's record, convert it by pushid-push --sensor");
   }
 
   void WarnOfUnusedMasses() {
@@ -260,8 +260,8 @@ class Maker {
       if (used.count(id) == 0) unused.push_back(id);
     }
     if (unused.empty()) return;
-    made_.warnings.push_back("the masses name " + ListOfNames(unused) +
-                             ", whom no recording has: are the ids spelt as in the files' names?");
+    made_.warnings.push_back("the masses list " + ListOfNames(unused) +
+                             ", who is in no recording: are the ids spelt as in the file names?");
   }
 
   const ManifestOptions& options_;

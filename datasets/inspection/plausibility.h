@@ -35,26 +35,25 @@ class PlausibilityCheck {
     std::string what, advice;
     std::vector<std::string> cases;
   };
-  Doubt strong_{
-      "the push is above 1 kN", "people hardly push so: is its unit N, its window right?", {}};
+  Doubt strong_{"the push is above 1 kN",
+                "people rarely push so hard: is its unit N, and is its window right?",
+                {}};
   Doubt first_{"the push's first row stands out",
-               "who moves before a push begins is not pushed there: see pushid-push "
-               "--initial_velocity",
+               "the person already moves when the push begins: see pushid-push --initial_velocity",
                {}};
-  Doubt way_{"the person goes elsewhere than pushed",
+  Doubt way_{"the person moves in another direction than the push",
              "are `up` and `forward` right, and the push's sign?",
              {}};
   Doubt early_{"the person moves before being pushed",
                "is the push's start right, and the sensor's clock?",
                {}};
-  Doubt jump_{"the hip is faster than people are",
-              "does a marker jump there, and are unit and fps right?",
-              {}};
-  Doubt facing_{"by their ankles people face elsewhere than forward",
+  Doubt jump_{
+      "the hip is implausibly fast", "does a marker jump there, and are unit and fps right?", {}};
+  Doubt facing_{"according to the ankles people do not face forward",
                 "are `up` and `forward` right, and the ankles not exchanged?",
                 {}};
   Doubt rod_{
-      "the hip is at no person's distance from the ankles", "are `joints` and the unit right?", {}};
+      "the distance between hip and ankles is implausible", "are `joints` and the unit right?", {}};
 };
 
 }  // namespace pushid

@@ -84,13 +84,13 @@ MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
   const double files = points.unit ? MetresPer(*points.unit) : motion->metres_per_unit;
   motion->metres_per_unit = request.metres_per_unit.value_or(files);
   if (!points.unit && !Trimmed(points.unit_text).empty() && !request.metres_per_unit) {
-    return Error{"says its lengths are in " + Quoted(points.unit_text) +
-                     ", which is not known here; give length_unit (mm, cm or m) or length_scale "
-                     "(m) in the manifest",
-                 request.path};
+    return Error{
+        "gives lengths in " + Quoted(points.unit_text) +
+            ", an unknown unit; give length_unit (mm, cm or m) or length_scale (m) in the manifest",
+        request.path};
   }
   if (points.unit && files != motion->metres_per_unit) {
-    request.warn("says its lengths are " + Name(*points.unit) + "; they are read as " +
+    request.warn("gives lengths in " + Name(*points.unit) + "; they are read as " +
                  LengthText(motion->metres_per_unit));
   }
   return std::nullopt;

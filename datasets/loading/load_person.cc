@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "datasets/files/number_text.h"
@@ -98,7 +99,8 @@ class PersonLoader {
     }
     if (frame_time_s == 0.0) {
       return Error{
-          "neither the file nor the manifest says the frame rate; give fps in the manifest", path_};
+          "neither the file nor the manifest gives the frame rate; give fps in the manifest",
+          path_};
     }
     fps_ = WholeFrameRate(1.0 / frame_time_s);
     const std::string problem = FrameRateProblem(fps_);
@@ -112,7 +114,7 @@ class PersonLoader {
       return;
     }
     Warn("has a frame time of " + Rounded(frame_time_s) + " s (" + Rounded(1.0 / frame_time_s) +
-         " frames per second), the manifest says " + Rounded(fps_) +
+         " frames per second), the manifest gives " + Rounded(fps_) +
          " frames per second; the manifest's value is used");
   }
 
@@ -120,7 +122,7 @@ class PersonLoader {
     const int frames = static_cast<int>(motion->tracks[0].size());
     if (entry_.frames && *entry_.frames != frames) {
       return Error{"wrong frame count: the file has " + std::to_string(frames) +
-                       " frames, the manifest says " + std::to_string(*entry_.frames),
+                       " frames, the manifest gives " + std::to_string(*entry_.frames),
                    path_};
     }
     const int end = entry_.end_frame.value_or(frames);
@@ -158,7 +160,7 @@ class PersonLoader {
     if (weight[0] == 0.0) {
       const auto seen = std::find(weight.begin(), weight.end(), 1.0);
       return Error{"at frame " + std::to_string(entry_.first_frame) +
-                       ", where the fit starts, hip or ankles are not seen; " +
+                       ", where the fit starts, hip or ankles are missing; " +
                        (seen == weight.end()
                             ? std::string("no frame shows them all")
                             : "set first_frame to " +
@@ -202,7 +204,7 @@ class PersonLoader {
 
   MaybeError Turn(FileMotion* motion, RecordedPerson* person) const {
     const bool own =
-        mapping_.up.empty() || entry_.json.contains("up") || entry_.json.contains("forward");
+        mapping_.up.empty() || entry_.json->contains("up") || entry_.json->contains("forward");
     person->file_up = own ? entry_.up : mapping_.up;
     person->file_forward = own ? entry_.forward : mapping_.forward;
     const Result<Eigen::Matrix3d> rotation = AxesRotation(person->file_up, person->file_forward);
@@ -242,8 +244,9 @@ class PersonLoader {
     }
     const std::vector<int> filled = FilledRoles(motion.roles);
     if (!filled.empty() && UnfilledRoles(motion.roles).empty()) {
-      Warn("has no joints for " + RoleList(filled) +
-           ", which are filled from their neighbours; name them by \"joints\" where it has");
+      Warn(
+          "has no joints for " + RoleList(filled) +
+          ", which are filled from their neighbours; name them by \"joints\" if the file has them");
     }
     person->joints.assign(person->hip.size(), Track(motion.tracks.size()));
     for (std::size_t joint = 0; joint < motion.tracks.size(); ++joint) {

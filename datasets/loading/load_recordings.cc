@@ -92,8 +92,8 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     if (i == 0) recording.fps = loaded.value().fps;
     if (loaded.value().fps != recording.fps) {
       return OfRecording(
-          entry, {"the file says " + Rounded(loaded.value().fps) + " frames per second, but " +
-                      recording.people[0].file + " says " + Rounded(recording.fps) +
+          entry, {"the file gives " + Rounded(loaded.value().fps) + " frames per second, but " +
+                      recording.people[0].file + " gives " + Rounded(recording.fps) +
                       "; give the right one as fps in the manifest",
                   person.file});
     }

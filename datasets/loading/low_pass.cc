@@ -7,7 +7,7 @@
 namespace pushid {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
+using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -27,10 +27,10 @@ Biquad Butterworth(double cutoff_hz, double rate_hz) {
 }
 
 // In place, from the steady state at the first value.
-void Pass(const Biquad& filter, std::vector<Vector3>* x) {
-  Vector3 x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
-  for (Vector3& value : *x) {
-    const Vector3 y = filter.b * (value + 2.0 * x1 + x2) - filter.a1 * y1 - filter.a2 * y2;
+void Pass(const Biquad& filter, std::vector<Vector3d>* x) {
+  Vector3d x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
+  for (Vector3d& value : *x) {
+    const Vector3d y = filter.b * (value + 2.0 * x1 + x2) - filter.a1 * y1 - filter.a2 * y2;
     x2 = x1;
     x1 = value;
     y2 = y1;
@@ -43,15 +43,15 @@ void Pass(const Biquad& filter, std::vector<Vector3>* x) {
 
 double HighestCutoff(double rate_hz) { return 0.499 * rate_hz; }
 
-void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3>* track) {
+void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3d>* track) {
   const int frames = static_cast<int>(track->size());
   if (frames < 3) return;
   const Biquad filter = Butterworth(cutoff_hz, rate_hz);
   // Long enough for the filter to forget its start.
   const int wing = std::min(frames - 1, static_cast<int>(std::ceil(2.0 * rate_hz / cutoff_hz)));
-  std::vector<Vector3> x;
+  std::vector<Vector3d> x;
   x.reserve(frames + 2 * wing);
-  const Vector3 first = track->front(), last = track->back();
+  const Vector3d first = track->front(), last = track->back();
   for (int i = wing; i > 0; --i) x.push_back(2.0 * first - (*track)[i]);
   x.insert(x.end(), track->begin(), track->end());
   for (int i = 1; i <= wing; ++i) x.push_back(2.0 * last - (*track)[frames - 1 - i]);

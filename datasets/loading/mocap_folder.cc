@@ -21,7 +21,7 @@ Result<std::string> FindSkeleton(const std::string& folder) {
     if (fs::exists(path, ignored)) return path.string();
   }
   return Error{std::string("there is no ") + kSkeletonFile +
-                   " here or one folder higher; name a folder of clips by --folder",
+                   " here or one folder higher; give a folder of clips by --folder",
                folder};
 }
 

@@ -1,5 +1,6 @@
 // datasets: skeleton.json: which joints are particles, and how they hang together.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "datasets/files/json_fields.h"

@@ -48,7 +48,7 @@ MaybeError CheckPreparation(const PreparationOptions& options) {
       !(options.lowpass_hz >= kSlowestCutoff && options.lowpass_hz <= 1e4)) {
     return Error{"--lowpass_hz is " + Rounded(options.lowpass_hz) +
                  "; it must be a cut-off of at least " + Rounded(kSlowestCutoff) +
-                 " Hz, below which nothing of a push is left, or 0 for none"};
+                 " Hz (a lower one removes the push), or 0 for none"};
   }
   if (options.resample_fps != 0.0 && !IsRate(options.resample_fps)) {
     return Error{"--resample_fps is " + Rounded(options.resample_fps) +
@@ -73,8 +73,7 @@ MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording
   if (to == 0.0 || to == from) return std::nullopt;
   if (to < from && !(options.lowpass_hz > 0.0 && options.lowpass_hz <= 0.5 * to)) {
     return Error{"--resample_fps=" + Rounded(to) + " is below its " + Rounded(from) +
-                 " frames per second: faster movements would turn up as slow ones; pass "
-                 "--lowpass_hz=" +
+                 " frames per second: faster movements would be aliased; pass --lowpass_hz=" +
                  Rounded(to / 4.0, 3) + " or another cut-off of at most half the new rate"};
   }
   if (ResampledFrames(recording->num_frames(), from, to) < 3) {

@@ -45,7 +45,7 @@ Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::
   }
   if (frames > 0 && weight[0] == 0.0) {
     return Of(id, "at frame 0, where the fit starts, hip or ankles of " + Quoted(tracks.id) +
-                      " are not seen; leave the frames before they are out");
+                      " are missing; leave out the frames before they are visible");
   }
   person.hip = std::move(tracks.hip);
   person.left_ankle = std::move(tracks.left_ankle);
@@ -82,7 +82,7 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
                                       const PreparationOptions& preparation) {
   const std::string rate = FrameRateProblem(tracks.fps);
   if (!rate.empty()) return Of(tracks.id, "fps " + rate);
-  if (tracks.people.empty()) return Of(tracks.id, "nobody is in it");
+  if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
   Recording recording;
   recording.id = tracks.id;
   recording.fps = tracks.fps;

@@ -6,22 +6,22 @@
 namespace pushid {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
+using Eigen::Vector3d;
 
 // Per frame, from the neighbour beyond where it was seen; otherwise that of the straight line.
-Vector3 Slope(const std::vector<Vector3>& track, int at, int beyond, const Vector3& line) {
+Vector3d Slope(const std::vector<Vector3d>& track, int at, int beyond, const Vector3d& line) {
   const bool seen =
       beyond >= 0 && beyond < static_cast<int>(track.size()) && track[beyond].allFinite();
-  return seen ? Vector3((track[at] - track[beyond]) / (at - beyond)) : line;
+  return seen ? Vector3d((track[at] - track[beyond]) / (at - beyond)) : line;
 }
 
 // Between the seen frames `before` and `after`.
-void FillInside(int before, int after, bool curved, std::vector<Vector3>* track) {
-  const Vector3 from = (*track)[before], to = (*track)[after];
+void FillInside(int before, int after, bool curved, std::vector<Vector3d>* track) {
+  const Vector3d from = (*track)[before], to = (*track)[after];
   const double span = after - before;
-  const Vector3 line = (to - from) / span;
-  const Vector3 m0 = curved ? Slope(*track, before, before - 1, line) : line;
-  const Vector3 m1 = curved ? Slope(*track, after, after + 1, line) : line;
+  const Vector3d line = (to - from) / span;
+  const Vector3d m0 = curved ? Slope(*track, before, before - 1, line) : line;
+  const Vector3d m1 = curved ? Slope(*track, after, after + 1, line) : line;
   for (int i = before + 1; i < after; ++i) {
     const double s = (i - before) / span, r = 1.0 - s;
     (*track)[i] = r * r * (1.0 + 2.0 * s) * from + s * r * r * span * m0 +
@@ -31,7 +31,7 @@ void FillInside(int before, int after, bool curved, std::vector<Vector3>* track)
 
 }  // namespace
 
-GapCount FillGaps(int max_gap, std::vector<Vector3>* track, std::vector<double>* weight) {
+GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>* weight) {
   GapCount count;
   const int frames = static_cast<int>(track->size());
   for (int begin = 0; begin < frames;) {
@@ -51,7 +51,7 @@ GapCount FillGaps(int max_gap, std::vector<Vector3>* track, std::vector<double>*
     if (inside) {
       FillInside(begin - 1, end, fill, track);
     } else if (length < frames) {
-      const Vector3 nearest = begin > 0 ? (*track)[begin - 1] : (*track)[end];
+      const Vector3d nearest = begin > 0 ? (*track)[begin - 1] : (*track)[end];
       std::fill(track->begin() + begin, track->begin() + end, nearest);
     }
     begin = end;

@@ -1,6 +1,8 @@
 // datasets: mapping files.
 #include "datasets/manifest/column_mapping.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/formats/axes.h"
 #include "datasets/formats/frame_rate.h"
 #include "datasets/manifest/mapping_json.h"
@@ -53,7 +55,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   mapping.up = fields.OptionalText("up", "");
   mapping.forward = fields.OptionalText("forward", "");
   if (mapping.up.empty() != mapping.forward.empty()) {
-    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other: give up and forward");
+    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other one: give up and forward");
   }
   if (!mapping.up.empty() && !fields.error()) {
     const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);

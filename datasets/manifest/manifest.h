@@ -30,12 +30,12 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/kept_json.h"
 #include "datasets/formats/length_unit.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/recording.h"
@@ -106,7 +106,7 @@ struct ManifestRecording {
 
   // The entry as read, with the keys this program does not know. Writing starts from it and sets
   // the fields above on top.
-  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  KeptJson json{};
 };
 
 struct Manifest {
@@ -115,8 +115,7 @@ struct Manifest {
   std::optional<LengthUnit> length_unit;
   std::optional<double> length_scale;
   std::vector<ManifestRecording> recordings;
-  nlohmann::ordered_json json =
-      nlohmann::ordered_json::object();  // the top level, without `recordings`
+  KeptJson json;  // the top level, without `recordings`
 };
 
 // Reads and checks a manifest; does not open the files it names. Errors name file, line and

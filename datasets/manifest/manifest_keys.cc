@@ -27,8 +27,8 @@ const std::vector<std::string>& ManifestKeys() {
 
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
   std::vector<std::string> found;
-  if (!entry.json.is_object()) return found;
-  for (const auto& [key, value] : entry.json.items()) {
+  if (!entry.json->is_object()) return found;
+  for (const auto& [key, value] : entry.json->items()) {
     if (MeantBy(key, ManifestKeys()).empty()) continue;
     found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
                     MeantText(key, ManifestKeys()));

@@ -1,5 +1,6 @@
 // datasets: the manifest read and checked.
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -46,7 +47,7 @@ void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
   for (const MotionFormatRow& row : kMotionFormats) {
     if (!fields->Has(row.key)) continue;
     if (!key.empty()) {
-      fields->Fail(row.key, "is given beside " + key + "; the motion stands in one of them");
+      fields->Fail(row.key, "is given together with " + key + "; the motion is in one of them");
     }
     key = row.key;
     recording->motion_format = row.format;
@@ -152,7 +153,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   }
   if (fields.Has("end_frame")) {
     recording.end_frame =
-        fields.Whole("end_frame", "the frame behind the last one used, after first_frame",
+        fields.Whole("end_frame", "the frame after the last one used, after first_frame",
                      recording.first_frame + 1, kAnyFrame);
   }
   manifest->Add(fields);
@@ -182,7 +183,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
   if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
   manifest.length_scale = ReadLengthScale(&top);
   if (manifest.length_scale && manifest.length_unit && !top.failed()) {
-    top.Fail("length_scale", "is given beside units.bvh_length; give one of them");
+    top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
   }
   if (top.error()) return *top.error();
 
@@ -204,7 +205,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
   }
   if (top.failed()) return *top.error();
   manifest.json = document.content;
-  manifest.json.erase("recordings");
+  manifest.json->erase("recordings");
   return manifest;
 }
 

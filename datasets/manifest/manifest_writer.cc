@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/body_roles.h"
@@ -70,7 +71,7 @@ Json JointsJson(const JointMapping& joints, const Json& object) {
 }
 
 Json RecordingJson(const ManifestRecording& recording) {
-  Json json = recording.json.is_object() ? recording.json : Json::object();
+  Json json = recording.json->is_object() ? *recording.json : Json::object();
   json["id"] = recording.id;
   json["setting"] = recording.setting;
   // Left out again where the file says it.
@@ -119,7 +120,7 @@ Json RecordingJson(const ManifestRecording& recording) {
 }  // namespace
 
 MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
-  Json json = manifest.json.is_object() ? manifest.json : Json::object();
+  Json json = manifest.json->is_object() ? *manifest.json : Json::object();
   if (manifest.length_unit) {
     const std::string name = Name(*manifest.length_unit);
     const bool in_units =

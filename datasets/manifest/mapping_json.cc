@@ -1,6 +1,8 @@
 // datasets: joints and units in manifests and mapping files.
 #include "datasets/manifest/mapping_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/manifest/body_roles.h"
 
 namespace pushid {
@@ -90,7 +92,7 @@ std::optional<double> ReadLengthScale(JsonFields* fields) {
   const std::string problem = LengthScaleProblem(metres);
   if (!problem.empty()) fields->Fail(kKey, problem);
   if (fields->Has("length_unit")) {
-    fields->Fail(kKey, "is given beside length_unit; give one of them");
+    fields->Fail(kKey, "is given together with length_unit; give one of them");
   }
   return metres;
 }

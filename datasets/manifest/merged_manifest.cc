@@ -25,7 +25,7 @@ class Merger {
  public:
   MaybeError Add(Manifest manifest) {
     merged_.path += (merged_.path.empty() ? "" : ",") + manifest.path;
-    merged_.json["manifests"].push_back(std::move(manifest.json));
+    (*merged_.json)["manifests"].push_back(std::move(*manifest.json));
     for (ManifestRecording& entry : manifest.recordings) {
       if (MaybeError error = Check(manifest.path, entry)) return error;
       if (!entry.length_unit && !entry.length_scale) {
@@ -43,7 +43,7 @@ class Merger {
   MaybeError Check(const std::string& path, const ManifestRecording& entry) {
     const auto [id, new_id] = ids_.emplace(entry.id, Said{path, entry.line});
     if (!new_id) {
-      return Error{"recording " + Quoted(entry.id) + ": this id stands in " + id->second.Where() +
+      return Error{"recording " + Quoted(entry.id) + ": this id is in " + id->second.Where() +
                        " too; give one of them another, or leave one manifest out",
                    path, entry.line};
     }

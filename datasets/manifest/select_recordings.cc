@@ -39,9 +39,8 @@ MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& id
     const auto at = std::find_if(selected->begin(), selected->end(),
                                  [&](int index) { return manifest.recordings[index].id == id; });
     if (at == selected->end()) {
-      return Error{
-          "leave_out: there is no recording " + Quoted(id) + " among those that were asked for",
-          manifest.path, 0};
+      return Error{"leave_out: there is no recording " + Quoted(id) + " among the selected ones",
+                   manifest.path, 0};
     }
     selected->erase(at);
   }

@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
+using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 // Metres in the length of a moment's unit ("Nmm", "N.m", "N*cm"), else in `unit`.
@@ -38,10 +38,10 @@ class Platform {
 
   // Axes and centre; false when the corners span nothing.
   bool Place() {
-    const auto corner = [this](int i) -> Vector3 { return metres_ * platform_.corners.col(i); };
+    const auto corner = [this](int i) -> Vector3d { return metres_ * platform_.corners.col(i); };
     centre_ = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
-    const Vector3 x = corner(0) - corner(1), y = corner(0) - corner(3);
-    const Vector3 z = x.cross(y);
+    const Vector3d x = corner(0) - corner(1), y = corner(0) - corner(3);
+    const Vector3d z = x.cross(y);
     if (!(x.norm() > 1e-6 && y.norm() > 1e-6 && z.norm() > 1e-3 * x.norm() * y.norm())) {
       return false;
     }
@@ -57,21 +57,21 @@ class Platform {
     record.normal = -axes_.col(2);
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const std::size_t samples = file_.analog[platform_.channels[0]].samples.size();
-    Vector3 impulse = Vector3::Zero();
+    Vector3d impulse = Vector3d::Zero();
     for (std::size_t i = 0; i < samples; ++i) {
-      Vector3 force, centre;  // in the platform's axes; the centre on its surface
+      Vector3d force, centre;  // in the platform's axes; the centre on its surface
       double free_moment = 0.0;
       Sample(i, &force, &centre, &free_moment);
       const bool pressed = std::fabs(force.z()) >= kPressed && centre.allFinite();
       record.force.push_back(axes_ * force);
-      record.centre.push_back(pressed ? Vector3(centre_ + axes_ * centre)
-                                      : Vector3::Constant(kNaN));
+      record.centre.push_back(pressed ? Vector3d(centre_ + axes_ * centre)
+                                      : Vector3d::Constant(kNaN));
       // About z, which points inwards.
       record.free_moment.push_back(pressed ? -free_moment : 0.0);
       impulse += record.force.back();
     }
     if (impulse.dot(record.normal) < 0.0) {
-      for (Vector3& force : record.force) force = -force;
+      for (Vector3d& force : record.force) force = -force;
       for (double& moment : record.free_moment) moment = -moment;
     }
     return record;
@@ -97,15 +97,15 @@ class Platform {
   }
 
   // Force and moment at the centre of the surface, platform axes (types 2 to 4).
-  void Wrench(std::size_t i, Vector3* force, Vector3* moment) const {
+  void Wrench(std::size_t i, Vector3d* force, Vector3d* moment) const {
     if (platform_.type == 3) {
       const double fx12 = Raw(0, i), fx34 = Raw(1, i), fy14 = Raw(2, i), fy23 = Raw(3, i);
       const double fz1 = Raw(4, i), fz2 = Raw(5, i), fz3 = Raw(6, i), fz4 = Raw(7, i);
       const double a = metres_ * platform_.origin.x(), b = metres_ * platform_.origin.y();
       *force = {fx12 + fx34, fy14 + fy23, fz1 + fz2 + fz3 + fz4};
-      const Vector3 at_sensors = {b * (fz1 + fz2 - fz3 - fz4), a * (-fz1 + fz2 + fz3 - fz4),
-                                  b * (-fx12 + fx34) + a * (fy14 - fy23)};
-      *moment = at_sensors + force->cross(Vector3(0.0, 0.0, origin_.z()));
+      const Vector3d at_sensors = {b * (fz1 + fz2 - fz3 - fz4), a * (-fz1 + fz2 + fz3 - fz4),
+                                   b * (-fx12 + fx34) + a * (fy14 - fy23)};
+      *moment = at_sensors + force->cross(Vector3d(0.0, 0.0, origin_.z()));
       return;
     }
     Vector6 wrench;
@@ -115,14 +115,14 @@ class Platform {
     *moment = moment_metres_ * wrench.tail<3>() + force->cross(origin_);
   }
 
-  void Sample(std::size_t i, Vector3* force, Vector3* centre, double* free_moment) const {
+  void Sample(std::size_t i, Vector3d* force, Vector3d* centre, double* free_moment) const {
     if (platform_.type == 1) {
       *force = {Raw(0, i), Raw(1, i), Raw(2, i)};
       *centre = {metres_ * Raw(3, i), metres_ * Raw(4, i), 0.0};
       *free_moment = moment_metres_ * Raw(5, i);
       return;
     }
-    Vector3 moment;
+    Vector3d moment;
     Wrench(i, force, &moment);
     const double x = -moment.y() / force->z(), y = moment.x() / force->z();
     *centre = {x, y, 0.0};
@@ -132,7 +132,7 @@ class Platform {
   const C3dFile& file_;
   const C3dPlatform& platform_;
   double metres_, moment_metres_ = 1.0;
-  Vector3 origin_, centre_;
+  Vector3d origin_, centre_;
   Eigen::Matrix3d axes_;
   std::vector<double> baseline_;  // per channel
 };

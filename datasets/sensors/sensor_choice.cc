@@ -125,11 +125,9 @@ Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
     if (!table.ok()) return table.error();
     names = table.value().names;
   }
-  return Error{
-      "say what of it is the push by --sensor_column (in a list of sensors by \"column\"): "
-      "it has " +
-          (names.empty() ? "none" : ListOfNames(names)),
-      choice.file};
+  return Error{"select the push by --sensor_column (in a list of sensors by \"column\"): it has " +
+                   (names.empty() ? "none" : ListOfNames(names)),
+               choice.file};
 }
 
 // The mean height of the pressure, weighted by the force, along the file's axis that points up.
@@ -153,12 +151,12 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
     if (!ParseInteger(choice.column.substr(sizeof kPlatform - 1), &number) || number < 1 ||
         number > 1000) {
       return Error{Quoted(choice.column) +
-                   " is no platform; it must be platform:1 or another number"};
+                   " is not a platform; it must be platform:1 or another number"};
     }
     const std::optional<LengthUnit> unit = LengthUnitFromName(file.point_unit);
     if (!unit && !Trimmed(file.point_unit).empty()) {
       return Error{"its lengths are in " + Quoted(file.point_unit) +
-                       ", which is not known here, so that the height of a platform is not",
+                       ", which is unknown, so the height of a platform is unknown too",
                    choice.file};
     }
     const Result<PlatformRecord> platform = EvaluatePlatform(
@@ -215,7 +213,7 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
   if (!record.ok()) return record;
   record.value().file = choice.file;
   if (choice.zero_n != 0.0 && record.value().is_vector) {
-    return Error{"a force at rest can only be taken off a sensor of one number", choice.file};
+    return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
   }
   for (Eigen::Vector3d& force : record.value().force) {
     force *= choice.gain;

@@ -89,7 +89,7 @@ Result<SensorRecord> ReadSensorCsv(const std::string& path) {
     if (!record.time_s.empty() && row[0] <= record.time_s.back()) {
       return reader.ErrorHere("time " + Rounded(row[0], 9) + " s does not come after " +
                               Rounded(record.time_s.back(), 9) +
-                              " s; samples must stand in ascending order, each once");
+                              " s; samples must be in ascending order, each once");
     }
     record.time_s.push_back(row[0]);
     record.force.push_back(record.is_vector ? Eigen::Vector3d(row[1], row[2], row[3])

@@ -1,5 +1,6 @@
 // datasets: a list of sensors as JSON.
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_fields.h"
 #include "datasets/manifest/manifest.h"
@@ -51,7 +52,7 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     sensor.height_fraction = OptionalNumber(&fields, "height", "a fraction of the rod", 1.0);
     if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
     if (fields.Has("height") && fields.Has("height_m")) {
-      fields.Fail("height", "is given beside height_m; one of them says where it pushes");
+      fields.Fail("height", "is given together with height_m; give one of them");
     }
     if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
     sensor.idle_force = OptionalNumber(&fields, "idle_force", "a force in N", 0.0);

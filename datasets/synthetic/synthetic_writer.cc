@@ -1,5 +1,6 @@
 // datasets: synthetic recordings as files, through the writers that users have.
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "datasets/files/folders.h"
@@ -65,7 +66,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
   }
   Manifest manifest;
   manifest.length_unit = kUnit;
-  auto& about = manifest.json["synthetic"];
+  auto& about = (*manifest.json)["synthetic"];
   about["seed"] = options.seed;
   about["stance"] = NameOf(options.model.stance);
   about["joint_noise_m"] = options.joint_noise_m;

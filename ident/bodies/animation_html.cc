@@ -77,7 +77,7 @@ function storyPanel(){if(!data.story)return;const d=devicePixelRatio||1,w=Math.m
  for(let k=3;k>=0;k--){pen.strokeStyle=k===3?style('--ink'):looks[k];pen.lineWidth=(k===3?3:1.6)*d;pen.beginPath();F.forEach((f,t)=>t?pen.lineTo(X(t),Y(f[k])):pen.moveTo(X(t),Y(f[k])));pen.stroke();}
  const t=Math.min(frame,F.length-1);pen.strokeStyle=style('--push');pen.lineWidth=d;pen.beginPath();pen.moveTo(X(t),y0);pen.lineTo(X(t),y0+h);pen.stroke();
  pen.font=12*d+'px system-ui,sans-serif';pen.textAlign='left';pen.fillStyle=style('--ink');pen.fillText(Math.round(most)+' N along the push, '+data.story.person,x0+6*d,y0+14*d);
- ['net (thick)','push','others','own answer'].forEach((text,k)=>{pen.fillStyle=k?looks[k-1]:style('--ink');pen.fillText(text,x0+(6+80*k)*d,y0+h-6*d);});
+ ['net (thick)','push','others','own response'].forEach((text,k)=>{pen.fillStyle=k?looks[k-1]:style('--ink');pen.fillText(text,x0+(6+80*k)*d,y0+h-6*d);});
  data.story.moments.forEach((m,i)=>{const b=$('moment'+i);b.setAttribute('aria-current',frame>=m[0]&&frame<m[1]?'true':'false');});}
 if(data.story)data.story.moments.forEach((m,i)=>{$('moment'+i).onclick=()=>{play(false);frame=m[0];draw();};});
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;

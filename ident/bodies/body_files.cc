@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"

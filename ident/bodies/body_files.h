@@ -3,7 +3,7 @@
 // Every person moves in the skeleton that they came with (body_skeleton.h), joint by joint.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -2,6 +2,7 @@
 #include "ident/bodies/body_report.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ident/figures/text_table.h"
@@ -130,8 +131,7 @@ Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
     return metrics;
   } catch (const Json::exception& error) {
     return Error{
-        "these are no scores of bodies, as pushid-evaluate --restoration --json_out "
-        "writes them: " +
+        "this is not a file of body scores from pushid-evaluate --restoration --json_out: " +
             std::string(error.what()),
         file};
   }

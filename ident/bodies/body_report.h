@@ -1,7 +1,7 @@
 // ident: scores of bodies as JSON and as tables.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "ident/bodies/body_evaluation.h"

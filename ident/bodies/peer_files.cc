@@ -20,7 +20,7 @@ MadePeer MakeSimlpe(const RestorationFile&, const std::string&, TensorReader* re
 
 MadePeer MakeMrt(const RestorationFile& file, const std::string& path, TensorReader* reader) {
   MrtSize size = MrtSize::kSmall;
-  const std::string name = file.settings.value(kMrtSizeKey, NameOf(size));
+  const std::string name = file.settings->value(kMrtSizeKey, NameOf(size));
   if (MaybeError error = ParseName(kMrtSizeKey, name, &size)) return Error{error->message, path};
   return std::unique_ptr<Peer>(new MrtPeer(TakeMrt(size, reader)));
 }

@@ -176,7 +176,7 @@ std::vector<LegendEntry> LegendOf(const Animation& animation) {
   if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
     legend.push_back({"net force, 1 m = 1000 N", kForceLook});
   }
-  if (!animation.pushes.empty()) legend.push_back({"who is pushed, and the push", PushLook()});
+  if (!animation.pushes.empty()) legend.push_back({"pushed person and push", PushLook()});
   return legend;
 }
 

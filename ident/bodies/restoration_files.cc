@@ -43,7 +43,7 @@ using MadeRestoration = Result<std::unique_ptr<Restoration>>;
 
 Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
   RestorationView view = RestorationView::kPendulum;
-  const std::string name = file.settings.value(kViewKey, NameOf(view));
+  const std::string name = file.settings->value(kViewKey, NameOf(view));
   if (MaybeError error = ParseName(kViewKey, name, &view)) return Error{error->message, path};
   return view;
 }
@@ -62,7 +62,7 @@ MadeRestoration MakeWindow(const RestorationFile& file, const std::string& path,
 
 MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
                          TensorReader* reader) {
-  const std::string name = file.settings.value(kCvaeCoordinatesKey, Name(CvaeCoordinates::kTip));
+  const std::string name = file.settings->value(kCvaeCoordinatesKey, Name(CvaeCoordinates::kTip));
   const std::optional<CvaeCoordinates> coordinates = CvaeCoordinatesFromName(name);
   if (!coordinates) {
     return Error{
@@ -71,7 +71,7 @@ MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
   const CvaeLayout layout = {*coordinates, view.value() == RestorationView::kPendulum,
-                             file.settings.value(kCvaeHalvesKey, true)};
+                             file.settings->value(kCvaeHalvesKey, true)};
   const auto draws = [] {
     const auto random = std::make_shared<Random>(kDrawsSeed);
     return NormalSource([random] { return random->Normal(); });
@@ -99,7 +99,7 @@ Result<bool> LearnedAlone(const std::string& folder) {
   if (folder == Name(RestorationKind::kRigid)) return false;
   const Result<RestorationFile> file = ReadRestorationFile(folder);
   if (!file.ok()) return file.error();
-  return file.value().training.value(kMostPeopleKey, 0) == 1;
+  return file.value().training->value(kMostPeopleKey, 0) == 1;
 }
 
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, const char* flag) {

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "datasets/files/error.h"
+#include "datasets/files/kept_json.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/restoration_kind.h"
 #include "models/restoration/tensors.h"
@@ -29,8 +29,8 @@ inline constexpr char kMostPeopleKey[] = "most_people";
 
 struct RestorationFile {
   RestorationKind kind = RestorationKind::kWindow;
-  nlohmann::ordered_json settings = nlohmann::ordered_json::object();  // of the kind
-  nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
+  KeptJson settings{};  // of the kind
+  KeptJson training{};  // provenance
   TensorList tensors;
 };
 

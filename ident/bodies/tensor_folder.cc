@@ -2,6 +2,7 @@
 #include "ident/bodies/tensor_folder.h"
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/content_hash.h"
 #include "datasets/files/folders.h"
@@ -67,11 +68,11 @@ MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& fo
   const Result<std::string> hash = HashFile(weights);
   if (!hash.ok()) return hash.error();
   Json json = {{"format", kind.format}, {"kind", content.kind}};
-  json["settings"] = content.settings;
+  json["settings"] = *content.settings;
   json["weights"] = kWeightsFile;
   json["weights_hash"] = hash.value();
   json["tensors"] = tensors;
-  json["training"] = content.training;
+  json["training"] = *content.training;
   return WriteJson(JsonFileOf(kind, folder), json);
 }
 

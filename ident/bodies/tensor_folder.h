@@ -9,11 +9,10 @@
 // generators are such folders.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
+#include "datasets/files/kept_json.h"
 #include "models/restoration/tensors.h"
 
 namespace pushid {
@@ -28,8 +27,8 @@ struct TensorFolderKind {
 
 struct TensorFolder {
   std::string kind;
-  nlohmann::ordered_json settings = nlohmann::ordered_json::object();
-  nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
+  KeptJson settings{};
+  KeptJson training{};  // provenance
   TensorList tensors;
 };
 

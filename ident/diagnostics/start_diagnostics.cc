@@ -90,9 +90,7 @@ MaybeError CheckEffects(const FitProblem& problem) {
   }
   if (list.empty()) return std::nullopt;
   return Error{list + (list.find(',') == std::string::npos ? " has" : " have") +
-               " no effect on any of these recordings and cannot be fitted; hold what has none "
-               "with --fix=" +
-               list};
+               " no effect on any of these recordings and cannot be fitted; use --fix=" + list};
 }
 
 namespace {

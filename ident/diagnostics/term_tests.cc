@@ -1,13 +1,14 @@
 // ident: score tests of terms that are held at zero.
 #include "ident/diagnostics/term_tests.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -71,11 +72,10 @@ std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estim
     (is_term ? tested : known).push_back(i);
   }
   const Eigen::MatrixXd of_known = score.jacobian(Eigen::all, known);
+  const Eigen::MatrixXd explained = of_known.transpose() * score.jacobian(Eigen::all, tested);
   const Eigen::MatrixXd columns =
       score.jacobian(Eigen::all, tested) -
-      of_known * (of_known.transpose() * of_known)
-                     .ldlt()
-                     .solve(of_known.transpose() * score.jacobian(Eigen::all, tested));
+      of_known * SolveSymmetric(of_known.transpose() * of_known, explained);
   std::vector<TermTest> tests;
   for (size_t k = 0; k < tested.size(); ++k) {
     Eigen::VectorXd scores = Eigen::VectorXd::Zero(clusters.count());

@@ -1,6 +1,8 @@
 // ident: the page around a moving figure.
 #include "ident/figures/moving_page.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/figures/svg.h"
 
 namespace pushid {
@@ -10,7 +12,7 @@ constexpr char kHead[] = R"html(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <title>)html";
 
-constexpr char kStyle[] =
+constexpr char kMovingPageStyle[] =
     R"html(body{margin:0;background:var(--paper);color:var(--ink);font:14px system-ui,sans-serif;display:flex;flex-direction:column;min-height:100vh;height:100vh}
 header,footer{padding:8px 14px;display:flex;gap:14px;align-items:center;flex-wrap:wrap}
 h1{font-size:15px;margin:0 auto 0 0}canvas{flex:1;min-height:0;width:100%;touch-action:none;cursor:grab}
@@ -32,13 +34,13 @@ constexpr char kFooter[] = R"html(; drag to turn, wheel to zoom"></canvas>
 <script>
 const data=)html";
 
-constexpr char kBefore[] = R"html(;
+constexpr char kScriptBefore[] = R"html(;
 const $=id=>document.getElementById(id),view=$('view'),pen=view.getContext('2d');
 $('title').textContent=data.title;$('time').max=data.frames-1;
 function style(name){return getComputedStyle(document.documentElement).getPropertyValue(name);}
 )html";
 
-constexpr char kAfter[] = R"html(let playing=false,last=0;
+constexpr char kScriptAfter[] = R"html(let playing=false,last=0;
 function tick(now){if(!playing)return;const steps=(now-last)/1000/data.dt*$('speed').value;
  if(steps>=1){frame+=Math.floor(steps);last=now;if(frame>=data.frames)frame=0;draw();}requestAnimationFrame(tick);}
 function play(on){playing=on;$('play').textContent=on?'Pause':'Play';if(on){last=performance.now();if(frame>=data.frames-1)frame=0;requestAnimationFrame(tick);}}
@@ -70,10 +72,10 @@ std::string ToHtml(const MovingPage& page) {
   const std::string title = page.data.at("title");
   return kHead + EscapeXml(title) + "</title>\n<style>\n:root{--paper:#fff;--ink:#222;" +
          page.light + "}\n@media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;" +
-         page.dark + "}}\n" + kStyle + page.choices +
+         page.dark + "}}\n" + kMovingPageStyle + page.choices +
          "</header>\n<canvas id=\"view\" aria-label=\"" + page.described + kFooter +
          ForScript(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) +
-         kBefore + page.script + kAfter;
+         kScriptBefore + page.script + kScriptAfter;
 }
 
 }  // namespace pushid

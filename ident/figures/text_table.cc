@@ -30,4 +30,8 @@ std::string TextTable::ToString() const {
   return text;
 }
 
+std::string WithUnit(const std::string& name, const std::string& unit) {
+  return name + (unit == "1" ? "" : ", " + unit);
+}
+
 }  // namespace pushid

@@ -24,4 +24,10 @@ class TextTable {
   std::vector<bool> left_;
 };
 
+// For `left`: every column is words.
+inline std::vector<bool> AllWords(size_t columns) { return std::vector<bool>(columns, true); }
+
+// The head of a column: "mu, N s/m", and the name alone where the unit is "1".
+std::string WithUnit(const std::string& name, const std::string& unit);
+
 }  // namespace pushid

@@ -80,8 +80,8 @@ MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
   GeneratorSettings& settings = loaded->settings;
   if (loaded->kind != GeneratorKind::kDiffusion) {
     return Error{"--" + flag + " names a generator of " + NameOf(loaded->kind) +
-                 ", whose people do not see each other: nobody but the pushed would move; give one "
-                 "that pushid-train-generator --kind=" +
+                 ", whose people do not interact: only the pushed would move; give one that "
+                 "pushid-train-generator --kind=" +
                  NameOf(GeneratorKind::kDiffusion) + " wrote"};
   }
   if (!AtRateOf(settings, scene.dt)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "datasets/exchange/hip_trajectories.h"
@@ -134,7 +135,7 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
   }
   Manifest manifest;
   manifest.length_unit = kUnit;
-  manifest.json["synthetic"]["formation"] = true;  // made by a model: may be overwritten
+  (*manifest.json)["synthetic"]["formation"] = true;  // made by a model: may be overwritten
   manifest.recordings = {entry};
   return WriteManifest(folder + "/manifest.json", manifest);
 }

@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kLeft = 112, kTop = 40, kMapWidth = 610, kWidth = 960, kSide = 770;
+constexpr double kWaveLeft = 112, kWaveTop = 40, kMapWidth = 610, kWaveWidth = 960, kSide = 770;
 constexpr double kFastWalk = 2.5;  // m/s; faster than that somebody falls, and colours saturate
 constexpr int kColours = 48;       // levels of speed that are told apart, either way
 constexpr char kPushFrame[] = "fill:none;stroke:#ff5a36;stroke-width:2";
@@ -25,13 +25,13 @@ class WavePicture {
       : run_(run),
         onsets_(onsets),
         row_(std::clamp(380.0 / run.num_people(), 3.0, 30.0)),
-        bottom_(kTop + row_ * run.num_people()),
-        time_(0.0, run.Seconds(run.num_frames()), kLeft, kLeft + kMapWidth),
-        svg_(kWidth, std::max(bottom_ + 62.0, 400.0), title) {
+        bottom_(kWaveTop + row_ * run.num_people()),
+        time_(0.0, run.Seconds(run.num_frames()), kWaveLeft, kWaveLeft + kMapWidth),
+        svg_(kWaveWidth, std::max(bottom_ + 62.0, 400.0), title) {
     for (const PersonSummary& person : run.summaries)
       fastest_ = std::max(fastest_, person.peak_speed);
     full_ = std::min(fastest_, kFastWalk);
-    svg_.Text(kLeft, 22, title, "ink bold");
+    svg_.Text(kWaveLeft, 22, title, "ink bold");
   }
 
   std::string Draw() {
@@ -45,7 +45,7 @@ class WavePicture {
   }
 
  private:
-  double RowTop(int person) const { return kTop + row_ * person; }
+  double RowTop(int person) const { return kWaveTop + row_ * person; }
   // The colour goes with the root of the speed: a wave that fades stays visible.
   double Fraction(double speed) const {
     return full_ > 0.0 ? std::sqrt(std::min(1.0, speed / full_)) : 0.0;
@@ -75,14 +75,14 @@ class WavePicture {
     const double y = RowTop(person) + 0.5 * row_ + 4.0;
     if (person % every == 0) {
       const Vector4<double>& q = run_.recording.scene.people[person].start.q;
-      svg_.Text(kLeft - 8, y,
+      svg_.Text(kWaveLeft - 8, y,
                 std::to_string(person) + "  (" + SvgNumber(q[0]) + ", " + SvgNumber(q[1]) + ")",
                 "ink small end");
     }
     const Outcome outcome = run_.summaries[person].outcome;
     if (outcome == Outcome::kFell || (outcome == Outcome::kSlow && every == 1)) {
       // There is no room for "slow to settle".
-      svg_.Text(kLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : Name(outcome),
+      svg_.Text(kWaveLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : Name(outcome),
                 "ink small");
     }
   }
@@ -113,43 +113,43 @@ class WavePicture {
   }
 
   void TimeAxis() {
-    svg_.Line(kLeft, bottom_, kLeft + kMapWidth, bottom_, "axis");
+    svg_.Line(kWaveLeft, bottom_, kWaveLeft + kMapWidth, bottom_, "axis");
     for (double t : time_.Ticks(8)) {
       svg_.Line(time_(t), bottom_, time_(t), bottom_ + 4, "axis");
       svg_.Text(time_(t), bottom_ + 17, SvgNumber(t), "ink small middle");
     }
-    svg_.Text(kLeft + 0.5 * kMapWidth, bottom_ + 33, "time (s)", "ink middle");
-    svg_.Text(kLeft - 8, kTop - 8, "person (x, y in m)", "faint small end");
+    svg_.Text(kWaveLeft + 0.5 * kMapWidth, bottom_ + 33, "time (s)", "ink middle");
+    svg_.Text(kWaveLeft - 8, kWaveTop - 8, "person (x, y in m)", "faint small end");
     const double y = bottom_ + 50;
-    svg_.Rect({kLeft, y - 9, 16, 10}, kPushFrame);
-    svg_.Text(kLeft + 22, y, "push", "faint small");
-    svg_.Circle(kLeft + 68, y - 4, 4, kOnsetDot);
+    svg_.Rect({kWaveLeft, y - 9, 16, 10}, kPushFrame);
+    svg_.Text(kWaveLeft + 22, y, "push", "faint small");
+    svg_.Circle(kWaveLeft + 68, y - 4, 4, kOnsetDot);
     const std::string onset = "onset: the hip has moved 2 cm";
-    svg_.Text(kLeft + 78, y,
-              onset + (onsets_.empty() ? ""
-                                       : "; bar: 90 % of what the parameters "
-                                         "leave open"),
-              "faint small");
+    svg_.Text(
+        kWaveLeft + 78, y,
+        onset +
+            (onsets_.empty() ? "" : "; bar: 90 % interval from the uncertainty of the parameters"),
+        "faint small");
   }
 
   void ColourBar() {
     constexpr double kHalf = 80.0, kStep = kHalf / kColours;
     const double middle = kSide + kHalf;
-    svg_.Text(kSide, kTop + 2, "speed of the hip (m/s)", "ink");
+    svg_.Text(kSide, kWaveTop + 2, "speed of the hip (m/s)", "ink");
     for (int k = -kColours; k < kColours; ++k) {
-      svg_.Rect({middle + kStep * k, kTop + 10, kStep, 12},
+      svg_.Rect({middle + kStep * k, kWaveTop + 10, kStep, 12},
                 "fill:" + SignedColourOf((k + 0.5) / kColours));
     }
     for (double v : SvgScale(0.0, full_, 0.0, 1.0).Ticks(2)) {
       for (double side : {-1.0, 1.0}) {
         const double x = middle + side * kHalf * Fraction(v);
-        svg_.Line(x, kTop + 22, x, kTop + 26, "axis");
-        if (v > 0.0 || side > 0.0) svg_.Text(x, kTop + 37, SvgNumber(v), "ink small middle");
+        svg_.Line(x, kWaveTop + 22, x, kWaveTop + 26, "axis");
+        if (v > 0.0 || side > 0.0) svg_.Text(x, kWaveTop + 37, SvgNumber(v), "ink small middle");
       }
     }
-    svg_.Text(kSide, kTop + 51, "back", "ink small");
-    svg_.Text(middle + kHalf, kTop + 51, "forward or aside", "ink small end");
-    svg_.Text(kSide, kTop + 66,
+    svg_.Text(kSide, kWaveTop + 51, "back", "ink small");
+    svg_.Text(middle + kHalf, kWaveTop + 51, "forward or aside", "ink small end");
+    svg_.Text(kSide, kWaveTop + 66,
               full_ < fastest_
                   ? "saturated from " + Rounded(full_, 3) + " on; fastest " + Rounded(fastest_, 3)
                   : "full colour: " + Rounded(full_, 3) + ", the fastest",
@@ -167,7 +167,7 @@ class WavePicture {
     }
     const double pixels =
         std::min(140.0 / std::max(x_max, 0.1), 110.0 / std::max(2.0 * y_max, 0.1));
-    const double left = kSide + 12, middle = kTop + 114 + pixels * y_max;
+    const double left = kSide + 12, middle = kWaveTop + 114 + pixels * y_max;
     double radius = 11.0;
     for (size_t n = 1; n < people.size(); ++n) {
       const double gap = (people[n].start.q - people[n - 1].start.q).head<2>().norm();
@@ -175,7 +175,7 @@ class WavePicture {
     }
     std::set<int> pushed;
     for (const ScenePush& push : run_.recording.scene.pushes) pushed.insert(push.person);
-    svg_.Text(kSide, kTop + 90, "from above; pushes go right", "ink");
+    svg_.Text(kSide, kWaveTop + 90, "from above; pushes go right", "ink");
     for (size_t n = 0; n < people.size(); ++n) {
       const double x = left + pixels * people[n].start.q[0];
       const double y = middle - pixels * people[n].start.q[1];

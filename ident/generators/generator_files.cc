@@ -1,6 +1,8 @@
 // ident: generators written and read.
 #include "ident/generators/generator_files.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/files/number_text.h"
 #include "datasets/manifest/recording_names.h"
 #include "ident/bodies/tensor_folder.h"
@@ -67,7 +69,7 @@ ParticleLayout LayoutFrom(const Json& json) {
     layout.weights.push_back(particle.at("weight"));
     Demand(layout.mirrored[i] >= 0 && layout.mirrored[i] < count && layout.parents[i] >= kNoBone &&
                layout.parents[i] < i,
-           "particle " + std::to_string(i) + " names particles that there are not");
+           "particle " + std::to_string(i) + " names particles that do not exist");
     if (layout.parents[i] != kFixedPoint) continue;
     for (int k = 0; k < 3; ++k) layout.fixed(k, i) = particle.at("fixed_m").at(k);
   }
@@ -88,7 +90,7 @@ Json SettingsJson(const TrainedNetworks& trained) {
 }
 
 TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
-  const Json& json = folder.settings;
+  const Json& json = *folder.settings;
   TrainedNetworks trained;
   GeneratorSettings& settings = trained.settings;
   ParseSetting(json, "data", &settings.data);
@@ -98,7 +100,7 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.pendulum = json.value("pendulum", false);  // files from before have none
   for (const Json& name : json.value("push_kinds", Json::array())) {
     const std::optional<PushKind> kind = PushKindFromName(name.get<std::string>());
-    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is none");
+    Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
     settings.push_kinds.push_back(*kind);
   }
   settings.layout = LayoutFrom(json.at("layout"));

@@ -5,12 +5,12 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include "datasets/files/error.h"
+#include "datasets/files/kept_json.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 #include "models/push.h"
@@ -47,7 +47,7 @@ struct GeneratorSettings {
   std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
   std::optional<ForecastChoice> choice;                                // none: nothing was compared
-  nlohmann::ordered_json training = nlohmann::ordered_json::object();  // provenance
+  KeptJson training{};  // provenance
 };
 
 // The networks of a generator of particles, and of one of diffusion.

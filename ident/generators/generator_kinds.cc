@@ -2,6 +2,7 @@
 #include "ident/generators/generator_kinds.h"
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/random.h"
 #include "ident/generators/push_particles.h"
@@ -87,7 +88,7 @@ TrainedParticles ReadParticles(const Json& json, const GeneratorSettings& settin
 
 TrainedDiffusion ReadDiffusion(const Json& json, const GeneratorSettings& settings,
                                TensorReader* reader) {
-  Demand(settings.layout.num_particles() == kBodyJoints, "diffusion knows bodies of 22 joints");
+  Demand(settings.layout.num_particles() == kBodyJoints, "diffusion needs bodies of 22 joints");
   TrainedDiffusion trained;
   DiffusionStructure structure;
   ParseSetting(json, "pooling", &structure.pooling);

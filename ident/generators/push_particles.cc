@@ -89,10 +89,10 @@ std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene
     other += (other.empty() ? "" : ", ") + Name(kind);
   }
   if (other.empty()) return "";
-  return "the generator learned from pushes of kind " + known + " and is given some of kind " +
-         other +
-         ": people may go farther or less far than after such a push (an external push is "
-         "whole, the others go on after their frames)";
+  return "the generator was trained on pushes of kind " + known +
+         " and is applied to pushes of kind " + other +
+         ": predicted displacements may be too large or too small (an external push is complete, "
+         "the others continue after their frames)";
 }
 
 bool AtRateOf(const GeneratorSettings& settings, double dt) {
@@ -126,7 +126,7 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
                  std::to_string(observed) + " and has nothing to forecast"};
   }
   if (settings.pendulum && hips.empty()) {
-    return Error{"this generator corrects physics; give their model by --physics"};
+    return Error{"this generator corrects the physical model; give that model by --physics"};
   }
   std::vector<ObservedMotion> people = GroupOf(recording, hips);
   for (ObservedMotion& person : people) {

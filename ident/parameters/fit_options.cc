@@ -52,8 +52,8 @@ std::string NetworkViolation(const FitOptions& o) {
   }
   if (large && o.model.interaction.drive) {
     return LearnedName(*network) +
-           " is trained by its gradient, which does not know --interaction=drive; choose a smaller "
-           "network, or leave drive out";
+           " is trained by its gradient, which does not support --interaction=drive; choose a "
+           "smaller network, or leave drive out";
   }
   if (o.ensemble > 1 && pooled) {
     return "--ensemble does not go together with --pool: its members share all parameters";
@@ -80,10 +80,11 @@ std::string StanceViolation(const FitOptions& o) {
 std::string LossViolation(const FitOptions& o) {
   if (o.sigmas.loss != FrameLoss::kLdp) return "";
   if (o.sigma_source == SigmaSource::kEstimate) {
-    return "--loss=ldp weighs all states alike: --sigmas must be fixed";
+    return "--loss=ldp weights all states equally: --sigmas must be fixed";
   }
   if (o.model.learned != nullptr && o.model.learned->rod.moves()) {
-    return "--loss=ldp does not see the rod's length, which --rod would learn; drop one of the two";
+    return "--loss=ldp does not include the rod's length, which --rod would learn; drop one of the "
+           "two";
   }
   return "";
 }

@@ -1,6 +1,8 @@
 // ident: options and parameter tables to and from JSON.
 #include "ident/parameters/fit_options_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/own_laws.h"
 

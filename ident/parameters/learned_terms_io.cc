@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -216,7 +217,7 @@ RodShape RodFromJson(const Json& json) {
   const std::string kind = json.at("kind");
   const auto* known = std::find(std::begin(kRodKinds), std::end(kRodKinds), kind);
   if (known == std::end(kRodKinds)) {
-    throw std::runtime_error("rod: '" + kind + "' is no kind (constant, linear, mlp)");
+    throw std::runtime_error("rod: '" + kind + "' is not a kind (constant, linear, mlp)");
   }
   RodShape rod;
   rod.kind = static_cast<RodKind>(known - kRodKinds);
@@ -261,7 +262,7 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   const std::string kind = json.at("kind");
   s.kind = KindOf(kind);
   if (!s.any() && kind != kKinds[0]) {
-    throw std::runtime_error("network: '" + kind + "' is no kind (none, mlp, gru, lstm)");
+    throw std::runtime_error("network: '" + kind + "' is not a kind (none, mlp, gru, lstm)");
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
   if (json.contains("interaction")) network.pair = PairFromJson(json.at("interaction"));

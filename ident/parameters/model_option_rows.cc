@@ -1,5 +1,6 @@
 // ident: rows of the options that say what the model is.
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
@@ -40,7 +41,7 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 Row StanceRow() {
   Row row = NameRow<Stance>(
       "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
-      "what feet do: slide (the cart is free from the first newton on), or threshold (they hold "
+      "behaviour of the feet: slide (the cart moves under any force), or threshold (they hold "
       "until the capture point leaves their support, then step)");
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
     Stance stance;
@@ -68,20 +69,20 @@ Row LikelihoodRow() {
 }
 
 Row SelfForceRow() {
-  Row row = Decided(WordsRow(
-      "self_force", OptionStage::kModel,
-      "what is fitted on top: none, linear (cross terms, quadratic), a network by kind and hidden "
-      "size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a network, "
-      "comma-separated",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        const Result<SelfForceChoice> choice = ParseSelfForce("--self_force", text);
-        if (!choice.ok()) return choice.error();
-        SetSelfForce(choice.value().kind, o);
-        LearnedTerms network = Learned(*o);
-        network.shape = choice.value().network;
-        SetLearned(network, o);
-        return std::nullopt;
-      }));
+  Row row = Decided(WordsRow("self_force", OptionStage::kModel,
+                             "additional self force: none, linear (cross terms, quadratic), a "
+                             "network by kind and hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 "
+                             "with an embedding), or linear and a network, comma-separated",
+                             [](const std::string& text, FitOptions* o) -> MaybeError {
+                               const Result<SelfForceChoice> choice =
+                                   ParseSelfForce("--self_force", text);
+                               if (!choice.ok()) return choice.error();
+                               SetSelfForce(choice.value().kind, o);
+                               LearnedTerms network = Learned(*o);
+                               network.shape = choice.value().network;
+                               SetLearned(network, o);
+                               return std::nullopt;
+                             }));
   row.json = "/self_force";
   row.write = [](const FitOptions& o) {
     return Json(SelfForceText(o.self_force, o.model.learned.get()));
@@ -112,7 +113,7 @@ Row RodRow() {
 
 Row RodInputRow() {
   return BoolRow(
-      "rod_input", "let the self force's network see how far the rod has moved",
+      "rod_input", "use the displacement of the rod as an input of the self force's network",
       [](const FitOptions& o) { return Learned(o).shape.rod_input; },
       [](bool value, FitOptions* o) {
         LearnedTerms network = Learned(*o);
@@ -129,22 +130,22 @@ Row PresetPriorsRow() {
 }
 
 Row InteractionRow() {
-  Row row = Decided(WordsRow(
-      "interaction", OptionStage::kModel,
-      "what people do to each other: none, or some of these, comma-separated: contact (smooth "
-      "and mutual: spring,damping), spring, damping, ldp (smoothed: potential,lean), "
-      "potential, lean, ldp_discrete (LDP's exact form, to evaluate), network:4 (learned beside "
-      "contact, by hidden sizes), network (given by --interaction_network), drive (who was pushed "
-      "by others steps on)",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        const Result<InteractionChoice> choice = ParseInteraction("--interaction", text);
-        if (!choice.ok()) return choice.error();
-        o->model.interaction = choice.value().terms;
-        LearnedTerms learned = Learned(*o);
-        learned.pair = choice.value().pair;
-        SetLearned(learned, o);
-        return std::nullopt;
-      }));
+  Row row = Decided(
+      WordsRow("interaction", OptionStage::kModel,
+               "interaction between people: none, or some of these, comma-separated: contact "
+               "(smooth and mutual: spring,damping), spring, damping, ldp (smoothed: "
+               "potential,lean), potential, lean, ldp_discrete (LDP's exact form, for evaluation "
+               "only), network:4 (learned beside contact, by hidden sizes), network (given by "
+               "--interaction_network), drive (people pushed by others keep stepping)",
+               [](const std::string& text, FitOptions* o) -> MaybeError {
+                 const Result<InteractionChoice> choice = ParseInteraction("--interaction", text);
+                 if (!choice.ok()) return choice.error();
+                 o->model.interaction = choice.value().terms;
+                 LearnedTerms learned = Learned(*o);
+                 learned.pair = choice.value().pair;
+                 SetLearned(learned, o);
+                 return std::nullopt;
+               }));
   row.json = "/interaction";
   row.text = [](const FitOptions& o) { return InteractionText(o.model); };
   row.write = [](const FitOptions& o) { return Json(InteractionText(o.model)); };
@@ -181,7 +182,7 @@ std::vector<Row> ModelOptionRows() {
       StanceRow(),
       MayBeAbsent(NameRow<SupportSource>(
           "support", "/support", [](O & o) -> auto& { return o.support; },
-          "with --stance=threshold, what feet support: table (support_front and its like, free or "
+          "with --stance=threshold, area that the feet support: table (support_front etc., free or "
           "fixed) or feet (held at the distances from ankles to toes and heels, where recorded, "
           "with ankle torques up to the weight times these)")),
       SelfForceRow(),
@@ -213,9 +214,9 @@ std::vector<Row> ModelOptionRows() {
       InteractionNetworkRow(),
       MayBeAbsent(NameRow<ProcessNoiseTerms>(
           "process_noise", "/process_noise", [](O & o) -> auto& { return o.model.process_noise; },
-          "white forces beside all others: none, diagonal, or full (correlated); with speed and "
-          "push, comma-separated, it grows with the cart's speed and has a factor while a push "
-          "acts")),
+          "white-noise forces in addition to all others: none, diagonal, or full (correlated); "
+          "with speed and push, comma-separated, it grows with the cart's speed and has a factor "
+          "while a push acts")),
       LikelihoodRow(),
       PresetPriorsRow(),
   };

@@ -2,6 +2,7 @@
 #include "ident/parameters/network_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <vector>
 
@@ -12,13 +13,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::vector<double> Row(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
+std::vector<double> ToVector(const Eigen::VectorXd& v) { return {v.data(), v.data() + v.size()}; }
 
 Eigen::VectorXd Numbers(const Json& json, const std::string& what) {
   const auto values = json.get<std::vector<double>>();
   for (double value : values) {
     if (!std::isfinite(value))
-      throw std::runtime_error(what + " holds a number that is not finite");
+      throw std::runtime_error(what + " contains a number that is not finite");
   }
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -61,18 +62,18 @@ nlohmann::ordered_json ToJson(const InteractionNetwork& network) {
   for (const MlpLayer& layer : network.mlp.layers) {
     Json rows = Json::array();
     for (Eigen::Index i = 0; i < layer.weights.rows(); ++i) {
-      rows.push_back(Row(layer.weights.row(i).transpose()));
+      rows.push_back(ToVector(layer.weights.row(i).transpose()));
     }
-    layers.push_back({{"weights", rows}, {"bias", Row(layer.bias)}});
+    layers.push_back({{"weights", rows}, {"bias", ToVector(layer.bias)}});
   }
   Json json = {{"activation", network.mlp.activation == Activation::kTanh ? "tanh" : "relu"},
                {"layers", layers},
-               {"input_mean", Row(network.mean)},
-               {"input_deviation", Row(network.deviation)},
-               {"output_scale", Row(network.scale)},
-               {"output_offset", Row(network.offset)}};
-  if (network.lowest) json["output_lowest"] = Row(*network.lowest);
-  if (network.highest) json["output_highest"] = Row(*network.highest);
+               {"input_mean", ToVector(network.mean)},
+               {"input_deviation", ToVector(network.deviation)},
+               {"output_scale", ToVector(network.scale)},
+               {"output_offset", ToVector(network.offset)}};
+  if (network.lowest) json["output_lowest"] = ToVector(*network.lowest);
+  if (network.highest) json["output_highest"] = ToVector(*network.highest);
   return json;
 }
 
@@ -111,7 +112,7 @@ Result<std::shared_ptr<const InteractionNetwork>> ReadInteractionNetwork(const s
   try {
     return InteractionNetworkFromJson(document.value().content);
   } catch (const std::exception& exception) {
-    return Error{std::string("this is no interaction network: ") + exception.what(), path};
+    return Error{std::string("this is not an interaction network: ") + exception.what(), path};
   }
 }
 

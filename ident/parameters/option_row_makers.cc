@@ -1,6 +1,8 @@
 // ident: numbers, counts and words as rows.
 #include "ident/parameters/option_row_makers.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -11,7 +13,7 @@ using Row = FitOptionRow;
 namespace {
 
 // Written so that NaN and infinity lie outside.
-std::string Violation(const OptionRange& range, double value) {
+std::string RangeViolation(const OptionRange& range, double value) {
   const bool inside =
       (range.open ? value > range.lower : value >= range.lower) && value <= range.upper;
   return inside ? "" : range.words;
@@ -34,7 +36,7 @@ Row NumberRow(const char* name, const char* json, OptionField<double> field, Opt
     if (ParseDouble(text, &field(*o))) return std::nullopt;
     return BadOption(name, text, range.words);
   };
-  row.violation = [=](const FitOptions& o) { return Violation(range, OptionValue(field, o)); };
+  row.violation = [=](const FitOptions& o) { return RangeViolation(range, OptionValue(field, o)); };
   row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
   row.read = [field](const Json& json_value, FitOptions* o) { field(*o) = json_value; };
   return row;

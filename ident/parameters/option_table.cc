@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "datasets/files/number_text.h"
@@ -22,7 +23,7 @@ MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
   for (std::string part; std::getline(list, part, ',');) {
     std::int64_t frames = 0;
     if (!ParseInteger(part, &frames) || frames < 2 || frames > kLongestHorizon) {
-      return Error{"--horizons: '" + part + "' is no number of frames of at least 2"};
+      return Error{"--horizons: '" + part + "' is not a number of frames of at least 2"};
     }
     o->horizons.push_back(static_cast<int>(frames));
   }
@@ -43,7 +44,7 @@ Row HorizonsRow() {
   row.violation = [](const FitOptions& o) {
     const bool sound = std::all_of(o.horizons.begin(), o.horizons.end(),
                                    [](int frames) { return frames == 0 || frames >= 2; });
-    return sound ? "" : "must hold numbers of frames of at least 2";
+    return sound ? "" : "must be numbers of frames of at least 2";
   };
   row.json = "/horizons";
   row.write = [](const FitOptions& o) { return Json(o.horizons); };
@@ -54,7 +55,7 @@ Row HorizonsRow() {
 Row LossRow() {
   Row row = NameRow<FrameLoss>(
       "loss", "/sigmas/loss", [](FitOptions & o) -> auto& { return o.sigmas.loss; },
-      "what is made small: hip (positions of the hip, velocities, angles and rates, robust by "
+      "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
       "frame), or ldp (absolute errors of all states and velocities, and phi' itself, for "
       "comparison)");
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
@@ -70,7 +71,7 @@ Row LossRow() {
 }
 
 Row SeedRow() {
-  Row row = WordsRow("seed", OptionStage::kModel, "seed of everything random",
+  Row row = WordsRow("seed", OptionStage::kModel, "seed of all random numbers",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const char* const end = text.data() + text.size();
                        const auto read = std::from_chars(text.data(), end, o->seed);
@@ -148,45 +149,46 @@ std::vector<Row> WeightRows() {
       MayBeAbsent(NameRow<SigmaSource>(
           "sigmas", "/sigmas/source", [](O & o) -> auto& { return o.sigma_source; },
           "the residuals' standard deviations: estimate (from the residuals, starting at "
-          "--sigma_*), "
-          "or fixed (as --sigma_* say)")),
+          "--sigma_*), or fixed (at --sigma_*)")),
       MayBeAbsent(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", [](O & o) -> auto& { return o.marker_noise; },
-          kPositive, "standard deviation of a marker's position, m: estimated sigmas are no less")),
+          kPositive,
+          "standard deviation of a marker's position, m: lower limit of estimated sigmas")),
       NumberRow(
           "robust", "/sigmas/robust", [](O & o) -> auto& { return o.sigmas.robust; }, kNotNegative,
           "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
       NameRow<RecordingWeight>(
           "recording_weight", "/recording_weight",
           [](O & o) -> auto& { return o.recording_weight; },
-          "effective (a recording counts as many frames as are independent), frame (every frame "
+          "weight of a recording: effective (its number of independent frames), frame (every frame "
           "counts as one) or recording (every recording counts as one frame)"),
       MayBeAbsent(NumberRow(
           "effective_weight", "/effective_weight",
           [](O & o) -> auto& { return o.effective_weight; },
           {0.0, 1e6, false, "must be a number from 0 to 1e6"},
-          "independent frames per frame, with --recording_weight=effective: where their estimation "
-          "starts; 0: at one frame a recording")),
+          "--recording_weight=effective: independent frames per frame at the start of their "
+          "estimation; 0: one frame per recording")),
       MayBeAbsent(NameRow<ClusterBy>(
           "cluster", "/cluster", [](O & o) -> auto& { return o.cluster; },
-          "whose errors are independent: subject, recording, or auto (subject where people were "
+          "unit with independent errors: subject, recording, or auto (subject where people were "
           "recorded more than once)")),
       Decided(NumberRow(
           "settling_weight", "/settling_weight", [](O & o) -> auto& { return o.settling_weight; },
           kNotNegative,
-          "weight of the settling simulations, after which a pushed person must have settled; 0: "
-          "off")),
+          "weight of the settling constraint (pushed people must settle in the settling "
+          "simulations); 0: off")),
       Decided(NumberRow(
           "mode_weight", "/mode_weight", [](O & o) -> auto& { return o.mode_weight; }, kNotNegative,
-          "weight of the hinge that makes a person's free modes at rest decay (it sees no "
-          "network); 0: off; set with a linear self force")),
+          "weight of the hinge penalty that makes a person's free modes at rest decay (it ignores "
+          "networks); 0: off; set with a linear self force")),
       NumberRow(
           "mode_margin", "/mode_margin_per_s", [](O & o) -> auto& { return o.mode_margin; },
           kNumber, "slowest decay the hinge allows, 1/s"),
       NumberRow(
           "stability_weight", "/stability_weight",
           [](O & o) -> auto& { return o.stability_weight; }, kNotNegative,
-          "weight of the rollouts continued past the data, with the push and 1.4 times it"),
+          "weight of the rollouts continued past the end of the data, with the push and with 1.4 "
+          "times the push"),
       Decided(NameRow<PoolBy>(
           "pool_by", "/pool_by", [](O & o) -> auto& { return o.pool_by; },
           "the unit that pooled parameters may differ by: subject, setting or condition (the "
@@ -199,7 +201,7 @@ std::vector<Row> WeightRows() {
       MayBeAbsent(NumberRow(
           "early_stopping", "/early_stopping", [](O & o) -> auto& { return o.early_stopping; },
           {0.0, 0.5, false, "must lie between 0 and 0.5"},
-          "share of the recordings held out to stop a network's training in time; 0: none")),
+          "share of the recordings held out for early stopping of a network's training; 0: none")),
       MayBeAbsent(NumberRow(
           "takeover_weight", "/takeover_weight", [](O & o) -> auto& { return o.takeover_weight; },
           kNotNegative,
@@ -210,7 +212,7 @@ std::vector<Row> WeightRows() {
           "pendulums alone")),
       MayBeAbsent(CountRow(
           "ensemble", "/ensemble", [](O & o) -> auto& { return o.ensemble; },
-          "networks trained from so many seeds; the model predicts the median of them")),
+          "number of networks, trained from different seeds; the model predicts their median")),
   };
 }
 
@@ -224,16 +226,16 @@ std::vector<Row> SolverRows() {
           "first start: equation_error, or nominal (where feet hold)")),
       CountRow(
           "starts", "/num_starts", [](O & o) -> auto& { return o.num_starts; },
-          "how many starts; the best one is taken"),
+          "number of starts; the best one is used"),
       NumberRow(
           "start_spread", "/start_spread", [](O & o) -> auto& { return o.start_spread; },
           {1.0, 1000.0, false, "must lie between 1 and 1000"},
-          "random starts multiply every gain by up to this, either way"),
+          "random starts multiply or divide every gain by up to this"),
       SeedRow(),
       MayBeAbsent(NameRow<JacobianMethod>(
           "jacobian", "/jacobian", [](O & o) -> auto& { return o.jacobian; },
           "derivatives of the rollouts: sensitivities, or autodiff (Ceres' Jets through the whole "
-          "rollout: slow, to check the others)")),
+          "rollout: slow, for verification)")),
       CountRow(
           "num_threads", "", [](O & o) -> auto& { return o.num_threads; }, "threads"),
       CountRow(
@@ -258,11 +260,12 @@ std::vector<Row> SolverRows() {
 std::vector<Row> TableRows() {
   return {
       WordsRow("self_from", OptionStage::kOtherModel,
-               "a model whose self parameters (all but those between people) are taken over and "
-               "held, as of single people",
+               "a model whose self parameters (all but those between people) are used and held "
+               "fixed, such as a model of single people",
                nullptr),
       EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
-      EditRow("fix", &TableEdits::fix, "parameters held: name or name=value, comma-separated"),
+      EditRow("fix", &TableEdits::fix,
+              "parameters held fixed: name or name=value, comma-separated"),
       EditRow("prior", &TableEdits::prior,
               "priors: name:mean:sigma in the parameter's unit, comma-separated"),
       Decided(WordsRow("pool", OptionStage::kModel,

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-std::vector<std::string> Split(const std::string& text, char separator) {
+std::vector<std::string> NonEmptyParts(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::stringstream stream(text);
   for (std::string part; std::getline(stream, part, separator);) {
@@ -31,7 +31,7 @@ Error UnknownName(const std::string& name, const std::string& flag, const Parame
     known += (known.empty() ? "" : ", ") + spec.name;
     names.push_back(spec.name);
   }
-  return Error{flag + " names '" + name + "', which is no parameter" + MeantText(name, names) +
+  return Error{flag + " names '" + name + "', which is not a parameter" + MeantText(name, names) +
                "; there are " + known};
 }
 
@@ -62,7 +62,7 @@ MaybeError CheckInBounds(const ParameterSpec& spec, double value, const std::str
 
 MaybeError Assign(const std::string& list, const std::string& flag, std::optional<bool> make_free,
                   bool value_needed, ParameterTable* table) {
-  for (const std::string& text : Split(list, ',')) {
+  for (const std::string& text : NonEmptyParts(list, ',')) {
     const Result<Item> item = ParseItem(text, flag);
     if (!item.ok()) return item.error();
     ParameterSpec* spec = table->Find(item.value().name);
@@ -88,8 +88,8 @@ MaybeError Assign(const std::string& list, const std::string& flag, std::optiona
 }
 
 MaybeError AddPriors(const std::string& list, ParameterTable* table) {
-  for (const std::string& text : Split(list, ',')) {
-    const std::vector<std::string> parts = Split(text, ':');
+  for (const std::string& text : NonEmptyParts(list, ',')) {
+    const std::vector<std::string> parts = NonEmptyParts(text, ':');
     Prior prior{};
     if (parts.size() != 3 || !ParseNumber(parts[1], &prior.mean) ||
         !ParseNumber(parts[2], &prior.sigma) || prior.sigma <= 0.0) {
@@ -108,7 +108,7 @@ MaybeError AddPriors(const std::string& list, ParameterTable* table) {
 
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag) {
   std::vector<NamedValue> values;
-  for (const std::string& part : Split(text, ',')) {
+  for (const std::string& part : NonEmptyParts(text, ',')) {
     const Result<Item> item = ParseItem(part, flag);
     if (!item.ok()) return item.error();
     if (!item.value().has_value) {
@@ -131,7 +131,7 @@ MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
   const auto may_differ = [&edits](const ParameterSpec& spec) {
     return HoldsForRecording(edits.pool_by) || !IsPairParameter(spec.id);
   };
-  for (const std::string& entry : Split(edits.pool, ',')) {
+  for (const std::string& entry : NonEmptyParts(edits.pool, ',')) {
     if (entry == "none") continue;
     const bool left_out = entry[0] == '-';
     const std::string name = entry.substr(left_out ? 1 : 0);

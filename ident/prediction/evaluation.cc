@@ -49,8 +49,8 @@ std::string MetricsText(const HipMetrics& metrics, int digits, int observed) {
   return text;
 }
 
-std::vector<HipMetric> MetricsOf(int observed, bool bands) {
-  std::vector<HipMetric> metrics(std::begin(kHipMetrics), std::end(kHipMetrics));
+ShownMetrics MetricsOf(int observed, bool bands) {
+  ShownMetrics metrics(std::begin(kHipMetrics), std::end(kHipMetrics));
   if (observed > 0) metrics.push_back(kAfterMetric);
   if (bands) metrics.insert(metrics.end(), std::begin(kBandMetrics), std::end(kBandMetrics));
   return metrics;

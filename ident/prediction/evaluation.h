@@ -50,10 +50,12 @@ inline constexpr HipMetric kBandMetrics[] = {
     {{"inside90_y", "share"}, &HipMetrics::inside90_y},
 };
 
+using ShownMetrics = std::vector<HipMetric>;
+
 // What there is to show: observed: frames that were seen, 0 where nobody asked; bands: of models,
 // not of baselines.
-std::vector<HipMetric> MetricsOf(int observed, bool bands);
-inline std::vector<HipMetric> AllHipMetrics() { return MetricsOf(1, true); }
+ShownMetrics MetricsOf(int observed, bool bands);
+inline ShownMetrics AllHipMetrics() { return MetricsOf(1, true); }
 
 // "hipADE 0.1 m, hipFDE 0.2 m"
 std::string MetricsText(const HipMetrics& metrics, int digits, int observed = 0);

@@ -15,9 +15,10 @@ std::vector<std::string> InputWarnings(const IdentifiedModel& model,
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& r) { return r.scene.num_people() > 1; });
   if (together && !model.options.interaction.Any()) {
-    warnings.push_back((model.source.empty() ? "the model" : model.source) +
-                       " was fitted without interaction: people will not touch; fit recordings of "
-                       "groups with one (pushid-fit --setting=groups --interaction=contact)");
+    warnings.push_back(
+        (model.source.empty() ? "the model" : model.source) +
+        " was fitted without interaction: people will not affect each other; fit recordings of "
+        "groups with an interaction (pushid-fit --setting=groups --interaction=contact)");
   }
   for (const std::string& warning : ExtrapolationWarnings(model, recordings)) {
     warnings.push_back(warning);

@@ -26,11 +26,12 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
   if (model.recording_effect) return std::nullopt;
   const bool tail = model.options.push_tail != PushTail::kNone;
-  return Error{tail ? "the model does not say how recordings differ, which first frames are read "
-                      "by: it is older than --observed; fit it again with pushid-fit"
-                    : "the model has no push tail, by which first frames are read: fit one with "
-                      "--push_tail=exponential (the presets tail and group have it)",
-               model.source};
+  return Error{
+      tail ? "the model has no estimate of how recordings differ, which predictions from observed "
+             "frames need: it was fitted by an older version; fit it again with pushid-fit"
+           : "the model has no push tail, which predictions from observed frames need: fit one "
+             "with --push_tail=exponential (the presets tail and group have it)",
+      model.source};
 }
 
 OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording,
@@ -45,7 +46,7 @@ Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
   OnlinePredictor predictor(model, recording, num_frames);
   if (predictor.filter_->ok()) return Result<OnlinePredictor>(std::move(predictor));
   return Error{"recording " + recording.id +
-               ": people leave the model's domain whatever the push's tail"};
+               ": people leave the model's domain with any push tail"};
 }
 
 void OnlinePredictor::Observe(SeenFrame frame) {

@@ -1,12 +1,12 @@
 // ident: sampling, rolling out, and quantiles by frame.
 #include "ident/prediction/predictive_bands.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/random.h"
 #include "ident/uncertainty/bootstrap.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -19,10 +19,9 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
   const Eigen::Index size = static_cast<Eigen::Index>(free.size());
   const Uncertainty& u = result.uncertainty;
   // Null directions make it semi-definite: roots by eigenvalues.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
-      u.covariance.topLeftCorner(size, size));
+  const SymmetricEigen roots = DecomposeSymmetric(u.covariance.topLeftCorner(size, size));
   const Eigen::MatrixXd root =
-      solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+      roots.vectors * roots.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   const int freedom = std::max(1, u.freedom);
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;

@@ -1,12 +1,13 @@
 // ident: the settling simulations and the free modes.
 #include "ident/problem/behaviour.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "models/cart_damping.h"
+#include "models/decompositions.h"
 #include "models/learned_terms.h"
 #include "models/modal_stability.h"
 #include "models/rollout.h"
@@ -144,7 +145,7 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
     step(kRodAt, kRodAt) += 1.0;
   }
   step.bottomRows(memory) = learned.bottomRows(memory);
-  return std::log(step.eigenvalues().cwiseAbs().maxCoeff()) / scene.dt;
+  return std::log(SpectralRadius(step)) / scene.dt;
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour) {
       return stands + ", but is unstable at rest: the slightest deviation grows at " +
              GrowthText(behaviour);
     case Verdict::kRodRunsAway:
-      return stands + ", but the rod or the person with it runs away from rest at " +
+      return stands + ", but the rod, or the person with it, diverges from rest at " +
              GrowthText(behaviour);
     case Verdict::kNegativeDrag:
       return settles +
@@ -117,23 +117,23 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
                       verdict == Verdict::kUnstableThoughSettled ||
                       verdict == Verdict::kNegativeDrag;
   if (driven && options.push_tail == PushTail::kNone) {
-    return "--push_tail=exponential carries what the recorded push leaves out";
+    return "--push_tail=exponential adds the part of the push that was not recorded";
   }
   switch (verdict) {
     case Verdict::kSettles:
       return "";
     case Verdict::kSlowToSettle:
-      return "--settling_weight holds it to settle sooner";
+      return "a larger --settling_weight makes it settle sooner";
     case Verdict::kSelfPropelling:
-      return "--settling_weight holds it to settle";
+      return "a larger --settling_weight makes it settle";
     case Verdict::kUnstableThoughSettled:
       // The hinge on the modes sees no network; one between people has no part in them.
-      return LearnsAlone(options) ? "a smaller --network_prior holds it"
+      return LearnsAlone(options) ? "a smaller --network_prior stabilizes it"
                                   : "--mode_weight makes the free modes decay";
     case Verdict::kRodRunsAway:
-      return "a smaller --network_prior or --rod=constant holds it";
+      return "a smaller --network_prior or --rod=constant stabilizes it";
     case Verdict::kNegativeDrag:
-      return "--fix=mu=0 shows what is lost without it";
+      return "--fix=mu=0 shows how much accuracy is lost without it";
   }
   return "";
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/files/json_file.h"
@@ -42,7 +43,7 @@ Result<Fold> ReadFold(const JsonDocument& document, const std::string& at, const
   if (fold.held_out.empty() || fold.held_out.size() == indices.size()) {
     return document.ErrorAt(list, std::string("the fold '") + fold.name + "' holds out " +
                                       (fold.held_out.empty() ? "nothing" : "everything") +
-                                      "; some recordings must be fitted and others judged");
+                                      "; some recordings must be fitted and others scored");
   }
   return fold;
 }

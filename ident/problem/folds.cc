@@ -58,8 +58,8 @@ Result<std::vector<Fold>> InterleavedFolds(const std::vector<PendulumRecording>&
   }
   if (folds[1].held_out.empty()) {
     return Error{
-        "--scheme=interleaved deals the recordings of a setting out to the folds in turn, and here "
-        "no setting has two; --scheme=stratified makes folds of any recordings"};
+        "--scheme=interleaved assigns the recordings of a setting to folds in turn, but no setting "
+        "has two; --scheme=stratified makes folds of any recordings"};
   }
   while (folds.back().held_out.empty()) folds.pop_back();
   for (size_t f = 0; f < folds.size(); ++f) folds[f].name = "fold " + std::to_string(f + 1);

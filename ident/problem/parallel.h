@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <mutex>
@@ -15,6 +16,11 @@
 #include <vector>
 
 namespace pushid {
+
+// s, by a clock that only goes forwards.
+inline double Now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 using JobProgress = std::function<void(int done, int total)>;
 

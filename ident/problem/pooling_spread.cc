@@ -1,11 +1,12 @@
 // ident: fixed-point steps on the normal approximation of the posterior.
 #include "ident/problem/pooling_spread.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/problem/jacobian_blocks.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -40,13 +41,12 @@ DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point
   Eigen::MatrixXd nuisance = hessian.bottomRightCorner(rest, rest);
   nuisance.diagonal() *= 1.0 + 1e-12;  // a direction that nothing determines
   const Eigen::MatrixXd cross = hessian.bottomLeftCorner(rest, deviations);
-  const Eigen::LDLT<Eigen::MatrixXd> factor(nuisance);
   DeviationPosterior p;
   p.at = Eigen::Map<const Eigen::VectorXd>(flat.data() + shared, deviations);
   p.hessian = hessian.topLeftCorner(deviations, deviations) -
-              cross.transpose() * factor.solve(cross) -
+              cross.transpose() * SolveSymmetric(nuisance, cross) -
               Eigen::MatrixXd(pooling_precision.asDiagonal());
-  p.gradient = gradient.head(deviations) - cross.transpose() * factor.solve(gradient.tail(rest)) -
+  p.gradient = gradient.head(deviations) - cross.transpose() * SolveSymmetric(nuisance, Eigen::VectorXd(gradient.tail(rest))) -
                pooling_precision.cwiseProduct(p.at);
   return p;
 }
@@ -78,7 +78,8 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point,
     const Eigen::VectorXd prior = precision();
     const Eigen::MatrixXd hessian = p.hessian + Eigen::MatrixXd(prior.asDiagonal());
     const Eigen::MatrixXd covariance =
-        hessian.ldlt().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows()));
+        SolveSymmetric(
+            hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows())));
     const Eigen::VectorXd mean = p.at - covariance * (p.gradient + prior.cwiseProduct(p.at));
     const Eigen::VectorXd last = sigma;
     for (Eigen::Index k = 0; k < parameters; ++k) {

@@ -13,7 +13,8 @@ namespace {
 constexpr double kDetectionSpan = 0.15;  // s, smoothing of the hip for detection
 constexpr int kSustained = 3;            // frames above the onset speed that make an onset
 
-MaybeError CheckOptions(const PendulumRecording& recording, const PushEstimationOptions& options) {
+MaybeError CheckEstimationOptions(const PendulumRecording& recording,
+                                  const PushEstimationOptions& options) {
   const std::string where = "recording " + recording.id + ": ";
   if (options.person < 0 || options.person >= recording.num_people()) {
     return Error{where + "there is no person " + std::to_string(options.person) + "; it has " +
@@ -45,7 +46,7 @@ bool StartsAtRest(const PendulumRecording& recording, int start,
 
 Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
                                     const PushEstimationOptions& options) {
-  if (MaybeError wrong = CheckOptions(recording, options)) return *std::move(wrong);
+  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
   const std::vector<SmoothedSample> hip = SmoothedHip(recording, options.person);
   const int frames = recording.num_frames();
   const auto speed = [&](int t) { return hip[t].rate.norm(); };
@@ -80,7 +81,7 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
 
 Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
                                    const PushEstimationOptions& options) {
-  if (MaybeError wrong = CheckOptions(recording, options)) return *std::move(wrong);
+  if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);
   const int frames = recording.num_frames();
   if (window.start < 0 || window.end <= window.start || window.end >= frames) {
     return Error{"recording " + recording.id + ": a push from frame " +

@@ -51,11 +51,11 @@ std::string AtRest(const SensorRecord& record) {
   std::nth_element(force.begin(), middle, force.end());
   const double peak = *std::max_element(size.begin(), size.end());
   if (!(std::fabs(*middle) > kReadsAtRest * peak)) return "";
-  return ", or take off what it reads at rest, about " + Rounded(*middle, 3) + " N (--sensor_zero)";
+  return ", or subtract its reading at rest, about " + Rounded(*middle, 3) + " N (--sensor_zero)";
 }
 
-MaybeError CheckOptions(const SensorRecord& record, const PendulumRecording& recording,
-                        const SensorPushOptions& options) {
+MaybeError CheckSensorOptions(const SensorRecord& record, const PendulumRecording& recording,
+                              const SensorPushOptions& options) {
   if (options.person < 0 || options.person >= recording.num_people()) {
     return Wrong(recording, "there is no person " + std::to_string(options.person));
   }
@@ -99,7 +99,7 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
 
 Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
                             const SensorPushOptions& options) {
-  if (MaybeError error = CheckOptions(record, recording, options)) return *error;
+  if (MaybeError error = CheckSensorOptions(record, recording, options)) return *error;
   // Row by row, then without the idle rows at both ends.
   const double dt = recording.scene.dt, zero = options.frame_zero_time_s;
   std::vector<Vector3<double>> rows;

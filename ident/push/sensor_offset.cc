@@ -19,7 +19,7 @@ constexpr int kRefinements = 20;
 // One sensor's force along the direction, integrated once and twice: exact for the broken line.
 class Integrals {
  public:
-  Integrals(const TimedForce& force, const Eigen::Vector2d& direction)
+  Integrals(const TimedRecord& force, const Eigen::Vector2d& direction)
       : zero_(force.frame_zero_time_s), time_(force.record.time_s) {
     for (const Eigen::Vector3d& f : force.record.force) {
       force_.push_back(f.head<2>().dot(direction));
@@ -65,10 +65,10 @@ class Integrals {
 
 class OffsetFit {
  public:
-  OffsetFit(const std::vector<TimedForce>& forces, const PendulumRecording& recording, int person,
+  OffsetFit(const std::vector<TimedRecord>& forces, const PendulumRecording& recording, int person,
             const Eigen::Vector2d& direction, int frames)
       : dt_(recording.scene.dt), mass_(recording.scene.people[person].body.mass) {
-    for (const TimedForce& force : forces) integrals_.emplace_back(force, direction);
+    for (const TimedRecord& force : forces) integrals_.emplace_back(force, direction);
     Eigen::MatrixXd regressors(frames, 4);
     target_.resize(frames);
     weight_.resize(frames);
@@ -141,10 +141,10 @@ class OffsetFit {
 };
 
 // Where 99 % of the force's impulse has passed, on the cameras' clock; the net direction.
-double PushEnd(const std::vector<TimedForce>& forces, Eigen::Vector2d* direction) {
+double PushEnd(const std::vector<TimedRecord>& forces, Eigen::Vector2d* direction) {
   double end = 0.0;
   Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
-  for (const TimedForce& force : forces) {
+  for (const TimedRecord& force : forces) {
     const SensorRecord& r = force.record;
     double total = 0.0, sum = 0.0;
     const auto size = [&r](std::size_t i) {
@@ -177,7 +177,7 @@ bool MovesAgainst(const std::vector<Vector3<double>>& hip, int frames,
 
 }  // namespace
 
-Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
+Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
                                           const PendulumRecording& recording, int person,
                                           double max_offset_s) {
   if (person < 0 || person >= recording.num_people()) {
@@ -189,7 +189,7 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
   Eigen::Vector2d direction;
   const double end = PushEnd(forces, &direction);
   if (forces.empty() || end < -0.5)
-    return Error{"there is no horizontal force to find the time of"};
+    return Error{"there is no horizontal force whose time could be found"};
   const double dt = recording.scene.dt;
   const int frames = std::min(recording.num_frames(),
                               static_cast<int>(std::ceil((end + max_offset_s + kAfterPush) / dt)));

@@ -24,7 +24,7 @@
 namespace pushid {
 
 // A sensor's forces as vectors in the project's axes, with its clock's reading at frame 0.
-struct TimedForce {
+struct TimedRecord {
   SensorRecord record;
   double frame_zero_time_s = 0.0;
 };
@@ -39,7 +39,7 @@ struct SensorOffset {
 // max_offset_s: how far to look on either side. Errors: no such person, no force, too short a
 // recording, a best offset at the end of the range, a motion that does not tell the time (a
 // standard error of a quarter of the range) or goes against the force.
-Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedForce>& forces,
+Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
                                           const PendulumRecording& recording, int person,
                                           double max_offset_s);
 

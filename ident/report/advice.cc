@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kStrongCorrelation = 0.95;
 constexpr double kStrongLeverage = 1.0;  // standard errors that one recording moves
-constexpr double kDisagreement = 1.5;    // of interval widths
 constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
@@ -76,7 +75,7 @@ class Adviser {
 
 void Adviser::Solver() {
   if (!result_.converged) {
-    Add("The solver stopped before it converged; give it more iterations and more starts.",
+    Add("The solver stopped before it converged; allow more iterations and more starts.",
         Same()
             .Set("max_iterations",
                  std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
@@ -87,10 +86,10 @@ void Adviser::Solver() {
 void Adviser::Identifiability() {
   for (const NullDirection& n : result_.uncertainty.null_directions) {
     if (n.parameters == std::vector<std::string>{"rod_lift"}) {
-      Add("The law of the rod has no effect; leave it out.", Same().Set("rod", "constant"));
+      Add("The length law of the rod has no effect; leave it out.", Same().Set("rod", "constant"));
       continue;
     }
-    Add("Not identifiable: " + n.sentence + ". Hold one of them.",
+    Add("Not identifiable: " + n.sentence + ". Fix one of them.",
         Same().Append("fix", n.parameters.back()));
   }
   std::string weak;
@@ -98,15 +97,15 @@ void Adviser::Identifiability() {
     if (e.status == EstimateStatus::kAtBound &&
         !IsMeasurementError(result_.options.table.Find(e.name)->id)) {
       Add(e.name +
-              " is at its bound, so its error is unknown; see whether the fit gets worse "
-              "when it is held there.",
+              " is at its bound, so its error is unknown; check whether the fit gets worse when it "
+              "is fixed there.",
           Same().Append("fix", e.name + "=" + Rounded(e.value, 4)));
     }
     if (e.status == EstimateStatus::kWeak && weak.empty()) weak = e.name;
   }
   if (!weak.empty()) {
     Add(weak +
-            " is only weakly identified; see which pushes, people or sensor would lower its "
+            " is only weakly identified; find out which pushes, people or sensor would reduce its "
             "error most.",
         Same().Set("design", weak));
   }
@@ -121,7 +120,7 @@ void Adviser::Identifiability() {
       compare.Set("compare", "held: --fix=" + compare.Appended("fix", held));
       Add(u.estimates[i].name + " and " + second.name + " trade off (correlation " +
               Rounded(u.correlation(i, j), 2) +
-              "); hold one, and see whether the errors of prediction grow.",
+              "); fix one and check whether the prediction errors increase.",
           compare);
     }
   }
@@ -155,24 +154,28 @@ void Adviser::Person() {
       return;
     case Verdict::kSlowToSettle:
       if (result_.uncertainty.settling.dropped()) return;  // it was held, and let go
-      return Add(sentence + "; see what holding it to settle costs.", SettleHarder(kSomeSettling));
+      return Add(sentence + "; check the cost of a stronger settling constraint.",
+                 SettleHarder(kSomeSettling));
     case Verdict::kRodRunsAway:
-      return Add(sentence + "; see what is lost without a rod that moves.",
+      return Add(sentence + "; check how much accuracy is lost with a constant rod.",
                  Same().Set("rod", "constant"));
     case Verdict::kSelfPropelling:
       if (result_.uncertainty.settling.dropped()) return;
-      if (tail) return Add(sentence + "; hold it to settle.", SettleHarder(kMuchSettling));
+      if (tail) {
+        return Add(sentence + "; strengthen the settling constraint.", SettleHarder(kMuchSettling));
+      }
       break;
     case Verdict::kUnstableThoughSettled:
-      if (tail) return Add(sentence + "; make the free modes decay.", DecayingModes());
+      if (tail) return Add(sentence + "; constrain the free modes to decay.", DecayingModes());
       break;
     case Verdict::kNegativeDrag:
       if (tail) {
-        return Add(sentence + "; see what is lost without it.", Same().Append("fix", "mu=0"));
+        return Add(sentence + "; check how much accuracy is lost without it.",
+                   Same().Append("fix", "mu=0"));
       }
       break;
   }
-  Add(sentence + "; let a push tail carry what the recorded push leaves out.",
+  Add(sentence + "; add a push tail for the part of the push that was not recorded.",
       Same().Set("push_tail", "exponential"));
 }
 
@@ -180,7 +183,8 @@ void Adviser::People() {
   const bool groups = std::any_of(result_.recordings.begin(), result_.recordings.end(),
                                   [](const FittedRecording& r) { return r.people > 1; });
   if (!groups || result_.options.model.interaction.Any()) return;
-  Add("Several people stand in one recording and do nothing to each other here; let them touch.",
+  Add("Recordings contain several people, but the model has no interaction between them; add "
+      "contact.",
       Same().Set("interaction", "contact"));
 }
 
@@ -198,28 +202,27 @@ void Adviser::Recordings() {
   }
   // Of a single one nothing would be left.
   if (most > kStrongLeverage && l.recordings.size() > 1) {
-    Add("Recording " + l.recordings[recording] + " alone moves " + l.parameters[parameter] +
-            " by " + Rounded(most, 2) + " standard errors; look at it, and fit without it.",
+    Add("Recording " + l.recordings[recording] + " alone changes " + l.parameters[parameter] +
+            " by " + Rounded(most, 2) + " standard errors; inspect it, and fit without it.",
         Same().Append("leave_out", l.recordings[recording]));
   }
   if (result_.uncertainty.num_clusters < kFewRecordings) {
     const bool people = result_.uncertainty.clustered_by == ClusterBy::kSubject;
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
             (people ? " people" : " recordings") +
-            " the clustered errors are uncertain too; record more, where the "
-            "design says it helps.",
+            " the clustered errors are themselves uncertain; record more, as the design suggests.",
         Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }
 }
 
 void Adviser::Intervals() {
   if (model_.profiles.empty()) {
-    Add("The intervals take the cost for quadratic; profiles show its true shape.",
+    Add("The intervals assume a quadratic cost; profiles show its true shape.",
         Same().Set("profile", "all").Set("num_threads", "2"));
   }
   const bool several = result_.recordings.size() > 1;  // a single one is its only resample
   if (!model_.bootstrap && several) {
-    Add("Resampling the recordings checks the standard errors without any formula.",
+    Add("A bootstrap checks the standard errors by resampling the recordings.",
         Bootstrap(kReplicas));
   }
   const bool few = model_.bootstrap && model_.bootstrap->drawn_from > 0 &&
@@ -229,7 +232,7 @@ void Adviser::Intervals() {
     if (!several || few) break;  // of few there are no more resamples to draw
     if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
     Add("The intervals of " + row.name + " differ by a factor of " + Rounded(row.ratio, 2) +
-            " in width: its cost is far from quadratic; quote the widest, and draw more replicas.",
+            " in width: its cost is far from quadratic; report the widest, and draw more replicas.",
         Bootstrap(std::max(kManyReplicas, 2 * had)));
     break;  // one command serves all
   }
@@ -244,7 +247,7 @@ void Adviser::Shares() {
     held += (held.empty() ? "" : ", ") + e.name;
   }
   if (!held.empty() && !model_.prior_check) {
-    Add("Priors decide on " + held + "; see what they are under other priors.",
+    Add("Priors determine " + held + "; check the sensitivity to the priors.",
         Same().Set("prior_check", "true"));
   }
 }
@@ -252,13 +255,15 @@ void Adviser::Shares() {
 void Adviser::Pushes() {
   const bool measured = !result_.push_range || result_.push_range->net_s.empty();
   if (measured || model_.push_check) return;
-  Add("The pushes are net forces, as inverse dynamics makes them; see how far its window decides.",
+  Add("The pushes are net forces from inverse dynamics; check how much its window affects the "
+      "estimates.",
       Same().Set("push_check", "true"));
 }
 
 void Adviser::Horizons() {
   if (model_.horizon_check || OfSteps()) return;
-  Add("A parameter that means something keeps its value on fewer frames; see which do.",
+  Add("A parameter with physical meaning keeps its value when fewer frames are fitted; check which "
+      "do.",
       Same().Set("horizon_check", "true"));
 }
 
@@ -276,9 +281,9 @@ void Adviser::Terms() {
   if (surest == nullptr) return;
   FitCommand compare("pushid-crossvalidate", model_.provenance);
   compare.Set("compare", "more: --free=" + compare.Appended("free", surest->parameter));
-  Add("The recordings ask for " + surest->parameter + " (score test: t = " + Rounded(surest->t, 2) +
-          " with " + std::to_string(surest->freedom) +
-          " degrees of freedom); see whether it predicts better.",
+  Add("The residuals suggest freeing " + surest->parameter + " (score test: t = " +
+          Rounded(surest->t, 2) + " with " + std::to_string(surest->freedom) +
+          " degrees of freedom); check whether it improves predictions.",
       compare);
 }
 

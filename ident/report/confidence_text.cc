@@ -14,8 +14,7 @@ namespace pushid {
 namespace {
 
 constexpr size_t kWorstRecordings = 5;
-constexpr int kFewUnits = 5;           // of fewer a bootstrap has too few distinct resamples
-constexpr double kDisagreement = 1.5;  // ratio of widths that is worth a word
+constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
 
 std::string IntervalText(const std::optional<Interval>& interval) {
   if (!interval) return "-";
@@ -32,7 +31,7 @@ std::string Disagreements(const std::vector<Agreement>& rows) {
     names += (names.empty() ? "" : ", ") + row.name;
   }
   if (names.empty()) return "the widths agree within a factor of 1.5\n";
-  return "widths differ by more than a factor of 1.5, trust the widest: " + names + "\n";
+  return "widths differ by more than a factor of 1.5, use the widest: " + names + "\n";
 }
 
 std::string StartText(const StartDiagnostics& start) {
@@ -62,7 +61,7 @@ std::string RecordingsText(const Diagnostics& d) {
   std::sort(worst.begin(), worst.end(),
             [](const auto* a, const auto* b) { return a->explained < b->explained; });
   if (worst.size() > kWorstRecordings) worst.resize(kWorstRecordings);
-  TextTable table({"explained least", "% of motion", "cost", "frames that hardly count",
+  TextTable table({"explained least", "% of motion", "cost", "down-weighted frames",
                    "without it moves (std errors)"},
                   {true, false, false, false, true});
   for (const RecordingDiagnostics* r : worst) {
@@ -79,8 +78,9 @@ std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
     text += "errors of " + w.channel + ": lag-1 correlation " +
             Rounded(w.autocorrelation.front(), 2) + " (white: +-" + Rounded(w.mean_band, 1) + ")\n";
   }
-  return text.empty() ? ""
-                      : text + "frames of a recording err together: only clustered errors count\n";
+  return text.empty()
+             ? ""
+             : text + "residuals within a recording may be correlated: use the clustered errors\n";
 }
 
 }  // namespace
@@ -124,12 +124,12 @@ std::string ResamplingText(const Bootstrap& b) {
                      std::to_string(b.seed);
   if (b.people_shared) {
     text +=
-        "; people share recordings and cannot be drawn one by one, so what a person does in "
-        "all of them is left out";
+        "; people share recordings and cannot be drawn individually, so the correlation between a "
+        "person's recordings is neglected";
   }
   if (b.drawn_from > 0 && b.drawn_from < kFewUnits) {
     text += "; of " + number + what + " only " + Rounded(DistinctResamples(b.drawn_from), 3) +
-            " distinct resamples exist: read its intervals as rough, and mostly too narrow";
+            " distinct resamples exist: its intervals are rough, and usually too narrow";
   }
   return text;
 }

@@ -67,12 +67,13 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
 
 Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter) {
   if (!design.refused.empty()) {
-    return "no further push: " + design.refused + "\n\n" + StudiesText(design.studies, parameter);
+    return "no further push is proposed: " + design.refused + "\n\n" +
+           StudiesText(design.studies, parameter);
   }
   const Result<TextTable> table = DesignTable(design, parameter, kRows);
   if (!table.ok()) return table.error();
-  std::string text = "what one more recording would change, best first, and the least useful of " +
-                     std::to_string(design.rows.size()) + " candidates last\n" +
+  std::string text = "effect of one more recording, best first; last row: the least useful of " +
+                     std::to_string(design.rows.size()) + " candidates\n" +
                      table.value().ToString();
   if (const std::optional<size_t> index = IndexOf(design, parameter)) {
     text += "now: " + parameter + " +- " + Rounded(design.standard_error[*index], 3) + " " +

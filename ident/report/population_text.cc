@@ -30,20 +30,22 @@ void AddGroups(const RecordingEffect& effect, const char* title, Pick pick, Text
 }  // namespace
 
 std::string PopulationSentence(const RecordingEffect& effect) {
-  const std::string scale = "a rollout errs by " + Rounded(effect.error_scale, 3) +
+  const std::string scale = "the error of a rollout is " + Rounded(effect.error_scale, 3) +
                             " m half a second after a push of 0.2 m/s";
   if (effect.recordings.empty()) {
-    return "No effect of recordings: it acts on people who are pushed alone with a tail. " + scale +
-           ".";
+    return "No recording effect: it needs people who are pushed alone and a model with a push "
+           "tail. " +
+           scale + ".";
   }
   return "Recordings differ by a factor exp(b) on tail_gain, b ~ N(0, w^2): w = " +
          Rounded(effect.spread, 3) + " +- " + Rounded(effect.spread_error, 2) + " (" +
          std::to_string(effect.clusters) +
-         " clusters, one left out after the other). Each recording's own b takes away " +
+         " clusters, left out one at a time). Each recording's own b removes " +
          Rounded(100.0 * effect.explained, 2) +
-         " % of the mean squared error of the hip over the push's speed; otherwise " + scale +
-         ". Effects are shrunk towards 0 as far as their recording says little; alone: the "
-         "likeliest without.";
+         " % of the mean squared error of the hip, divided by the push's speed; without it " +
+         scale +
+         ". Effects are shrunk towards 0 where a recording contains little information; alone: the "
+         "estimate without shrinkage.";
 }
 
 std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect) {

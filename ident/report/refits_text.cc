@@ -15,10 +15,6 @@ namespace {
 
 constexpr double kFarMove = 2.0;  // standard errors
 
-std::string WithUnit(const RefitTable& check, size_t i) {
-  return check.parameters[i] + (check.units[i] == "1" ? "" : ", " + check.units[i]);
-}
-
 std::string ValueText(double value, double error) {
   return Rounded(value, 4) + " +- " + Rounded(error, 2);
 }
@@ -29,7 +25,7 @@ TextTable SideBySide(const RefitTable& check, const std::string& refits, const s
   std::vector<std::string> header = {refits};
   for (const RefitRow& row : check.rows) header.push_back(row.name);
   header.insert(header.end(), {fit, "unit"});
-  TextTable table(header, std::vector<bool>(header.size(), true));
+  TextTable table(header, AllWords(header.size()));
   for (size_t i = 0; i < check.parameters.size(); ++i) {
     std::vector<std::string> cells = {check.parameters[i]};
     for (const RefitRow& row : check.rows) {
@@ -60,8 +56,8 @@ std::string SameWindowText(const RefitTable& check) {
       const double errors = std::abs(row.value[i] - check.value[i]) / check.standard_error[i];
       if (!(errors > kFarMove)) continue;
       return "even the same window moves " + check.parameters[i] + " by " + Rounded(errors, 2) +
-             " of its errors: inverse dynamics cannot make these pushes again, so the total errors "
-             "do not hold for them\n";
+             " standard errors: inverse dynamics cannot reproduce these pushes, so the total "
+             "errors are not valid for them\n";
     }
   }
   return "";
@@ -81,7 +77,8 @@ std::string PriorVerdict(const RefitTable& check) {
   }
   return moved.empty()
              ? "no parameter moves by more than twice its error\n"
-             : "priors decide on what moves by more than twice its error: " + moved + "\n";
+             : "determined by priors, as they move by more than twice their errors: " + moved +
+                   "\n";
 }
 
 }  // namespace
@@ -99,7 +96,9 @@ TextTable PushErrorTable(const RefitTable& check) {
 
 TextTable MovesTable(const RefitTable& check) {
   std::vector<std::string> header = {"source", "push"};
-  for (size_t i = 0; i < check.parameters.size(); ++i) header.push_back(WithUnit(check, i));
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    header.push_back(WithUnit(check.parameters[i], check.units[i]));
+  }
   std::vector<bool> left(header.size(), false);
   left[0] = left[1] = true;
   TextTable table(header, left);
@@ -135,29 +134,30 @@ std::string DriftText(const RefitTable& check) {
             (row.frames == kOneStep ? " in single steps, " : " in the first " + row.name + ", ") +
             ValueText(check.value[drift.parameter], check.standard_error[drift.parameter]) +
             " in all, " + Rounded(drift.in_errors, 2) +
-            " errors apart; it stands for something that the model leaves out\n";
+            " standard errors apart; it compensates for something that the model omits\n";
   }
   return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
 }
 
 std::string HorizonClaims(const RefitTable& check) {
   if (check.rows.empty() || check.rows[0].frames != kOneStep) return "";
-  return "one step: how people answer from one frame to the next, for controllers and filters\n"
-         "first frames: what a prediction of so many frames needs\n"
-         "all: where a push takes people, for predictions from the push and for simulations\n";
+  return "one step: the response from one frame to the next, for controllers and filters\n"
+         "first frames: for predictions over that many frames\n"
+         "all: the motion over whole recordings, for predictions from the push and for "
+         "simulations\n";
 }
 
 std::string PushCheckText(const RefitTable& check) {
   return PushErrorTable(check).ToString() +
-         "total error: the pushes are not known exactly either; each refit moves\n" +
+         "total error: includes the uncertainty of the pushes; change in each refit:\n" +
          MovesTable(check).ToString() + SameWindowText(check) + FailuresText(check);
 }
 
 std::string PriorCheckText(const RefitTable& check) {
   if (check.rows.empty()) return "no free parameter has a prior\n";
   return PriorTable(check).ToString() +
-         "centres and widths of all priors halved and doubled, everything refitted\n" +
-         PriorVerdict(check) + FailuresText(check);
+         "refits with means and widths of all priors halved and doubled\n" + PriorVerdict(check) +
+         FailuresText(check);
 }
 
 std::string HorizonCheckText(const RefitTable& check) {

@@ -16,7 +16,7 @@ namespace pushid {
 
 namespace {
 
-std::string Interval(double lower, double upper) {
+std::string BracketText(double lower, double upper) {
   return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
 }
 
@@ -34,8 +34,7 @@ std::string NoFartherText(const Behaviour& b) {
     }
     before = &d;
   }
-  return "a harder push does NOT move the line on farther" + (SettingsDiffer(b) ? where : "") +
-         "\n";
+  return "a harder push does NOT move the line farther" + (SettingsDiffer(b) ? where : "") + "\n";
 }
 
 }  // namespace
@@ -70,8 +69,9 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : Interval(e.lower95, e.upper95), e.unit, NameOf(e.status),
-               no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
+               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95), e.unit,
+               NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
+               no_shares ? "-" : PullText(e), prior});
   }
   return table;
 }
@@ -101,14 +101,15 @@ std::string IdentifiedText(const FitResult& result) {
 }
 
 std::string SharesNote() {
-  return "Shares: what part of a value's variance the data, its prior and the demand to settle "
-         "account for. Pull: what prior and demand together moved the value by, in its standard "
-         "errors. Prior-held: the data have less than half a say.";
+  return "Shares: fractions of a value's variance due to the data, its prior and the settling "
+         "constraint. Pull: shift of the value by prior and constraint together, in standard "
+         "errors. Prior-held: the data account for less than half.";
 }
 
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
-  if (!u.clustered) return "standard errors: naive (a single cluster tells no scatter)\n";
+  if (!u.clustered)
+    return "standard errors: naive (the scatter cannot be estimated from a single cluster)\n";
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
@@ -130,7 +131,7 @@ TextTable DerivedTable(const FitResult& result) {
   for (const Combination& c : result.derived) {
     const bool fixed = c.standard_error == 0.0;
     table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
-               fixed ? "-" : Interval(c.lower95, c.upper95), c.unit});
+               fixed ? "-" : BracketText(c.lower95, c.upper95), c.unit});
   }
   return table;
 }
@@ -171,8 +172,8 @@ std::string BehaviourText(const FitResult& result) {
 }
 
 TextTable LinesTable(const FitResult& result) {
-  TextTable table({"a line pushed forwards, " + WaitText() + " later", "all moved on, m",
-                   "the pushed, m", "either way, m"},
+  TextTable table({"line pushed forwards, " + WaitText() + " later", "mean advance, m",
+                   "advance of pushed person, m", "mean displacement, m"},
                   {true, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
@@ -185,7 +186,7 @@ TextTable LinesTable(const FitResult& result) {
 
 TextTable BehaviourTable(const FitResult& result) {
   TextTable table({"settling simulation", WaitText() + " after the push", "m/s", "rad from rest",
-                   "m moved on", "the pushed, m"},
+                   "mean advance, m", "advance of pushed person, m"},
                   {true, true, false, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
@@ -212,7 +213,7 @@ TextTable PooledTable(const FitResult& result) {
     for (const auto& [name, e] : pooled) {
       std::vector<std::string> row = unit;
       row.insert(row.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
-                             Interval(e.lower95, e.upper95), e.unit});
+                             BracketText(e.lower95, e.upper95), e.unit});
       table.Add(row);
     }
   };
@@ -240,7 +241,7 @@ TextTable SpreadTable(const FitResult& result) {
                                    ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
                                    : Rounded(sigma, 3);
     const char* source = o.pooling_sigma                             ? ", given"
-                         : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none seen"
+                         : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none found"
                                                                      : ", estimated";
     table.Add({e.name, Rounded(e.value, 4), Rounded(e.standard_error, 3), e.unit, spread + source});
   }

@@ -41,11 +41,11 @@ std::string TrainingText(const FitOptions& o) {
   std::string text =
       o.network_prior > 0.0 ? "prior " + Rounded(o.network_prior, 4) : std::string("no prior");
   if (o.early_stopping > 0.0) {
-    text += ", stopped early by " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
+    text += ", early stopping on " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
   }
   if (o.takeover_weight > 0.0) text += ", takeover weight " + Rounded(o.takeover_weight, 4);
   if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
-    text += ", held while the errors above were computed";
+    text += ", fixed while the errors above were computed";
   }
   return text;
 }
@@ -68,7 +68,7 @@ std::string NetworkText(const FitResult& result) {
   if (const auto& c = result.contact_takeover) {
     text += ": where people load each other it acts like stiffness " + signed_number(c->stiffness) +
             " N/m, damping " + signed_number(c->damping) +
-            " N s/m beside those above;\n  its force on the cart is then " +
+            " N s/m in addition to those above;\n  its force on the cart is then " +
             Rounded(c->rms_force, 2) + " m/s^2 times the mass (root mean square)";
   }
   if (!result.takeover) return text;
@@ -77,22 +77,22 @@ std::string NetworkText(const FitResult& result) {
       result.contact_takeover ? ";\n  on the recordings the self force" : ": on the recordings it";
   return text + " acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
          signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
-         " N m s/rad beside those above;\n  its force on the cart is " + Rounded(t.rms_force, 2) +
-         " m/s^2 times the mass (root mean square)";
+         " N m s/rad in addition to those above;\n  its force on the cart is " +
+         Rounded(t.rms_force, 2) + " m/s^2 times the mass (root mean square)";
 }
 
 std::string LikelihoodText(const FitResult& result) {
   const LikelihoodScore& score = *result.likelihood;
   return "likelihood " + NameOf(result.options.likelihood) + ", noise " +
          NameOf(result.options.model.process_noise) + ": -2 log L " + Rounded(score.deviance, 7) +
-         " of " + std::to_string(score.measured) + " numbers, AIC " + Rounded(score.Aic(), 7) +
+         " of " + std::to_string(score.measured) + " values, AIC " + Rounded(score.Aic(), 7) +
          ", BIC " + Rounded(score.Bic(), 7) + " (" + Count(score.parameters, "parameter") +
-         "); compare with other models by the same likelihood of the same recordings\n" +
+         "); compare only with models of the same likelihood and the same recordings\n" +
          (AnyPooled(result.options.table) ? "  units' deviations are not counted as parameters: "
-                                            "compare models that pool alike\n"
+                                            "compare only models with the same pooling\n"
                                           : "") +
-         "  it fits single steps: settling, errors and outliers below are those of its rollouts,\n"
-         "  which are another question";
+         "  this likelihood is of single steps; settling, errors and outliers below are those of\n"
+         "  rollouts";
 }
 
 std::string ReportText(const FittedModel& model) {
@@ -117,7 +117,7 @@ std::string ReportText(const FittedModel& model) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
   for (const std::string& held : result.uncertainty.held_directions)
-    text += "put in: " + held + "\n";
+    text += "prior-dependent: " + held + "\n";
   const TextTable agreement = AgreementTable(model);
   if (agreement.rows().size() > 1) {
     text += agreement.ToString() + AgreementNote(model) + "\n";

@@ -17,10 +17,6 @@ std::vector<size_t> Chosen(const StudyPlan& plan, const std::string& parameter) 
   return chosen;
 }
 
-std::string WithUnit(const StudyPlan& plan, size_t i) {
-  return plan.parameters[i] + (plan.units[i] == "1" ? "" : ", " + plan.units[i]);
-}
-
 }  // namespace
 
 TextTable SensorTable(const StudyPlan& plan, const std::string& parameter) {
@@ -39,7 +35,9 @@ TextTable SensorTable(const StudyPlan& plan, const std::string& parameter) {
 TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter) {
   const std::vector<size_t> chosen = Chosen(plan, parameter);
   std::vector<std::string> header = {"people", "pushes of each"};
-  for (size_t i : chosen) header.push_back("error of " + WithUnit(plan, i));
+  for (size_t i : chosen) {
+    header.push_back("error of " + WithUnit(plan.parameters[i], plan.units[i]));
+  }
   TextTable table(header, std::vector<bool>(header.size(), false));
   for (const StudySize& size : plan.sizes) {
     std::vector<std::string> cells = {std::to_string(size.people), Rounded(size.pushes, 3)};
@@ -52,28 +50,28 @@ TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter) {
 std::string StudySizesNote(const StudyPlan& plan) {
   if (plan.sizes.empty()) return "";
   const int people = plan.sizes.front().people;
-  return "How people differ is known from " + std::to_string(people) + " of them, to about " +
-         Rounded(100.0 / std::sqrt(2.0 * (people - 1)), 2) + " %, and so are these errors.";
+  return "The variation between people is estimated from " + std::to_string(people) +
+         " of them, with an accuracy of about " +
+         Rounded(100.0 / std::sqrt(2.0 * (people - 1)), 2) +
+         " %; the same holds for these standard errors.";
 }
 
 std::string StudiesText(const StudyPlan& plan, const std::string& parameter) {
   std::string text;
   if (plan.no_sensor.empty()) {
-    text +=
-        "what a force sensor would change in a study like this one, the whole push being "
-        "known\n" +
-        SensorTable(plan, parameter).ToString();
+    text += "effect of a force sensor in the same study, with the whole push known\n" +
+            SensorTable(plan, parameter).ToString();
   } else {
     text += "no force sensor is proposed: " + plan.no_sensor + "\n";
   }
   if (!plan.no_sizes.empty()) return text + "\nmore people, more pushes: " + plan.no_sizes + "\n";
-  text += "\nstandard errors that more people and more pushes of each would leave\n" +
+  text += "\nstandard errors with more people and more pushes of each\n" +
           StudySizesTable(plan, parameter).ToString();
   TextTable spread(
       {"standard deviation", "between people", "added by each push", "noise of one push"},
       {true, false, false, false});
   for (size_t i : Chosen(plan, parameter)) {
-    spread.Add({WithUnit(plan, i), Rounded(plan.between_people[i], 3),
+    spread.Add({WithUnit(plan.parameters[i], plan.units[i]), Rounded(plan.between_people[i], 3),
                 Rounded(plan.between_recordings[i], 3), Rounded(plan.noise[i], 3)});
   }
   return text + spread.ToString() + StudySizesNote(plan) + "\n";

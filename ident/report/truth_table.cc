@@ -2,6 +2,7 @@
 #include "ident/report/truth_table.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
@@ -56,7 +57,7 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
                inside ? "covers" : "misses"});
   }
   return table.ToString() + std::to_string(covered) + " of " + std::to_string(compared) +
-         " intervals cover the truth (of 20, one misses on average)\n";
+         " intervals cover the truth (on average one in 20 does not)\n";
 }
 
 }  // namespace pushid

@@ -1,6 +1,8 @@
 // ident: how sure a result is, to JSON and back.
 #include "ident/results/confidence_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/option_names.h"
 #include "ident/results/json_pieces.h"

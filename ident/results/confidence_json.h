@@ -1,7 +1,7 @@
 // ident: profiles, bootstrap, diagnostics and advice as JSON, without loss.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "ident/diagnostics/diagnostics.h"

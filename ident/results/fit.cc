@@ -11,6 +11,8 @@
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/few_clusters.h"
 #include "models/cart_damping.h"
+#include "residuals/cost_functions/contact_takeover.h"
+#include "residuals/cost_functions/network_takeover.h"
 
 namespace pushid {
 namespace {
@@ -147,7 +149,7 @@ void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
   const bool tried = slow && result.uncertainty.settling.dropped();
   warnings->push_back(
       VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
-      (slow ? "" : "; such a fit may score well and predicts nothing beyond the data") +
+      (slow ? "" : "; such a fit may score well but cannot be trusted beyond the data") +
       (tried ? "" : " (" + VerdictRemedy(verdict, model) + ")"));
 }
 
@@ -166,18 +168,19 @@ void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings)
 void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::string>* warnings) {
   const SettlingDemand& s = u.settling;
   if (!s.binds) return;
-  const std::string wanted = std::isfinite(s.free_seconds)
-                                 ? "want to settle in " + Rounded(s.free_seconds, 2) + " s"
-                                 : "alone do not settle within 10 s";
+  const std::string wanted =
+      "without the settling constraint the model " +
+      (std::isfinite(s.free_seconds) ? "settles after " + Rounded(s.free_seconds, 2) + " s"
+                                     : std::string("does not settle within 10 s"));
   if (s.unmet) {
-    warnings->push_back("the data " + wanted + ", and no fit that settles within " +
-                        Rounded(kWaitSeconds, 2) + " s was found: the demand was dropped");
+    warnings->push_back(wanted + ", and no fit that settles within " + Rounded(kWaitSeconds, 2) +
+                        " s was found: the constraint was dropped");
     return;
   }
   if (s.contradicted) {
-    warnings->push_back("the data " + wanted + ": they contradict the demand to settle within " +
-                        Rounded(kWaitSeconds, 2) + " s (twice the log likelihood would fall by " +
-                        Rounded(s.rise, 2) + "), and it was dropped");
+    warnings->push_back(wanted + "; settling within " + Rounded(kWaitSeconds, 2) +
+                        " s contradicts the data (twice the log likelihood would fall by " +
+                        Rounded(s.rise, 2) + "), and the constraint was dropped");
     return;
   }
   std::string moved;
@@ -189,8 +192,7 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::st
         (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
   }
   warnings->push_back(
-      "the data " + wanted + "; the demand to settle within " + Rounded(kWaitSeconds, 2) +
-      " s moved " +
+      wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) + " s moved " +
       (moved.empty() ? "no parameter by half a standard error" : moved + " standard errors"));
 }
 
@@ -218,8 +220,8 @@ std::vector<std::string> Warnings(const FitProblem& problem, const FitResult& re
   const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
     warnings.push_back(
-        "every push is external (measured whole): the push tail does not act; where a push is not "
-        "all of what pushed, say so by push_kind (net) in the manifest");
+        "every push is external (measured completely): the push tail has no effect; set push_kind "
+        "to net in the manifest for pushes that were measured only in part");
   }
   return warnings;
 }
@@ -300,12 +302,12 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
     result.likelihood = ScoreByLikelihood(problem, best.to);
   }
   if (!solved.weights_settled && !rollouts) {
-    result.warnings.push_back("the likelihood still rose when the rounds of solving ended");
+    result.warnings.push_back("the likelihood still increased in the last round of solving");
   }
   if (!solved.weights_settled && rollouts) {
     result.warnings.push_back(
-        "the data's weight still changed by more than 1 % when the rounds "
-        "of weighing ended: priors may count too much or too little");
+        "the weight of the data still changed by more than 1 % in the last round of reweighting: "
+        "priors may have too much or too little weight");
   }
   result.options.model = problem.ModelAt(best.to);
   ForgetWeights(static_cast<Eigen::Index>(best.to.weights.size()), &result);

@@ -9,7 +9,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/results/fit_result.h"
 #include "ident/results/identified_model.h"
-#include "ident/solver/solver.h"
+#include "ident/solver/solution.h"
 
 namespace pushid {
 

@@ -17,8 +17,7 @@
 #include "ident/solver/likelihood_score.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
-#include "residuals/cost_functions/contact_takeover.h"
-#include "residuals/cost_functions/network_takeover.h"
+#include "residuals/cost_functions/takeover.h"
 
 namespace pushid {
 

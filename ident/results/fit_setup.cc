@@ -76,7 +76,7 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
         "mode_weight", "stability_weight", "body_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
-                 NameOf(options.likelihood) + " is of single steps, and knows nothing of it"};
+                 NameOf(options.likelihood) + " fits single steps and does not use it"};
   }
   if (const std::string* noise = Find(given, "process_noise");
       options.likelihood != Likelihood::kTrajectory && noise != nullptr && *noise == "none") {
@@ -86,7 +86,7 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   for (const char* name : {"pool_by", "pooling_sigma"}) {
     if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +
-                 " says how parameters differ, but none does; name some with --pool"};
+                 " applies to pooled parameters, but there are none; name some with --pool"};
   }
   return std::nullopt;
 }
@@ -180,8 +180,8 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
   }
   if (options.model.interaction.ldp_discrete) {
     warnings.push_back(
-        "--interaction=ldp_discrete has switches, which a fit cannot see: it is there to evaluate; "
-        "fit ldp (potential,lean), its smooth form");
+        "--interaction=ldp_discrete is discontinuous, so it can be evaluated but not fitted; fit "
+        "ldp (potential,lean), its smooth form");
   }
   return warnings;
 }

@@ -26,6 +26,8 @@ struct Agreement {
   double ratio = 1.0;
 };
 
+inline constexpr double kDisagreement = 1.5;  // a ratio that is worth a word
+
 // Every free parameter and moving combination that a profile or the bootstrap speaks of.
 std::vector<Agreement> CompareIntervals(const FittedModel& model);
 

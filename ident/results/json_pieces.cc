@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "ident/parameters/fit_options_json.h"
@@ -23,7 +24,11 @@ double NumberFrom(const Json& json) {
   if (text == "infinity") return std::numeric_limits<double>::infinity();
   if (text == "-infinity") return -std::numeric_limits<double>::infinity();
   if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
-  throw std::runtime_error("'" + text + "' is no number");
+  throw std::runtime_error("'" + text + "' is not a number");
+}
+
+Json NumberOrNull(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
 Json NumbersJson(const std::vector<double>& values) {

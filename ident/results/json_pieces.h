@@ -2,7 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <vector>
 
 #include "ident/uncertainty/uncertainty.h"
@@ -13,6 +14,8 @@ namespace pushid {
 // as the texts "infinity", "-infinity" and "nan". NumberFrom throws on any other text.
 nlohmann::ordered_json NumberJson(double value);
 double NumberFrom(const nlohmann::ordered_json& json);
+
+nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
 
 nlohmann::ordered_json NumbersJson(const std::vector<double>& values);
 std::vector<double> NumbersFrom(const nlohmann::ordered_json& json);

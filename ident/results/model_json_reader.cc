@@ -1,5 +1,6 @@
 // ident: a fitted model from JSON. model_json_writer.cc is the inverse.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
 #include "ident/parameters/fit_options_json.h"
@@ -115,7 +116,7 @@ std::vector<SolveStart> StartsFrom(const Json& json) {
 // What the types alone do not ensure and readers of a result rely on.
 void CheckConsistent(const FitResult& result) {
   if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
-    throw std::runtime_error("best_start is none of the starts");
+    throw std::runtime_error("best_start is not one of the starts");
   }
   const Uncertainty& u = result.uncertainty;
   const auto fits = [&u](const Eigen::MatrixXd& matrix) {
@@ -123,7 +124,7 @@ void CheckConsistent(const FitResult& result) {
     return matrix.rows() == size && matrix.cols() == size;
   };
   if (!fits(u.covariance) || !fits(u.correlation)) {
-    throw std::runtime_error("covariance, correlation and parameters do not belong together");
+    throw std::runtime_error("sizes of covariance, correlation and parameters do not match");
   }
   if (!(result.parameters[kTailTime] > 0.0)) {
     throw std::runtime_error("tail_time must be positive");
@@ -348,7 +349,7 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
                                         const ForceLaws& laws) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
       !json.contains("format_version") || !json["format_version"].is_number()) {
-    return Error{"this is no pushid model (pushid-fit --model_out writes one)", file};
+    return Error{"this is not a pushid model (pushid-fit --model_out writes one)", file};
   }
   if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
@@ -362,7 +363,7 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
     return std::move(reader.model());
   } catch (const std::exception& exception) {
     return Error{"incomplete or damaged model, at '" + reader.part() + "': " + Reason(exception) +
-                     "; take another copy or fit again",
+                     "; use another copy or fit again",
                  file};
   }
 }

@@ -34,8 +34,8 @@ std::vector<std::string> DuplicateWarnings(const std::vector<PendulumRecording>&
       copies += (copies.empty() ? "" : ",") + recordings[j].id;
     }
     if (copies.empty()) continue;
-    warnings.push_back("the motion of '" + recordings[i].id + "' is there again as " + copies +
-                       ": copies count as new evidence, and intervals come out too narrow; leave "
+    warnings.push_back("the motion of '" + recordings[i].id + "' is repeated in " + copies +
+                       ": copies count as independent data, so intervals are too narrow; leave "
                        "them out (--leave_out=" +
                        copies + ")");
   }
@@ -50,8 +50,8 @@ std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& re
                   [](const PendulumRecording& recording) { return recording.num_people() > 1; });
   if (groups && !options.model.interaction.Any()) {
     warnings.push_back(
-        "several people stand in one recording, and the model has nothing between them "
-        "(--preset=group and --interaction=contact have)");
+        "recordings contain several people, but the model has no interaction between them "
+        "(--preset=group or --interaction=contact adds one)");
   }
   for (const std::string& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
   return warnings;
@@ -83,7 +83,7 @@ MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
   if (options.body == nullptr) {
     return Error{
         "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
-        "--kind=window wrote, and takes part in pushid-fit and pushid-train-restoration alone"};
+        "--kind=window wrote, and is available only in pushid-fit and pushid-train-restoration"};
   }
   for (const PendulumRecording& recording : recordings) {
     if (options.body->motions.count(recording.id) > 0) continue;
@@ -116,11 +116,11 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
   }
   if (const std::string what = MemoryOf(model); !what.empty()) {
     return Error{
-        "process noise and the likelihoods of single steps are for models whose state is "
-        "place and velocity; " +
+        "process noise and the likelihoods of single steps require a model whose state is position "
+        "and velocity; " +
         what +
-        (model.learned != nullptr ? " has weights, which single steps do not fit"
-                                  : " has a memory of its own") +
+        (model.learned != nullptr ? " has weights, which they cannot fit"
+                                  : " has internal memory") +
         ": leave one of them out"};
   }
   bool told_by_pushes = false;
@@ -132,15 +132,15 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
       told_by_pushes = told_by_pushes || push.kind == PushKind::kExternal;
     }
     if (r.initial_velocity != InitialVelocity::kFree) continue;
-    return Error{
-        "recording " + r.id +
-        " has free initial velocities, which likelihoods of single steps and process noise "
-        "do not fit; set initial_velocity to zero or estimated in the manifest"};
+    return Error{"recording " + r.id +
+                 " has free initial velocities, which likelihoods of single steps and process "
+                 "noise cannot fit; set initial_velocity to zero or estimated in the manifest"};
   }
   if (model.process_noise.push && !told_by_pushes) {
     return Error{
-        "--process_noise names push, but every push is a net one, made from the same motion by "
-        "inverse dynamics: what happens while it acts says nothing of noise; leave push out"};
+        "--process_noise includes push, but every push is a net force computed from the same "
+        "motion by inverse dynamics, so the motion during a push contains no information on the "
+        "noise; leave push out"};
   }
   return std::nullopt;
 }

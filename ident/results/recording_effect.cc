@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kFirstSpread = 0.5;
 constexpr double kLeastSpread = 1e-3;  // less than this is none: all weight is on b = 0
-constexpr int kMostRounds = 500;
+constexpr int kMostPopulationRounds = 500;
 constexpr double kSettledRound = 1e-7;
 
 // Of one recording, all of whose frames were seen.
@@ -36,8 +36,8 @@ double Least(const std::vector<double>& values) {
 }
 
 // Those of `left_out` do not count.
-Population Maximize(const std::vector<Misfits>& recordings, const std::vector<int>& cluster,
-                    int left_out = -1) {
+Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
+                                const std::vector<int>& cluster, int left_out = -1) {
   double squares = 0.0, residuals = 0.0;
   int acting = 0;
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -47,7 +47,7 @@ Population Maximize(const std::vector<Misfits>& recordings, const std::vector<in
     acting += recordings[i].acts;
   }
   Population p{acting > 0 ? kFirstSpread : 0.0, std::sqrt(squares / residuals)};
-  for (int round = 0; round < kMostRounds && acting > 0; ++round) {
+  for (int round = 0; round < kMostPopulationRounds && acting > 0; ++round) {
     double spread = 0.0;
     squares = 0.0;
     for (size_t i = 0; i < recordings.size(); ++i) {
@@ -79,7 +79,7 @@ double JackknifeError(const std::vector<Misfits>& recordings, const std::vector<
   std::vector<double> spreads;
   double mean = 0.0, squares = 0.0;
   for (int g = 0; g < clusters; ++g) {
-    spreads.push_back(Maximize(recordings, cluster, g).spread);
+    spreads.push_back(MostLikelyPopulation(recordings, cluster, g).spread);
     mean += spreads.back() / clusters;
   }
   for (double spread : spreads) squares += (spread - mean) * (spread - mean);
@@ -182,7 +182,7 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   if (kept.empty()) return std::nullopt;
   RecordingEffect effect;
   const std::vector<int> cluster = ClustersOfPeople(people, &effect.clusters);
-  const Population p = Maximize(misfits, cluster);
+  const Population p = MostLikelyPopulation(misfits, cluster);
   effect.spread = p.spread;
   effect.error_scale = p.scale;
   if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters);

@@ -1,6 +1,7 @@
 // ident: the effect of recordings, to JSON and back.
 #include "ident/results/recording_effect_json.h"
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "ident/results/json_pieces.h"

@@ -1,7 +1,7 @@
 // ident: the effect of recordings in a model's file.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "ident/results/recording_effect.h"
 

@@ -1,6 +1,7 @@
 // ident: refits to JSON and back.
 #include "ident/results/refit_json.h"
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "ident/results/json_pieces.h"

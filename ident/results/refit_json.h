@@ -1,7 +1,7 @@
 // ident: refits side by side as JSON, without loss.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "ident/uncertainty/refit_table.h"
 

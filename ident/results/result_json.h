@@ -2,7 +2,7 @@
 // string "infinity". Reports and predictions are functions of this file alone.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "ident/parameters/own_laws.h"
 #include "ident/results/fitted_model.h"

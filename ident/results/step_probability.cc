@@ -23,7 +23,8 @@ double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 Eigen::Vector2d Features(const StepOutcome& outcome) { return {1.0, outcome.margin}; }
 
 // Newton's method on the log posterior, which is concave.
-Eigen::Vector2d Maximize(const std::vector<StepOutcome>& outcomes, Eigen::Matrix2d* hessian) {
+Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
+                                       Eigen::Matrix2d* hessian) {
   const Eigen::Vector2d precision(1.0 / (kPriorIntercept * kPriorIntercept),
                                   1.0 / (kPriorSlope * kPriorSlope));
   Eigen::Vector2d coefficients = Eigen::Vector2d::Zero();
@@ -99,7 +100,7 @@ std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>
   if (outcomes.empty()) return std::nullopt;
   fitted.clusters = static_cast<int>(scores.size());
   Eigen::Matrix2d hessian;
-  fitted.coefficients = Maximize(outcomes, &hessian);
+  fitted.coefficients = MostLikelyCoefficients(outcomes, &hessian);
   if (!fitted.coefficients.allFinite()) return std::nullopt;  // no support, no margin
   for (const StepOutcome& outcome : outcomes) {
     const double error = (outcome.stepped ? 1.0 : 0.0) - fitted.At(outcome.margin);

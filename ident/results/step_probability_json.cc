@@ -1,6 +1,7 @@
 // ident: the probability of a step, to JSON and back.
 #include "ident/results/step_probability_json.h"
 
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "ident/results/json_pieces.h"

@@ -1,7 +1,7 @@
 // ident: the probability of a step in a model's file.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "ident/results/step_probability.h"
 

@@ -1,6 +1,8 @@
 // ident: takeovers in and out.
 #include "ident/results/takeover_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/results/json_pieces.h"
 
 namespace pushid {

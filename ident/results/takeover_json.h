@@ -1,10 +1,9 @@
 // ident: what learned terms take over, as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
-#include "residuals/cost_functions/contact_takeover.h"
-#include "residuals/cost_functions/network_takeover.h"
+#include "residuals/cost_functions/takeover.h"
 
 namespace pushid {
 

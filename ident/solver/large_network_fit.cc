@@ -204,7 +204,7 @@ Result<AdjointGradient> MakeTraining(const LargeNetworkFit& fit,
   return AdjointGradient::Create(recordings, fit.model, fit.map, fit.sigmas);
 }
 
-ceres::GradientProblemSolver::Options SolverOptions(const LargeNetworkOptions& options) {
+ceres::GradientProblemSolver::Options LbfgsOptions(const LargeNetworkOptions& options) {
   ceres::GradientProblemSolver::Options solver;
   solver.line_search_direction_type = ceres::LBFGS;
   solver.line_search_type = ceres::WOLFE;
@@ -256,7 +256,7 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
   std::vector<double> x = Variables(fit).Start();
   auto* cost = new TrainingCost(fit, &training.value());
   const ceres::GradientProblem problem(cost);  // takes ownership
-  ceres::GradientProblemSolver::Options options = SolverOptions(fit.options);
+  ceres::GradientProblemSolver::Options options = LbfgsOptions(fit.options);
   Judge judge(fit, fit.held_out.empty() ? nullptr : &held_out.value(), &x, progress, &solution);
   options.callbacks.push_back(&judge);
   ceres::GradientProblemSolver::Summary summary;

@@ -51,7 +51,7 @@ void SetFlat(const VectorXd& flat, FitPoint* point) {
 // The cost at the origin, for every row. The solver compares changes with the cost itself, and a
 // negative log likelihood may be negative: counted from here it is not, as no row falls so far.
 constexpr double kLevelOfRow = 1e3;
-constexpr double kSameCost = 1e-4;  // nats: changes below end the search
+constexpr double kLeastChange = 1e-4;  // nats: changes below end the search
 
 // The exact cost: half the squares of rows that do not end, but for a constant.
 class WhitenedCost : public ceres::FirstOrderFunction {
@@ -150,8 +150,8 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   }
   const MatrixXd root = RootOfInverse(information, moving);
   if (root.size() == 0) {
-    *message =
-        moving.empty() ? "nothing moves the likelihood" : "the Fisher information has no inverse";
+    *message = moving.empty() ? "no parameter changes the likelihood"
+                              : "the Fisher information has no inverse";
     return stage;
   }
   auto* cost = new WhitenedCost(problem, *point, root);  // of the gradient problem
@@ -159,7 +159,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = problem.options().max_iterations;
-  options.function_tolerance = kSameCost / cost->level();
+  options.function_tolerance = kLeastChange / cost->level();
   options.logging_type = ceres::SILENT;
   std::vector<double> z(moving.size(), 0.0);
   ceres::GradientProblemSolver::Summary summary;

@@ -2,6 +2,7 @@
 #include "ident/training/best_forecast.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
@@ -26,7 +27,7 @@ Result<std::vector<ForecastCandidate>> CompareForecasts(
                                                 {ForecastBy::kRestoration, 0.0},
                                                 chain.value().evaluation.at("restoration")}};
   for (const double blend : of_generator.blends) {
-    candidates.push_back({"diffusion, " + Rounded(blend, 3) + " of the way to physics",
+    candidates.push_back({"diffusion, blended " + Rounded(blend, 3) + " with physics",
                           {ForecastBy::kGenerator, blend},
                           scores.at(BlendName(blend))});
   }

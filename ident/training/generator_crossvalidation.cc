@@ -1,20 +1,15 @@
 // ident: generators by folds.
 #include "ident/training/generator_crossvalidation.h"
 
-#include <chrono>
-
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/prediction/online_predictor.h"
+#include "ident/problem/parallel.h"
 #include "ident/results/model_rollout.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {
 namespace {
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 constexpr int kShown = 20;  // frames, of generator_shown_20
 

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
-#include "ident/generators/group_spread.h"
+#include "ident/forecasts/group_spread.h"
 #include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
 #include "ident/training/restoration_training_run.h"

@@ -25,9 +25,9 @@ std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings
   return people;
 }
 
-std::vector<ObservedGroup> Groups(const std::vector<BodyRecording>& recordings,
-                                  const std::vector<int>& among,
-                                  const std::vector<GroupHips>& pendulums) {
+std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
+                                          const std::vector<int>& among,
+                                          const std::vector<GroupHips>& pendulums) {
   std::vector<ObservedGroup> groups;
   for (int i : among) {
     if (!pendulums.empty() && pendulums[i].empty()) continue;
@@ -36,8 +36,8 @@ std::vector<ObservedGroup> Groups(const std::vector<BodyRecording>& recordings,
   return groups;
 }
 
-std::vector<PushKind> PushKindsOf(const std::vector<BodyRecording>& recordings,
-                                  const std::vector<int>& among) {
+std::vector<PushKind> PushKindsAmong(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<int>& among) {
   std::set<PushKind> kinds;
   for (int i : among) {
     for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
@@ -91,11 +91,11 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
   settings.pendulum = !pendulums.empty();
-  settings.push_kinds = PushKindsOf(recordings, among);
+  settings.push_kinds = PushKindsAmong(recordings, among);
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
-  samples.groups = Groups(recordings, among, pendulums);
-  samples.held_groups = Groups(recordings, held, pendulums);
+  samples.groups = ObservedGroups(recordings, among, pendulums);
+  samples.held_groups = ObservedGroups(recordings, held, pendulums);
   int longest = observed + 1;
   for (const auto& motion : samples.learnt) {
     longest = std::max(longest, static_cast<int>(motion.motion.cols()));

@@ -113,7 +113,7 @@ MaybeError TrainParticles(const GeneratorSamples& samples, const GeneratorTraini
   bool enough = false;
   for (const LearntParticles& motion : samples.learnt) enough |= motion.motion.cols() >= window;
   if (!enough) {
-    return Error{"there is nothing to learn from: no motion has " + std::to_string(window) +
+    return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
                  " frames"};
   }
   TrainedParticles particles;
@@ -144,7 +144,7 @@ MaybeError TrainParticles(const GeneratorSamples& samples, const GeneratorTraini
 MaybeError TrainDiffusion(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
                           const TrainingProgress& progress, TrainedGenerator* trained) {
   if (samples.groups.empty()) {
-    return Error{"there is nothing to learn from: diffusion learns from recordings of pushes"};
+    return Error{"there is nothing to train on: diffusion is trained on recordings of pushes"};
   }
   TrainedDiffusion diffusion;
   for (int index = 0; index < options.seeds; ++index) {

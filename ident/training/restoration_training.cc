@@ -1,6 +1,8 @@
 // ident: samples to tensors, epochs, checkpoints.
 #include "ident/training/restoration_training.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/training/restoration_training_kinds.h"
 #include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
@@ -45,7 +47,7 @@ Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& tra
       TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
                  progress, &trained);
   if (!network.ok()) return network.error();
-  trained.file.settings[kViewKey] = NameOf(options.view);
+  (*trained.file.settings)[kViewKey] = NameOf(options.view);
   AddTensors("inputs", weights.inputs, &trained.file.tensors);
   AddTensors("network", network.value(), &trained.file.tensors);
   return trained;

@@ -1,7 +1,6 @@
 // ident: checkpoints of trainings: key, curve and state, each with its length in front.
 #include "ident/training/restoration_training_checkpoint.h"
 
-#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,13 +8,10 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
+#include "ident/problem/parallel.h"
 
 namespace pushid {
 namespace {
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void Append(const std::string& part, std::string* bytes) {
   const uint64_t size = part.size();

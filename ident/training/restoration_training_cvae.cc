@@ -1,6 +1,7 @@
 // ident: samples to sequences of scaled frames, rounds, checkpoints.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ident/training/restoration_training_kinds.h"
 #include "models/restoration/cvae_trainer.h"
@@ -73,9 +74,9 @@ Result<TrainedRestoration> TrainCvae(const std::vector<RestorationSample>& train
     return *error;
   }
   trained.file.tensors = ToTensors(trainer.Best());
-  trained.file.settings = {{kViewKey, NameOf(options.view)},
-                           {kCvaeCoordinatesKey, Name(options.coordinates)},
-                           {kCvaeHalvesKey, options.halves}};
+  *trained.file.settings = {{kViewKey, NameOf(options.view)},
+                            {kCvaeCoordinatesKey, Name(options.coordinates)},
+                            {kCvaeHalvesKey, options.halves}};
   return trained;
 }
 

@@ -1,6 +1,7 @@
 // ident: what the peers learn from: windows of the true motions for siMLPe, whole groups for MRT.
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "ident/bodies/peer_files.h"
 #include "ident/training/restoration_training_kinds.h"
@@ -39,7 +40,7 @@ RegressionSamples Windows(const std::vector<RestorationSample>& samples, Scaling
 }
 
 // Samples of the same people, who stand side by side, are one group.
-std::vector<MrtGroup> Groups(const std::vector<RestorationSample>& samples) {
+std::vector<MrtGroup> MrtGroups(const std::vector<RestorationSample>& samples) {
   std::vector<MrtGroup> groups;
   std::map<const void*, size_t> known;
   for (const RestorationSample& sample : samples) {
@@ -75,7 +76,7 @@ Result<TrainedRestoration> TrainMrt(const std::vector<RestorationSample>& traini
                                     const std::vector<RestorationSample>& held,
                                     const RestorationTrainingOptions& options,
                                     const TrainingProgress& progress) {
-  std::vector<MrtGroup> learnt = Groups(training), judged = Groups(held);
+  std::vector<MrtGroup> learnt = MrtGroups(training), judged = MrtGroups(held);
   if (std::none_of(learnt.begin(), learnt.end(), HasWindow) ||
       std::none_of(judged.begin(), judged.end(), HasFrameAfter)) {
     return TooShort(options.kind);
@@ -91,7 +92,7 @@ Result<TrainedRestoration> TrainMrt(const std::vector<RestorationSample>& traini
                                    options, progress, &trained)) {
     return *error;
   }
-  trained.file.settings[kMrtSizeKey] = NameOf(options.mrt_size);
+  (*trained.file.settings)[kMrtSizeKey] = NameOf(options.mrt_size);
   AddTensors(trainer.Best(), &trained.file.tensors);
   return trained;
 }

@@ -2,22 +2,18 @@
 #include "ident/training/restoration_training_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
 #include "ident/bodies/body_data.h"
 #include "ident/bodies/peer_files.h"
 #include "ident/prediction/online_predictor.h"
+#include "ident/problem/parallel.h"
 #include "ident/results/recording_effect.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {
 namespace {
-
-double Now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // Those of the positions, or none where nothing was made.
 template <typename Value>
@@ -84,8 +80,8 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
   SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
   if (learnt.empty() || judged.empty()) {
     return Error{
-        "there are too few recordings to learn from and to stop the training early by; "
-        "two are the least"};
+        "there are too few recordings to train on and to hold out for early stopping; at least two "
+        "are needed"};
   }
   auto training =
       MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);

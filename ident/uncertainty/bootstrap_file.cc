@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "datasets/files/atomic_file.h"
@@ -64,9 +65,8 @@ MaybeError BootstrapFile::Open(const FitProblem& problem, const BootstrapOptions
     std::string line;
     if (std::getline(old, line) && line != header) {
       return Error{
-          "this file holds the bootstrap of another fit, seed, way of drawing or data; name "
-          "another one "
-          "with --bootstrap_file, or delete it",
+          "this file belongs to a bootstrap with another fit, seed, resampling or data; give "
+          "another one with --bootstrap_file, or delete it",
           path_};
     }
     while (std::getline(old, line)) {
@@ -93,7 +93,7 @@ MaybeError BootstrapFile::Append(int replica, const ReplicaValues& values) {
   stream_ << Line(replica, values) << "\n" << std::flush;
   if (stream_) return std::nullopt;
   return Error{"replica " + std::to_string(replica) + " cannot be written: " + Reason() +
-                   "; make room, and the same command goes on from here",
+                   "; free some disk space and run the same command to continue",
                path_};
 }
 

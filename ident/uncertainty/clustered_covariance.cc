@@ -1,8 +1,9 @@
 // ident: CR2 and Satterthwaite's degrees of freedom.
 #include "ident/uncertainty/clustered_covariance.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -27,9 +28,9 @@ Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& 
   }
   if (used.empty()) return Eigen::MatrixXd(0, base.cols());
   const Eigen::MatrixXd packed = jacobian(Eigen::all, used), own = base(used, Eigen::all);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> squares(packed.transpose() * packed);
-  return squares.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-         (squares.eigenvectors().transpose() * own);
+  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
+  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.vectors.transpose() * own);
 }
 
 // The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
@@ -39,11 +40,11 @@ struct Leverage {
 
   explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
     if (w.rows() == 0) return;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(w * w.transpose());
-    const Eigen::ArrayXd values = eigen.eigenvalues().array();
+    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.values.array();
     const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
     m = values.tail(some);
-    v = w.transpose() * eigen.eigenvectors().rightCols(some) * m.rsqrt().matrix().asDiagonal();
+    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
   }
 };
 
@@ -82,8 +83,7 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
 
 ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
                         const Eigen::MatrixXd& coefficients) {
-  const Eigen::MatrixXd root =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(hessian).operatorInverseSqrt();
+  const Eigen::MatrixXd root = DecomposeSymmetric(hessian).InverseSqrt();
   const Eigen::MatrixXd b = root * coefficients.transpose();  // H^-1/2 c
   const Eigen::Index groups = scores.scores.cols(), size = b.cols();
   Eigen::MatrixXd moves(hessian.rows(), groups);

@@ -1,25 +1,22 @@
 // ident: covariance on the identified subspace, by singular values of the scaled Jacobian.
 #include "ident/uncertainty/covariance.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
+#include "models/decompositions.h"
+
 namespace pushid {
 namespace {
 
-bool IsMinimum(const Eigen::LDLT<Eigen::MatrixXd>& hessian) {
-  return hessian.isPositive() && hessian.rcond() > 1e-12;
-}
-
 // The difference of two-way clustering need not be positive: negative eigenvalues become zero.
 Eigen::MatrixXd WithoutNegative(const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  const Eigen::MatrixXd& v = eigen.eigenvectors();
-  return v * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * v.transpose();
+  const SymmetricEigen eigen = DecomposeSymmetric(covariance);
+  const Eigen::MatrixXd& v = eigen.vectors;
+  return v * eigen.values.cwiseMax(0.0).asDiagonal() * v.transpose();
 }
 
 // H^-1 s_g G / (G - 1) for each recording.
@@ -86,7 +83,7 @@ void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Cova
                   Information(score, rows(FitProblem::kNetworkCluster));
   const Eigen::MatrixXd sum =
       back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
-  c->inverse_of_parts = back * sum.ldlt().solve(back.transpose());
+  c->inverse_of_parts = back * SolveSymmetric(sum, Eigen::MatrixXd(back.transpose()));
   c->prior_gradient = Gradient(score, prior);
   c->settling_gradient = Gradient(score, settling);
 }
@@ -111,7 +108,7 @@ void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
         Cr2(GatherScores(score, clustering.second, back), hessian, Eigen::MatrixXd(0, back.cols()));
     const ClusterScores both =
         GatherScores(score, Crossed(clustering.first, clustering.second), back);
-    const Eigen::MatrixXd moves = hessian.ldlt().solve(both.scores);
+    const Eigen::MatrixXd moves = SolveSymmetric(hessian, both.scores);
     inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
   }
   c->clustered = back * inner * back.transpose();
@@ -145,14 +142,9 @@ double Directions::Condition() const {
 
 Directions Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
   // By the triangle of a QR decomposition: rows are many, columns few.
-  const Eigen::Index size = jacobian.cols();
-  Eigen::MatrixXd triangle = jacobian;
-  if (jacobian.rows() >= size) {
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian);
-    triangle = qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle, Eigen::ComputeFullV);
-  Directions directions{svd.singularValues(), svd.matrixV(), 0};
+  const RightSingular svd =
+      DecomposeRight(jacobian.rows() >= jacobian.cols() ? Triangle(jacobian) : jacobian);
+  Directions directions{svd.values, svd.vectors, 0};
   const Eigen::VectorXd& singular = directions.singular;
   while (directions.rank < singular.size() &&
          singular[directions.rank] > null_value * singular[0]) {
@@ -186,10 +178,10 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
   if (score.curvature.size() > 0) {
     const Eigen::MatrixXd full =
         Eigen::MatrixXd(squared.asDiagonal()) + back.transpose() * score.curvature * back;
-    c.full_hessian = IsMinimum(Eigen::LDLT<Eigen::MatrixXd>(full));
+    c.full_hessian = IsPositiveDefinite(full);
     if (c.full_hessian) hessian = full;
   }
-  c.inverse_hessian = back * hessian.ldlt().solve(back.transpose());
+  c.inverse_hessian = back * SolveSymmetric(hessian, Eigen::MatrixXd(back.transpose()));
   AddClustered(score, clustering, back, hessian, &c);
   if (score.clusters.size() < 2) return c;
   c.recordings = score.clusters;

@@ -1,7 +1,7 @@
 // ident: robust scales of residuals, and the composite likelihood's adjustment.
 #include "ident/uncertainty/data_weight.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,17 +1,16 @@
 // ident: directions that the data hardly know, in words.
 #include "ident/uncertainty/held_directions.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
 
 constexpr size_t kMostDirections = 3;  // to tell: those that the data know least
-constexpr double kHeldShare = 0.5;
 constexpr double kPartOf = 0.3;  // of the largest component: what counts as part of a direction
 
 // The information on `kept`, everything else integrated out.
@@ -20,7 +19,7 @@ Eigen::MatrixXd Marginal(const Eigen::MatrixXd& information, const std::vector<i
   const Eigen::MatrixXd own = information(kept, kept);
   if (rest.empty()) return own;
   const Eigen::MatrixXd cross = information(rest, kept), others = information(rest, rest);
-  return own - cross.transpose() * others.completeOrthogonalDecomposition().solve(cross);
+  return own - cross.transpose() * SolveLeastNorm(others, cross);
 }
 
 // change: of each kept parameter along the direction, natural units.
@@ -38,14 +37,15 @@ std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen
   const std::string percent = Rounded(std::round(100.0 * share), 3) + " %";
   const ParameterSpec& first = *specs[static_cast<size_t>(order[0])];
   if (order.size() == 1) {
-    return "the data alone hardly know " + first.name + " (their share of it: " + percent + ")";
+    return "the data alone hardly determine " + first.name + " (their share: " + percent + ")";
   }
   if (order.size() == 2) {
     const ParameterSpec& second = *specs[static_cast<size_t>(order[1])];
     const double slope = change[order[0]] / change[order[1]];
-    return "the data alone know " + first.name + (slope > 0.0 ? " - " : " + ") +
+    return "the data alone determine " + first.name + (slope > 0.0 ? " - " : " + ") +
            Rounded(std::abs(slope), 2) + " " + second.name +
-           " better than either: where along it the two stand is put in (data: " + percent + ")";
+           " better than either parameter; their split comes from priors or constraints (data: " +
+           percent + ")";
   }
   std::string names;
   for (size_t k = 0; k < order.size(); ++k) {
@@ -54,8 +54,8 @@ std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen
                                       : ", ") +
              specs[static_cast<size_t>(order[k])]->name;
   }
-  return "the data alone hardly tell " + names + " apart: where they stand together is put in " +
-         "(data: " + percent + ")";
+  return "the data alone hardly separate " + names +
+         "; their split comes from priors or constraints (data: " + percent + ")";
 }
 
 }  // namespace
@@ -85,15 +85,15 @@ std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoin
   if (kept.empty()) return sentences;
   const Eigen::MatrixXd by_data = covariance.by_data + covariance.by_pooling;
   const Eigen::MatrixXd data = Marginal(by_data, kept, rest);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> all(
+  const SymmetricEigen all = DecomposeSymmetric(
       Marginal(by_data + covariance.by_prior + covariance.by_settling, kept, rest));
-  if (!(all.eigenvalues().minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere
-  const Eigen::MatrixXd root = all.operatorInverseSqrt();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> shares(root * data * root);
-  for (Eigen::Index k = 0; k < shares.eigenvalues().size(); ++k) {
-    const double share = std::max(0.0, shares.eigenvalues()[k]);
+  if (!(all.values.minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere
+  const Eigen::MatrixXd root = all.InverseSqrt();
+  const SymmetricEigen shares = DecomposeSymmetric(root * data * root);
+  for (Eigen::Index k = 0; k < shares.values.size(); ++k) {
+    const double share = std::max(0.0, shares.values[k]);
     if (share >= kHeldShare || sentences.size() >= kMostDirections) break;  // ascending
-    const Eigen::VectorXd direction = root * shares.eigenvectors().col(k);
+    const Eigen::VectorXd direction = root * shares.vectors.col(k);
     const std::string sentence = Sentence(specs, slope.cwiseProduct(direction), share);
     if (sentences.empty() || sentences.back() != sentence) sentences.push_back(sentence);
   }

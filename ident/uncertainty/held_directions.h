@@ -14,6 +14,8 @@
 
 namespace pushid {
 
+inline constexpr double kHeldShare = 0.5;  // of the data; with less, what was put in decides
+
 // One sentence for each. at_bound: columns that do not move.
 std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
                                         const Covariance& covariance,

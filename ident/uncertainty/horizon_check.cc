@@ -61,8 +61,9 @@ RefitRow FitOneStep(const FitProblem& whole) {
   FreeNoise(&options);
   const LikelihoodSolution found = SolveByLikelihood(whole.recordings(), &options);
   if (found.solution.best < 0 || !found.stays) {
-    row.failure = found.solution.best < 0 ? found.solution.starts.front().message
-                                          : "the likelihood still rose when the rounds ended";
+    row.failure = found.solution.best < 0
+                      ? found.solution.starts.front().message
+                      : "the likelihood still increased in the last round of solving";
     return row;
   }
   const FitProblem problem(whole.recordings(), options);

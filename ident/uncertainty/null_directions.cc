@@ -1,17 +1,16 @@
 // ident: null directions in words.
 #include "ident/uncertainty/null_directions.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "ident/problem/fit_problem.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
-
-constexpr double kTouched = 1e-4;
 
 std::string JoinNames(const std::vector<std::string>& names) {
   std::string text;
@@ -37,9 +36,7 @@ std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoi
   const auto& fitted = problem.map().fitted;
   const ParameterTable& table = problem.options().table;
   const Eigen::MatrixXd own = null_space(touched, Eigen::all);
-  Eigen::FullPivLU<Eigen::MatrixXd> decomposition(own);
-  decomposition.setThreshold(kTouched);
-  const size_t wanted = touched.size() - static_cast<size_t>(decomposition.rank());
+  const size_t wanted = touched.size() - static_cast<size_t>(Rank(own, kTouched));
   std::vector<Combination> found;
   for (size_t a = 0; a < touched.size(); ++a) {
     for (size_t b = a + 1; b < touched.size() && found.size() < wanted; ++b) {
@@ -85,12 +82,12 @@ NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
     joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
   }
   joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
-  joint.sentence = JoinNames(joint.parameters) + " cannot be told apart";
+  joint.sentence = JoinNames(joint.parameters) + " cannot be separated";
   for (const Combination& c : joint.identified) {
     const double half = 0.5 * (c.upper95 - c.lower95);
     const bool known = half < 0.5 * std::abs(c.value) || c.lower95 > 0.0 || c.upper95 < 0.0;
     joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
-                      " " + c.unit + (known ? " is identified" : " is all that could be told");
+                      " " + c.unit + (known ? " is identified" : " is only weakly identified");
   }
   return joint;
 }

@@ -8,6 +8,8 @@
 
 namespace pushid {
 
+inline constexpr double kTouched = 1e-4;  // share of a null direction that counts
+
 // null_space: columns over all fitted numbers, in units of each one's scale. `uncertainty` needs
 // its covariance and quantile only.
 std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,

@@ -1,7 +1,6 @@
 // ident: standard errors, intervals and null directions of a fit.
 #include "ident/uncertainty/uncertainty.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +11,7 @@
 #include "ident/uncertainty/held_directions.h"
 #include "ident/uncertainty/null_directions.h"
 #include "models/cart_damping.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -20,7 +20,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Pooled fits of many subjects: two Jacobians for each column would take longer than the fit.
 constexpr Eigen::Index kMostColumnsWithCurvature = 60;
 constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
-constexpr double kTouched = 1e-4;  // share of a null direction that counts
 
 // What is known of each fitted number besides its estimate.
 struct Column {
@@ -109,7 +108,7 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
 }
 
 // Limits of EstimateStatus.
-constexpr double kIdentifiedShare = 0.8, kHeldShare = 0.5;
+constexpr double kIdentifiedShare = 0.8;
 constexpr double kMostPull = 0.5;       // standard errors
 constexpr double kMostHalfWidth = 0.5;  // of the value
 
@@ -198,8 +197,8 @@ Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit
     if (c.settling_gradient.isZero(0.0)) return c.settling_gradient;
     const Eigen::MatrixXd without =
         unit.asDiagonal() * (c.by_data + c.by_prior + c.by_pooling) * unit.asDiagonal();
-    return -unit.cwiseProduct(
-        without.completeOrthogonalDecomposition().solve(unit.cwiseProduct(c.settling_gradient)));
+    const Eigen::VectorXd gradient = unit.cwiseProduct(c.settling_gradient);
+    return -unit.cwiseProduct(SolveLeastNorm(without, gradient));
   }
   const std::vector<double> to = point.Flat(), from = free->Flat();
   Eigen::VectorXd moved(static_cast<Eigen::Index>(to.size()));
@@ -273,10 +272,10 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   for (const Eigen::MatrixXd& factor : own.factors) data += factor.transpose() * factor;
   const Eigen::MatrixXd all = data + unit * InformationBeside(e.score) * unit;
   // On the subspace that the rows determine, by normal equations: exact enough for a trace.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(all);
-  const Eigen::ArrayXd values = eigen.eigenvalues();
+  const SymmetricEigen eigen = DecomposeSymmetric(all);
+  const Eigen::ArrayXd values = eigen.values;
   const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
-  const Eigen::MatrixXd base = eigen.eigenvectors().rightCols(rank) *
+  const Eigen::MatrixXd base = eigen.vectors.rightCols(rank) *
                                values.tail(rank).sqrt().inverse().matrix().asDiagonal();
   ClusterScores inside{{}, base.transpose() * own.scores};
   for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);

@@ -15,16 +15,16 @@ namespace pushid {
 namespace {
 
 // Of one held-out recording.
-struct Held {
+struct HeldCoverage {
   bool ok = false;
   double inside50[2] = {0.0, 0.0}, inside90[2] = {0.0, 0.0}, width90[2] = {0.0, 0.0};
   double median_ade = 0.0, rollout_ade = 0.0;
 };
 
 // Of the pushed person: bystanders of a single recording stand still, and groups err by contact.
-Held CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
-                 const PendulumRecording& recording) {
-  Held held;
+HeldCoverage CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
+                         const PendulumRecording& recording) {
+  HeldCoverage held;
   const Prediction rollout = Predict(model, recording);
   if (bands.people.empty() || !rollout.status.ok) return held;
   held.ok = true;
@@ -47,26 +47,27 @@ Held CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
 }
 
 BandCoverage MeanCoverage(const std::vector<PendulumRecording>& recordings,
-                          const std::vector<std::vector<Held>>& by_recording, bool model_error) {
+                          const std::vector<std::vector<HeldCoverage>>& by_recording,
+                          bool model_error) {
   BandCoverage coverage;
   coverage.model_error = model_error;
   std::vector<double> inside50[2], inside90[2], width[2], median, rollout;
   std::vector<std::string> pushed;
   for (size_t i = 0; i < by_recording.size(); ++i) {
-    const std::vector<Held>& repeats = by_recording[i];
+    const std::vector<HeldCoverage>& repeats = by_recording[i];
     if (repeats.empty()) continue;
     pushed.push_back(PersonKey(recordings[i], recordings[i].pushed_person));
     ++coverage.recordings;
     const double share = 1.0 / static_cast<double>(repeats.size());
     median.push_back(0.0);
     rollout.push_back(0.0);
-    for (const Held& held : repeats) {
+    for (const HeldCoverage& held : repeats) {
       median.back() += share * held.median_ade;
       rollout.back() += share * held.rollout_ade;
     }
     for (int axis : {0, 1}) {
       double a = 0.0, b = 0.0, c = 0.0;
-      for (const Held& held : repeats) {
+      for (const HeldCoverage& held : repeats) {
         a += share * held.inside50[axis];
         b += share * held.inside90[axis];
         c += share * held.width90[axis];
@@ -112,7 +113,7 @@ std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording
   FitOptions alone = options;
   alone.num_threads = 1;  // the folds run in parallel
   // [fold][without, with model error][held out]
-  std::vector<std::vector<Held>> without(folds.size()), with(folds.size());
+  std::vector<std::vector<HeldCoverage>> without(folds.size()), with(folds.size());
   ParallelFor(
       static_cast<int>(folds.size()), num_threads,
       [&](int f) {
@@ -141,7 +142,7 @@ std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording
       progress);
   std::vector<BandCoverage> coverage;
   for (const auto* held : {&without, &with}) {
-    std::vector<std::vector<Held>> by_recording(recordings.size());
+    std::vector<std::vector<HeldCoverage>> by_recording(recordings.size());
     for (size_t f = 0; f < folds.size(); ++f) {
       for (size_t k = 0; k < folds[f].held_out.size(); ++k) {
         if ((*held)[f][k].ok) by_recording[folds[f].held_out[k]].push_back((*held)[f][k]);

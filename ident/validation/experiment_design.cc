@@ -1,13 +1,13 @@
 // ident: candidate pushes and their information.
 #include "ident/validation/experiment_design.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -142,10 +142,10 @@ Eigen::MatrixXd SpreadRoot(const Eigen::MatrixXd& clustered, const Eigen::Matrix
                            int groups) {
   const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt();
   const Eigen::VectorXd inverse = error.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+  const SymmetricEigen root = DecomposeSymmetric(
       groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
-  return error.asDiagonal() * solver.eigenvectors() *
-         solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return error.asDiagonal() * root.vectors *
+         root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 // (I^-1 + L L')^-1, also where I is singular (Woodbury).
@@ -153,7 +153,7 @@ Eigen::MatrixXd WithSpread(const Eigen::MatrixXd& information, const Eigen::Matr
   const Eigen::MatrixXd mixed = information * spread;
   const Eigen::MatrixXd inner =
       Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
-  return information - mixed * inner.ldlt().solve(mixed.transpose());
+  return information - mixed * SolveSymmetric(inner, Eigen::MatrixXd(mixed.transpose()));
 }
 
 bool Falls(const PendulumRecording& candidate) {
@@ -193,13 +193,12 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   }
   const int size = static_cast<int>(known.size()), groups = parts.num_recordings();
   if (size == 0 || groups - 1 < size) {
-    design.refused = "what one more recording would tell needs more recordings (" +
-                     std::to_string(groups) + ") than free parameters (" + std::to_string(size) +
-                     ") and one";
+    design.refused = "a design needs more recordings (" + std::to_string(groups) +
+                     ") than free parameters (" + std::to_string(size) + ") plus one";
     return design;
   }
   const Eigen::MatrixXd now = parts.by_recording(known, known);
-  const Eigen::MatrixXd present = now.inverse();
+  const Eigen::MatrixXd present = Inverse(now);
   const Eigen::MatrixXd spread = SpreadRoot(now, parts.naive(known, known), groups);
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
@@ -208,7 +207,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
         CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
     const Eigen::MatrixXd information =
         jacobian.transpose() * jacobian / (parts.sigma * parts.sigma);
-    const Eigen::MatrixXd then = (present + WithSpread(information, spread)).inverse();
+    const Eigen::MatrixXd then = Inverse(present + WithSpread(information, spread));
     DesignRow row;
     row.push = push;
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));

@@ -2,6 +2,7 @@
 #include "ident/validation/futures_validation.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "ident/figures/text_table.h"
 #include "ident/prediction/score_clusters.h"
@@ -13,7 +14,7 @@
 namespace pushid {
 namespace {
 
-struct Held {
+struct HeldScore {
   int recording = 0, failed = 0;
   FuturesScore score;
 };
@@ -27,10 +28,10 @@ std::vector<PendulumRecording> AllBut(const std::vector<PendulumRecording>& reco
   return rest;
 }
 
-FuturesScore Mean(const std::vector<Held>& repeats) {
+FuturesScore Mean(const std::vector<HeldScore>& repeats) {
   FuturesScore mean;
   const double share = 1.0 / static_cast<double>(repeats.size());
-  for (const Held& held : repeats) {
+  for (const HeldScore& held : repeats) {
     for (int i = 0; i < 4; ++i) {
       mean.inside50[i] += share * held.score.inside50[i];
       mean.inside90[i] += share * held.score.inside90[i];
@@ -51,7 +52,7 @@ HeldOutFutures CrossValidateFutures(const std::string& name,
                                     const JobProgress& progress) {
   FitOptions alone = options;
   alone.num_threads = 1;  // the folds run in parallel
-  std::vector<std::vector<Held>> by_fold(folds.size());
+  std::vector<std::vector<HeldScore>> by_fold(folds.size());
   std::vector<char> fitted(folds.size(), 0);
   ParallelFor(
       static_cast<int>(folds.size()), num_threads,
@@ -71,10 +72,10 @@ HeldOutFutures CrossValidateFutures(const std::string& name,
       progress);
   HeldOutFutures all;
   int failed = 0;
-  std::vector<std::vector<Held>> by_recording(recordings.size());
+  std::vector<std::vector<HeldScore>> by_recording(recordings.size());
   for (size_t f = 0; f < folds.size(); ++f) {
     all.folds_without_fit += fitted[f] == 0;
-    for (const Held& held : by_fold[f]) {
+    for (const HeldScore& held : by_fold[f]) {
       by_recording[held.recording].push_back(held);
       failed += held.failed;
     }

@@ -1,7 +1,7 @@
 // ident: are drawn futures right for what was not fitted?
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

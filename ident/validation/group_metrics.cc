@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
+#include "ident/results/json_pieces.h"
 #include "models/restoration/cvae_features.h"
 #include "models/restoration/motion_words.h"
 
@@ -36,7 +38,7 @@ std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const Stat
   return all;
 }
 
-std::vector<BodyMotion> PeopleOf(const std::vector<GroupMotion>& groups) {
+std::vector<BodyMotion> AllPeople(const std::vector<GroupMotion>& groups) {
   std::vector<BodyMotion> all;
   for (const GroupMotion& group : groups) {
     for (BodyMotion& person : AtWordRate(group)) all.push_back(std::move(person));
@@ -57,10 +59,6 @@ int FirstOf(const std::vector<int>& onsets) {
 
 std::optional<double> Share(double part, int whole) {
   return whole > 0 ? std::optional<double>(part / whole) : std::nullopt;
-}
-
-nlohmann::ordered_json ToJson(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json();
 }
 
 std::string Cell(const std::optional<double>& value) {
@@ -111,10 +109,10 @@ std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>
 
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions) {
-  const MotionWords words(PeopleOf(recorded));
+  const MotionWords words(AllPeople(recorded));
   MotionWords::Similarity sum;
   if (words.size() == 0) return std::nullopt;
-  for (const BodyMotion& person : PeopleOf(motions)) {
+  for (const BodyMotion& person : AllPeople(motions)) {
     const MotionWords::Similarity one = words.Compare(person);
     sum.sum += one.sum;
     sum.words += one.words;
@@ -180,13 +178,13 @@ GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
 
 nlohmann::ordered_json ToJson(const GroupMetrics& metrics) {
   const OnsetMetrics& onsets = metrics.onsets;
-  return {{"sscp", ToJson(metrics.social.sscp)},
-          {"sscp_changes", ToJson(metrics.social.sscp_changes)},
-          {"ndms", ToJson(metrics.social.ndms)},
+  return {{"sscp", NumberOrNull(metrics.social.sscp)},
+          {"sscp_changes", NumberOrNull(metrics.social.sscp_changes)},
+          {"ndms", NumberOrNull(metrics.social.ndms)},
           {"recordings", onsets.recordings},
           {"pushed_named", onsets.pushed_named},
-          {"onset_order", ToJson(Share(onsets.in_order, onsets.pairs))},
-          {"onset_error_s", ToJson(Share(onsets.error_sum, onsets.movers))},
+          {"onset_order", NumberOrNull(Share(onsets.in_order, onsets.pairs))},
+          {"onset_error_s", NumberOrNull(Share(onsets.error_sum, onsets.movers))},
           {"false_movers", onsets.false_movers},
           {"missed_movers", onsets.missed_movers}};
 }
@@ -216,9 +214,8 @@ std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows) {
 }
 
 const char* GroupMetricsLegend() {
-  return "SSCP, changes (0: the same) and NDMS (1: the same) see how people move and how often "
-         "they "
-         "step, not whether the right person does so in time; onsets see that, and nothing else.";
+  return "SSCP, changes (0: the same) and NDMS (1: the same) measure how people move and how often "
+         "they step, but not whether the right person does so in time; onsets measure only that.";
 }
 
 }  // namespace pushid

@@ -1,5 +1,8 @@
 // ident: propagation as JSON and as tables.
 #include "datasets/files/number_text.h"
+
+#include <nlohmann/json.hpp>
+
 #include "ident/figures/text_table.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
@@ -9,20 +12,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json MeanJson(const PropagationMean& mean) {
+Json FigureJson(const PropagationMean& mean) {
   if (!mean.known()) return nullptr;
   return {{"value", mean.value}, {"standard_error", mean.error}, {"of", mean.weight}};
 }
 
 Json SpeedJson(const PropagationMean& slowness) {
   const std::optional<PropagationMean> speed = Speed(slowness);
-  return speed ? MeanJson(*speed) : Json(nullptr);
+  return speed ? FigureJson(*speed) : Json(nullptr);
 }
 
-std::string MeanText(const PropagationMean& mean) {
+std::string FigureText(const PropagationMean& mean) {
   if (!mean.known()) return "-";
-  const std::string value = Rounded(mean.value, 3);
-  return mean.error > 0.0 ? value + " +- " + Rounded(mean.error, 2) : value;
+  return WithError(mean.value, mean.error);
 }
 
 // The onset errors of those who move in both say little where most movers are missed: a model that
@@ -49,7 +51,7 @@ Json ToJson(const PropagationSummary& summary) {
                {"missed_movers", summary.missed_movers},
                {"false_movers", summary.false_movers}};
   for (int i = 0; i < kNumPropagationFigures; ++i) {
-    json[Info(static_cast<PropagationFigure>(i)).key] = MeanJson(summary.figures[i]);
+    json[Info(static_cast<PropagationFigure>(i)).key] = FigureJson(summary.figures[i]);
   }
   json["speed_measured_m_per_s"] = SpeedJson(summary.figures[kSlownessMeasured]);
   json["speed_predicted_m_per_s"] = SpeedJson(summary.figures[kSlownessPredicted]);
@@ -73,13 +75,13 @@ Json PeopleJson(const PropagationScore& score) {
 
 std::string SpeedText(const PropagationMean& slowness) {
   const std::optional<PropagationMean> speed = Speed(slowness);
-  return speed ? MeanText(*speed) : (slowness.known() ? "undefined" : "-");
+  return speed ? FigureText(*speed) : (slowness.known() ? "undefined" : "-");
 }
 
 TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
   std::vector<std::string> header = {"propagation"};
   for (const PropagationColumn& column : columns) header.push_back(column.name);
-  TextTable table(header, std::vector<bool>(header.size(), true));
+  TextTable table(header, AllWords(header.size()));
   auto row = [&](const std::string& title, auto&& cell) {
     std::vector<std::string> cells = {title};
     for (const PropagationColumn& column : columns) cells.push_back(cell(*column.summary));
@@ -94,7 +96,7 @@ TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
     for (const PropagationColumn& column : columns) any |= column.summary->figures[i].known();
     if (!any) continue;
     row(Info(static_cast<PropagationFigure>(i)).title, [i](const S& s) {
-      return OfThoseWhoMoveInBoth(i) && MostMissed(s) ? "-" : MeanText(s.figures[i]);
+      return OfThoseWhoMoveInBoth(i) && MostMissed(s) ? "-" : FigureText(s.figures[i]);
     });
     if (i == kSlownessMeasured || i == kSlownessPredicted) {
       row("  speed, m/s", [i](const S& s) { return SpeedText(s.figures[i]); });

@@ -1,7 +1,10 @@
 // ident: scores as JSON. scores_json_reader.cc is the inverse.
 #include "ident/validation/scores_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/parameters/option_names.h"
+#include "ident/results/json_pieces.h"
 #include "ident/results/result_json.h"
 #include "ident/validation/step_score_report.h"
 
@@ -10,13 +13,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-using Shown = std::vector<HipMetric>;
-
-void AddMetrics(const HipMetrics& metrics, const Shown& shown, Json* json) {
+void AddMetrics(const HipMetrics& metrics, const ShownMetrics& shown, Json* json) {
   for (const HipMetric& metric : shown) (*json)[metric.Key()] = metrics.*metric.value;
 }
 
-Json MeanJson(const MeanScore& mean, const Shown& shown) {
+Json MeanJson(const MeanScore& mean, const ShownMetrics& shown) {
   Json json;
   AddMetrics(mean, shown, &json);
   for (const HipMetric& metric : shown) json[metric.ErrorKey()] = mean.error.*metric.value;
@@ -26,18 +27,16 @@ Json MeanJson(const MeanScore& mean, const Shown& shown) {
   return json;
 }
 
-Json GroupsJson(const std::map<std::string, MeanScore>& groups, const Shown& shown) {
+Json GroupsJson(const std::map<std::string, MeanScore>& groups, const ShownMetrics& shown) {
   Json json = Json::object();
   for (const auto& [name, mean] : groups) json[name] = MeanJson(mean, shown);
   return json;
 }
 
-Json SecondsOrNull(const std::optional<double>& time) { return time ? Json(*time) : Json(nullptr); }
-
 // All null where the model has the person stand.
 void AddTiming(const StepTiming& timing, Json* json) {
-  (*json)["lift_off_s"] = SecondsOrNull(timing.lift_off);
-  (*json)["landing_s"] = SecondsOrNull(timing.landing);
+  (*json)["lift_off_s"] = NumberOrNull(timing.lift_off);
+  (*json)["landing_s"] = NumberOrNull(timing.landing);
   (*json)["travel_m"] =
       timing.lift_off ? Json({timing.travel.x(), timing.travel.y()}) : Json(nullptr);
 }
@@ -56,7 +55,7 @@ Json StepsJson(const std::vector<StepPrediction>& steps) {
 
 Json ToJson(const ScoreSummary& summary, bool with_recordings) {
   Json json;
-  const Shown shown = MetricsOf(summary.observed, summary.bands);
+  const ShownMetrics shown = MetricsOf(summary.observed, summary.bands);
   if (summary.observed > 0) json["observed"] = summary.observed;
   if (with_recordings) {
     json["recordings"] = Json::array();

@@ -2,7 +2,7 @@
 // carry their units.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "ident/validation/crossvalidation.h"

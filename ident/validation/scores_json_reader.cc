@@ -1,5 +1,8 @@
 // ident: scores from JSON. scores_json.cc is the inverse.
 #include "datasets/files/json_file.h"
+
+#include <nlohmann/json.hpp>
+
 #include "ident/parameters/fit_options_json.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/step_score_report.h"
@@ -92,9 +95,10 @@ Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
     }
     return summary;
   } catch (const Json::exception& error) {
-    return Error{"these are no scores that pushid-evaluate --json_out wrote, or damaged ones: " +
-                     std::string(error.what()) + "; evaluate again",
-                 file};
+    return Error{
+        "this is not a file of scores from pushid-evaluate --json_out, or it is damaged: " +
+            std::string(error.what()) + "; evaluate again",
+        file};
   }
 }
 

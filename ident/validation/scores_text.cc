@@ -12,24 +12,22 @@ namespace pushid {
 namespace {
 
 // A single recording has no error.
-std::string WithError(double value, double error, const MeanScore& mean) {
+std::string ScoreText(double value, double error, const MeanScore& mean) {
   if (mean.recordings == 0) return "-";
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
-using Shown = std::vector<HipMetric>;
-
 // A cell for each metric.
-std::vector<std::string> MeanCells(const MeanScore& mean, const Shown& shown) {
+std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& shown) {
   std::vector<std::string> cells;
   for (const HipMetric& metric : shown) {
-    cells.push_back(WithError(mean.*metric.value, mean.error.*metric.value, mean));
+    cells.push_back(ScoreText(mean.*metric.value, mean.error.*metric.value, mean));
   }
   return cells;
 }
 
 // The same without errors; "-" where there is no score.
-std::vector<std::string> PlainCells(const HipMetrics& metrics, const Shown& shown,
+std::vector<std::string> PlainCells(const HipMetrics& metrics, const ShownMetrics& shown,
                                     bool known = true) {
   std::vector<std::string> cells;
   for (const HipMetric& metric : shown) {
@@ -38,13 +36,13 @@ std::vector<std::string> PlainCells(const HipMetrics& metrics, const Shown& show
   return cells;
 }
 
-std::vector<std::string> Titles(const Shown& shown) {
+std::vector<std::string> Titles(const ShownMetrics& shown) {
   std::vector<std::string> titles;
   for (const HipMetric& metric : shown) titles.push_back(metric.Title());
   return titles;
 }
 
-std::vector<std::string> Names(const Shown& shown) {
+std::vector<std::string> MetricNames(const ShownMetrics& shown) {
   std::vector<std::string> names;
   for (const HipMetric& metric : shown) names.push_back(metric.name);
   return names;
@@ -57,7 +55,7 @@ std::string Together(const std::vector<std::string>& cells) {
   return text;
 }
 
-std::string MeanText(const MeanScore& mean, const Shown& shown) {
+std::string MeanText(const MeanScore& mean, const ShownMetrics& shown) {
   return Together(MeanCells(mean, shown));
 }
 
@@ -87,14 +85,14 @@ std::string ObservedText(const ScoreSummary& summary) {
   if (summary.observed == 0) return "";
   std::string text = "the first " + std::to_string(summary.observed) +
                      (summary.observed == 1 ? " frame was" : " frames were") +
-                     " seen, in which nothing errs; after_hipADE: mean over the others";
+                     " seen, which have no error; after_hipADE: mean over the others";
   if (!summary.bands) return text + "\n";
   const char* const axes[] = {" (x)", " (y)"};
   text += "\n90 % bands hold ";
   for (int i : {0, 1}) {
     const auto value = kBandMetrics[i].value;
     text += (i > 0 ? " and " : "") +
-            WithError(summary.mean.*value, summary.mean.error.*value, summary.mean) + axes[i];
+            ScoreText(summary.mean.*value, summary.mean.error.*value, summary.mean) + axes[i];
   }
   return text + " of these frames of the pushed person\n";
 }
@@ -118,9 +116,13 @@ MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std:
 
 }  // namespace
 
+std::string WithError(double value, double error) {
+  return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
+}
+
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
-  const Shown shown = MetricsOf(evaluation.model.observed, false);
+  const ShownMetrics shown = MetricsOf(evaluation.model.observed, false);
   if (per_recording) {
     std::vector<std::string> header = {"recording", "frames"};
     Append(Titles(shown), &header);
@@ -143,7 +145,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
       text += OnsetsText(evaluation.model.recordings) + "\n";
     }
   }
-  std::vector<std::string> header = {Together(Names(shown)) + " in " + kHipMetrics[0].unit,
+  std::vector<std::string> header = {Together(MetricNames(shown)) + " in " + kHipMetrics[0].unit,
                                      "recordings", "model", "static", "constant velocity"};
   if (evaluation.reanchored) header.push_back("re-anchored");
   std::vector<bool> left(header.size(), true);
@@ -212,7 +214,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::string text;
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
-  const Shown shown = MetricsOf(candidates[0].summary.observed, false);
+  const ShownMetrics shown = MetricsOf(candidates[0].summary.observed, false);
   std::vector<std::string> header = {"fold", "held out"};
   Append(Titles(shown), &header);
   Append({"failed", "fell"}, &header);

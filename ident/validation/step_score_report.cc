@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/validation/scores_text.h"
 
 namespace pushid {
 namespace {
@@ -13,10 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFewForAuc = 3;
-
-std::string WithError(double value, double error) {
-  return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
-}
 
 std::string FifthText(const StepFifth& fifth) {
   return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);

@@ -1,7 +1,7 @@
 // ident: how well it is predicted who steps, in words, as JSON and as a picture.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>

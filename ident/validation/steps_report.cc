@@ -2,6 +2,7 @@
 #include "ident/validation/steps_report.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
@@ -19,7 +20,7 @@ struct StepSummary {
   std::vector<double> lift_off, length;
 };
 
-StepSummary Summarize(const std::vector<PendulumRecording>& recordings) {
+StepSummary StepSummaryOf(const std::vector<PendulumRecording>& recordings) {
   StepSummary summary;
   for (const PendulumRecording& recording : recordings) {
     for (const PersonSteps& person : recording.steps) {
@@ -38,7 +39,7 @@ Json MedianJson(const std::vector<double>& values) {
   return values.empty() ? Json(nullptr) : Json(Median(values));
 }
 
-Json ToJson(const FootStep& step, double dt) {
+Json StepJson(const FootStep& step, double dt) {
   return {{"foot", Name(step.foot)},
           {"lift_off_s", step.lift_off * dt},
           {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
@@ -60,7 +61,7 @@ std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool p
     }
     text += table.ToString() + "\n";
   }
-  const StepSummary summary = Summarize(recordings);
+  const StepSummary summary = StepSummaryOf(recordings);
   text += "steps: " + std::to_string(summary.stepping) + " of " + std::to_string(summary.people) +
           (summary.people == 1 ? " person steps" : " people step");
   if (summary.stepping > 0) {
@@ -78,13 +79,13 @@ void AddStepsJson(const std::vector<PendulumRecording>& recordings, Json* json) 
     for (const PersonSteps& person : recordings[i].steps) {
       Json steps = Json::array();
       for (const FootStep& step : person.steps) {
-        steps.push_back(ToJson(step, recordings[i].scene.dt));
+        steps.push_back(StepJson(step, recordings[i].scene.dt));
       }
       people.push_back(std::move(steps));
     }
     json->at("recordings").at(i)["steps"] = std::move(people);
   }
-  const StepSummary summary = Summarize(recordings);
+  const StepSummary summary = StepSummaryOf(recordings);
   (*json)["steps"] = {{"people", summary.people},
                       {"people_who_step", summary.stepping},
                       {"first_lift_off_median_s", MedianJson(summary.lift_off)},

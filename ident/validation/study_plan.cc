@@ -1,7 +1,7 @@
 // ident: errors split into people, recordings and noise, and put together for other studies.
 #include "ident/validation/study_plan.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +11,7 @@
 #include "ident/parameters/parameter_table.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kMorePushes = 2.0;  // times as many of each
 constexpr int kIterations = 200;     // of EM: more change no ratio by a percent
 
 // Who is pushed in each recording, as consecutive numbers.
-std::vector<int> PeopleOf(const std::vector<PendulumRecording>& recordings) {
+std::vector<int> PushedPeople(const std::vector<PendulumRecording>& recordings) {
   std::map<std::string, int> known;
   std::vector<int> people;
   for (const PendulumRecording& r : recordings) {
@@ -69,9 +70,8 @@ MixedModel FitMixedModel(const std::vector<OwnInformation>& own, const MatrixXd&
     for (const OwnInformation& g : own) {
       // (H / noise + spread^-1)^-1, also where the spread is singular.
       const MatrixXd covariance =
-          (MatrixXd::Identity(size, size) + model.spread * g.hessian / model.noise)
-              .partialPivLu()
-              .solve(model.spread);
+          SolveGeneral(MatrixXd::Identity(size, size) + model.spread * g.hessian / model.noise,
+                       model.spread);
       const Eigen::VectorXd deviation = covariance * g.gradient / model.noise;
       moments += deviation * deviation.transpose() + covariance;
       left += deviation.dot(g.hessian * deviation) - 2.0 * deviation.dot(g.gradient) +
@@ -87,7 +87,7 @@ MixedModel FitMixedModel(const std::vector<OwnInformation>& own, const MatrixXd&
 // recordings whose own ones differ.
 MatrixXd SharedCovariance(const MixedModel& model, const std::vector<OwnInformation>& own,
                           const MatrixXd& hessian, const std::vector<int>& columns) {
-  const MatrixXd inverse = MatrixXd(hessian(columns, columns)).inverse();
+  const MatrixXd inverse = Inverse(hessian(columns, columns));
   const MatrixXd spread = model.spread(columns, columns);
   MatrixXd scores = MatrixXd::Zero(spread.rows(), spread.cols());
   for (const OwnInformation& g : own) {
@@ -106,7 +106,7 @@ void AddSensor(const FitProblem& problem, const std::vector<int>& known, const E
   for (int i : all) {
     if (!IsTail(problem.map().fitted[known[i]].parameter)) rest.push_back(i);
   }
-  if (rest.size() == known.size()) plan->no_sensor = "no push has a tail that is fitted";
+  if (rest.size() == known.size()) plan->no_sensor = "no push has a fitted tail";
   if (rest.empty()) plan->no_sensor = "only the tail is fitted";
   if (parts.score.clusters.size() <= known.size()) {
     plan->no_sensor = "it needs more recordings than parameters";
@@ -184,12 +184,14 @@ std::string WhyNoSizes(const FitProblem& problem, const ErrorParts& parts) {
     return "several people share a recording";
   }
   if (problem.map().num_deviations > 0 && !HoldsForRecording(problem.map().pool_by)) {
-    return "parameters are pooled by person, whose deviations hold how people differ";
+    return "parameters are pooled by person, so the fit already includes the variation between "
+           "people";
   }
   const int people = 1 + *std::max_element(parts.person.begin(), parts.person.end());
-  if (people < 2) return "how people differ needs two of them, by subject_id";
+  if (people < 2) return "the variation between people needs at least two of them (subject_id)";
   if (people == parts.num_recordings()) {
-    return "nobody was recorded twice, so people and recordings cannot be told apart";
+    return "nobody was recorded twice, so the variation between people and between recordings "
+           "cannot be separated";
   }
   return "";
 }
@@ -210,7 +212,7 @@ double ExpectedError(const StudyPlan& plan, size_t parameter, double people, dou
 ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate) {
   ScoredFit fit = ScoreAt(problem, estimate);
   ErrorParts parts;
-  parts.person = PeopleOf(problem.recordings());
+  parts.person = PushedPeople(problem.recordings());
   const Covariance by_person = ByClusters(Clustered(fit.score, parts.person), fit.unit);
   std::vector<int> each(parts.person.size());
   std::iota(each.begin(), each.end(), 0);
@@ -239,7 +241,7 @@ StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const
     slope.push_back(TransformSlope(f.transform, ToNatural(f.transform, estimate.shared[i])));
   }
   if (known.empty() || parts.num_recordings() < 2) {
-    plan.no_sensor = plan.no_sizes = "it needs two recordings, and a parameter that they tell";
+    plan.no_sensor = plan.no_sizes = "it needs two recordings, and a parameter that they identify";
     return plan;
   }
   AddSensor(problem, known, parts, &plan);

@@ -48,7 +48,7 @@ class DiffusionModule : public torch::nn::Module {
     second_static_ = Linear("static1", kStaticWidth, kStaticWidth);
     for (int b = 0; b < kDiffusionBlocks; ++b) AddBlock(b);
     for (int p = 0; p <= kDiffusionLevels && structure.Pools(); ++p) AddPool(p);
-    out_ = Convolution("out", 3, 1, kDownWidths[0], kMotionRows, 1.0);
+    out_ = Convolution("out", kTaps, 1, kDownWidths[0], kMotionRows, 1.0);
     direct_ = Convolution("direct", 1, 1, structure.NumInputs(), kMotionRows, 1.0);
   }
 
@@ -117,8 +117,8 @@ class DiffusionModule : public torch::nn::Module {
     const std::string name = "block" + std::to_string(b);
     const int stride = b < kDiffusionLevels ? 2 : 1;
     Block block;
-    block.first = Convolution(name + "_first", 3, stride, widths.in, widths.out, 1.0);
-    block.second = Convolution(name + "_second", 3, 1, widths.out, widths.out, kSmallStart);
+    block.first = Convolution(name + "_first", kTaps, stride, widths.in, widths.out, 1.0);
+    block.second = Convolution(name + "_second", kTaps, 1, widths.out, widths.out, kSmallStart);
     block.skip = Convolution(name + "_skip", 1, stride, widths.in, widths.out, 1.0);
     block.film = Linear(name + "_film", kTimeWidth + kStaticWidth, 2 * widths.out);
     torch::nn::init::zeros_(block.film->weight);

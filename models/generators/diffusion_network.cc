@@ -7,7 +7,6 @@ namespace pushid {
 namespace {
 
 constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody
-constexpr int kTaps = 3;
 
 void ApplySilu(Eigen::MatrixXf* values) {
   auto v = values->array();

@@ -52,6 +52,7 @@ inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, 
 inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
 inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
 inline constexpr int kTimeWidth = 64, kStaticWidth = 96, kAttentionWidth = 16;
+inline constexpr int kTaps = 3;  // frames that a convolution sees
 // Channels in and out of a block.
 struct BlockWidths {
   int in = 0, out = 0;

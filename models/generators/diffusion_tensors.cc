@@ -4,7 +4,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kTaps = 3, kConditions = kTimeWidth + kStaticWidth;
+constexpr int kConditions = kTimeWidth + kStaticWidth;
 
 std::string BlockName(const std::string& name, int block) {
   return name + ".block" + std::to_string(block);

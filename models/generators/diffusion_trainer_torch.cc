@@ -9,16 +9,16 @@ namespace pushid {
 namespace {
 
 constexpr double kJointWeight = 2.0, kDifferenceWeight = 2.0;
-constexpr double kLastRate = 0.02;  // share of the largest
+constexpr double kRateFloor = 0.02;  // share of the largest
 constexpr int kHeldGroups = 32;
 constexpr double kHeldTime = 0.9 * kDiffusionTime;  // nearly all of it noise
 constexpr uint64_t kHeldSeed = 1;
 
-double RateShare(int step, int steps, int warm_up) {
+double RateShareToFloor(int step, int steps, int warm_up) {
   const int up = std::min(warm_up, std::max(1, steps / 2));
   if (step < up) return (step + 1.0) / up;
   const double down = static_cast<double>(step - up) / std::max(1, steps - up);
-  return kLastRate + (1.0 - kLastRate) * 0.5 * (1.0 + std::cos(M_PI * down));
+  return kRateFloor + (1.0 - kRateFloor) * 0.5 * (1.0 + std::cos(M_PI * down));
 }
 
 // x_t, whose signal has the share a of [person].
@@ -94,7 +94,7 @@ struct DiffusionTrainer::Torch {
     module->train();
     const torch::Tensor loss = Loss(Estimate(module.get(), noisy, time, batch), batch);
     SetLearningRate(optimizer.get(),
-                    options.learning_rate * RateShare(step, options.steps, options.warm_up));
+                    options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up));
     optimizer->zero_grad();
     loss.backward();
     torch::nn::utils::clip_grad_norm_(module->parameters(), options.clip);

@@ -15,7 +15,7 @@ torch::Tensor NoJitter(const ParticleBatch& batch) {
 }
 
 // Share of the largest rate: up in a straight line, then down to nothing by a cosine.
-double RateShare(int step, int steps, int warm_up) {
+double RateShareToZero(int step, int steps, int warm_up) {
   const int up = std::min(warm_up, std::max(1, steps / 2));
   if (step < up) return (step + 1.0) / up;
   return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
@@ -78,7 +78,8 @@ struct ParticleTrainer::Torch {
   double DriftStep() {
     const ParticleBatch batch = windows.Draw();
     const torch::Tensor jitter = Jitter(batch);
-    const double rate = options.learning_rate * RateShare(step, options.steps, options.warm_up);
+    const double rate =
+        options.learning_rate * RateShareToZero(step, options.steps, options.warm_up);
     const torch::Tensor forecast =
         module->Forecast(batch, jitter, options.observed, options.predicted);
     torch::Tensor loss = losses(forecast, batch);
@@ -100,7 +101,7 @@ struct ParticleTrainer::Torch {
     const torch::Tensor loss = NoiseLossOf(batch, Jitter(batch));
     Improve(noise.get(), module->NoiseParameters(), loss,
             options.learning_rate *
-                RateShare(step - options.steps, options.noise_steps, options.warm_up));
+                RateShareToZero(step - options.steps, options.noise_steps, options.warm_up));
     return loss.item<double>();
   }
 

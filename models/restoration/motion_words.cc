@@ -1,11 +1,12 @@
 // models: words of motion, and the nearest of them.
 #include "models/restoration/motion_words.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
+
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -67,11 +68,7 @@ MotionWords::MotionWords(const std::vector<BodyMotion>& motions) {
   spread.setZero();
   for (const Mean& mean : means) spread += (mean - centre) * (mean - centre).transpose();
   // Eigenvalues ascend: the widest axis is the last, and is to come first.
-  axes_ = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread)
-              .eigenvectors()
-              .rowwise()
-              .reverse()
-              .transpose();
+  axes_ = DecomposeSymmetric(spread).vectors.rowwise().reverse().transpose();
   for (Mean& mean : means) mean = axes_ * mean;
   std::vector<int> order(words.size()), place(words.size());
   std::iota(order.begin(), order.end(), 0);

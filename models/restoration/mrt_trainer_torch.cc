@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kScalingStride = 4;  // frames between the windows that scalings are taken from
 
-int FramesOf(const MrtGroup& group) { return static_cast<int>(group.people.front().size()); }
+int NumFrames(const MrtGroup& group) { return static_cast<int>(group.people.front().size()); }
 
 struct Window {
   int group, last;  // the last given frame
@@ -37,7 +37,7 @@ MrtBatch BatchOf(const std::vector<MrtView>& views) {
 
 // What is given in a window, as the network has it after going on by itself, and the true frames to
 // come.
-std::vector<BodyMotion> PeopleOf(const MrtGroup& group, const Window& window, const Peer& peer) {
+std::vector<BodyMotion> PeopleIn(const MrtGroup& group, const Window& window, const Peer& peer) {
   const int begin = window.last + 1 - kMrtGiven - window.said * kMrtFrames;
   const int given = window.last + 1 - begin;
   std::vector<BodyMotion> people;
@@ -59,7 +59,7 @@ AskedBatch Asked(const std::vector<MrtGroup>& groups, const std::vector<Window>&
   std::vector<torch::Tensor> ways;
   std::vector<float> weights;
   for (const Window& window : windows) {
-    const std::vector<BodyMotion> people = PeopleOf(groups[window.group], window, peer);
+    const std::vector<BodyMotion> people = PeopleIn(groups[window.group], window, peer);
     const int last = static_cast<int>(people.front().size()) - 1 - kMrtFrames;
     for (int n = 0; n < static_cast<int>(people.size()); ++n) {
       views.push_back(Scaled(now.scalings, MrtViewOf(people, last, n)));
@@ -77,7 +77,7 @@ void AddNoise(double size, MrtBatch* batch) {
   }
 }
 
-torch::Tensor Loss(const torch::Tensor& ways, const AskedBatch& batch) {
+torch::Tensor DistanceLoss(const torch::Tensor& ways, const AskedBatch& batch) {
   constexpr double kTiny = 1e-12;  // m^2: a distance of zero has no derivative
   const torch::Tensor joints = (ways - batch.ways).view({ways.size(0), kMrtFrames, kBodyJoints, 3});
   const torch::Tensor distances = (joints.square().sum(3) + kTiny).sqrt().mean({1, 2});
@@ -88,7 +88,7 @@ torch::Tensor Loss(const torch::Tensor& ways, const AskedBatch& batch) {
 double DistanceAfter(const Peer& peer, const std::vector<MrtGroup>& groups) {
   double sum = 0.0;
   for (const MrtGroup& group : groups) {
-    const int frames = FramesOf(group), people = static_cast<int>(group.people.size());
+    const int frames = NumFrames(group), people = static_cast<int>(group.people.size());
     const std::vector<BodyMotion> said = peer.Continue(group.people, frames);
     double of_group = 0.0;
     for (int n = 0; n < people; ++n) {
@@ -103,8 +103,8 @@ double DistanceAfter(const Peer& peer, const std::vector<MrtGroup>& groups) {
 
 }  // namespace
 
-bool HasWindow(const MrtGroup& group) { return FramesOf(group) >= kMrtGiven + kMrtFrames; }
-bool HasFrameAfter(const MrtGroup& group) { return FramesOf(group) > kMrtGiven; }
+bool HasWindow(const MrtGroup& group) { return NumFrames(group) >= kMrtGiven + kMrtFrames; }
+bool HasFrameAfter(const MrtGroup& group) { return NumFrames(group) > kMrtGiven; }
 
 struct MrtTrainer::Torch {
   MrtOptions options;
@@ -158,7 +158,7 @@ MrtTrainer::MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> hel
   std::vector<std::vector<BodyMotion>> people;
   for (size_t g = 0; g < t.training.size(); ++g) {
     people.push_back(t.training[g].people);
-    for (int last = kMrtGiven - 1; last + kMrtFrames < FramesOf(t.training[g]); ++last) {
+    for (int last = kMrtGiven - 1; last + kMrtFrames < NumFrames(t.training[g]); ++last) {
       t.windows.push_back({static_cast<int>(g), last});
     }
   }
@@ -188,7 +188,7 @@ TrainingPoint MrtTrainer::RunEpoch() {
     SetLearningRate(t.epochs.optimizer.get(), t.options.learning_rate * OneCycle(done));
     AskedBatch batch = Asked(t.training, batches[b], t.epochs.network->Weights(t.scalings));
     AddNoise(t.options.input_noise, &batch.inputs);
-    const torch::Tensor loss = Loss(t.Ways(t.epochs.network.get(), batch.inputs), batch);
+    const torch::Tensor loss = DistanceLoss(t.Ways(t.epochs.network.get(), batch.inputs), batch);
     t.epochs.Step(loss);
     sum += loss.item<double>();
   }

@@ -27,7 +27,7 @@ struct Footing {
 };
 
 // A restored foot as flat as the one at frame 0.
-Vector3d Flat(const Vector3d& restored, const Vector3d& first) {
+Vector3d FlatFoot(const Vector3d& restored, const Vector3d& first) {
   const Vector2d level = restored.head<2>();
   if (!(level.norm() > 0.1 * first.norm())) return first;
   const Vector2d flat = first.head<2>().norm() * level.normalized();
@@ -46,7 +46,7 @@ std::vector<Footing> Footings(const RestorationInput& person, const BodyMotion& 
     const Vector2d move = person.q[t].head<2>() + from_cart - Midpoint(restored[t]);
     Vector3d ankle = restored[t].col(AnkleOf(left)) + Vector3d(move.x(), move.y(), 0.0);
     ankle.z() = first(2, AnkleOf(left));
-    footings.push_back({t, ankle, Flat(FootOf(left, restored[t]), foot)});
+    footings.push_back({t, ankle, FlatFoot(FootOf(left, restored[t]), foot)});
   }
   return footings;
 }

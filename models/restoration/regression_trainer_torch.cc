@@ -35,8 +35,8 @@ class Network : public torch::nn::Module {
   std::vector<torch::nn::Linear> layers_;
 };
 
-torch::Tensor Loss(const torch::Tensor& output, const torch::Tensor& target,
-                   const torch::Tensor& weight) {
+torch::Tensor AbsoluteLoss(const torch::Tensor& output, const torch::Tensor& target,
+                           const torch::Tensor& weight) {
   return ((output - target).abs().mean(1) * weight).sum() / weight.sum();
 }
 
@@ -87,8 +87,9 @@ TrainingPoint RegressionTrainer::RunEpoch() {
     const torch::Tensor rows = order.slice(0, b * t.options.batch, (b + 1) * t.options.batch);
     torch::Tensor x = t.inputs.index_select(0, rows);
     x = x + t.options.input_noise * torch::randn_like(x);
-    const torch::Tensor loss = Loss(t.epochs.network->forward(x), t.targets.index_select(0, rows),
-                                    t.weights.index_select(0, rows));
+    const torch::Tensor loss =
+        AbsoluteLoss(t.epochs.network->forward(x), t.targets.index_select(0, rows),
+                     t.weights.index_select(0, rows));
     t.epochs.Step(loss);
     sum += loss.item<double>();
   }
@@ -96,7 +97,8 @@ TrainingPoint RegressionTrainer::RunEpoch() {
   torch::NoGradGuard no_grad;
   t.epochs.network->eval();
   const double held =
-      Loss(t.epochs.network->forward(t.held_inputs), t.held_targets, t.held_weights).item<double>();
+      AbsoluteLoss(t.epochs.network->forward(t.held_inputs), t.held_targets, t.held_weights)
+          .item<double>();
   t.epochs.Judge(held);
   return {t.epochs.epoch, sum / static_cast<double>(batches), held};
 }

@@ -14,7 +14,7 @@ Eigen::MatrixXf TensorReader::Take(const std::string& name, int rows, int column
            std::to_string(columns));
       return nothing;
     }
-    if (!values.allFinite()) Fail("the tensor " + name + " has entries that are no numbers");
+    if (!values.allFinite()) Fail("the tensor " + name + " has entries that are not numbers");
     return values;
   }
   Fail("the tensor " + name + " is missing");

@@ -18,7 +18,7 @@ MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
   if (options.learned == nullptr) return Error{"the adjoint gradient needs a network"};
   if (options.interaction.drive) {
     return Error{
-        "the adjoint gradient does not know --interaction=drive, which remembers what others did; "
+        "the adjoint gradient does not support --interaction=drive, which has internal memory; "
         "leave drive out, or use a network small enough for Gauss-Newton"};
   }
   if (options.stance != Stance::kSlide) {

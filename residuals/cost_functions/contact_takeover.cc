@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-const Eigen::Vector2d kTypical(2000.0, 100.0);
+const Eigen::Vector2d kTypicalContact(2000.0, 100.0);
 
 // The forces on n and j of contact of unit stiffness, or unit damping.
 template <typename Term>
@@ -94,7 +94,7 @@ bool ContactTakeoverResidual::Evaluate(double const* const* blocks, double* resi
   Eigen::Matrix<double, 2, Eigen::Dynamic> by_weight;
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
   const Eigen::Vector2d taken = Regress(blocks[0], wanted ? &by_weight : nullptr, nullptr);
-  const Eigen::Vector2d scale = weight_ * kTypical.cwiseInverse();
+  const Eigen::Vector2d scale = weight_ * kTypicalContact.cwiseInverse();
   Eigen::Map<Eigen::Vector2d>(residuals, 2) = scale.cwiseProduct(taken);
   if (wanted) {
     using RowMajor = Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>;

@@ -16,14 +16,9 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "models/learned_terms.h"
+#include "residuals/cost_functions/takeover.h"
 
 namespace pushid {
-
-struct ContactTakeover {
-  double stiffness = 0.0;  // N/m
-  double damping = 0.0;    // N s/m
-  double rms_force = 0.0;  // of the network on a loaded cart over mass, m/s^2
-};
 
 // For models with interaction.LearnedBesideContact().
 class ContactTakeoverResidual : public ceres::CostFunction {

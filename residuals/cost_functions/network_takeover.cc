@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-const Eigen::Vector3d kTypical(40.0, 1400.0, 70.0);
+const Eigen::Vector3d kTypicalGains(40.0, 1400.0, 70.0);
 
 }  // namespace
 
@@ -88,7 +88,7 @@ bool TakeoverResidual::Evaluate(double const* const* blocks, double* residuals,
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_weight;
   const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
   const Eigen::Vector3d taken = Regress(blocks[0], wanted ? &by_weight : nullptr, nullptr);
-  const Eigen::Vector3d scale = weight_ * kTypical.cwiseInverse();
+  const Eigen::Vector3d scale = weight_ * kTypicalGains.cwiseInverse();
   Eigen::Map<Eigen::Vector3d>(residuals, 3) = scale.cwiseProduct(taken);
   if (wanted) {
     using RowMajor = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;

@@ -15,15 +15,9 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "models/learned_terms.h"
 #include "models/options.h"
+#include "residuals/cost_functions/takeover.h"
 
 namespace pushid {
-
-struct Takeover {
-  double mu = 0.0;         // N s/m
-  double kp_theta = 0.0;   // N m/rad
-  double kd_theta = 0.0;   // N m s/rad
-  double rms_force = 0.0;  // of the network on the cart over mass, m/s^2
-};
 
 class TakeoverResidual : public ceres::CostFunction {
  public:

@@ -11,24 +11,25 @@ using Ids = StanceParameters<double>;
 // Inputs of the jets: theta, phi, qd, s, the cart's own forces, then the parameters.
 constexpr int kVelocityAt = 2, kStepAt = 6, kCartForceAt = 7, kParametersAt = 9;
 constexpr int kInputs = kParametersAt + Ids::kCount;
-using Jet = ceres::Jet<double, kInputs>;
+using StanceJet = ceres::Jet<double, kInputs>;
 
-StanceForces<Jet> JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
-                               const PendulumState<double>& state,
-                               const Eigen::Vector2d& cart_force) {
-  PendulumState<Jet> jets;
-  Eigen::Matrix<Jet, 2, 1> force;
+StanceForces<StanceJet> JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
+                                     const PendulumState<double>& state,
+                                     const Eigen::Vector2d& cart_force) {
+  PendulumState<StanceJet> jets;
+  Eigen::Matrix<StanceJet, 2, 1> force;
   for (int i = 0; i < 2; ++i) {
-    jets.q[i] = Jet(state.q[i]);
-    jets.q[2 + i] = Jet(state.q[2 + i], i);
-    force[i] = Jet(cart_force[i], kCartForceAt + i);
+    jets.q[i] = StanceJet(state.q[i]);
+    jets.q[2 + i] = StanceJet(state.q[2 + i], i);
+    force[i] = StanceJet(cart_force[i], kCartForceAt + i);
   }
-  for (int i = 0; i < 4; ++i) jets.qd[i] = Jet(state.qd[i], kVelocityAt + i);
-  jets.step = Jet(state.step, kStepAt);
+  for (int i = 0; i < 4; ++i) jets.qd[i] = StanceJet(state.qd[i], kVelocityAt + i);
+  jets.step = StanceJet(state.step, kStepAt);
   int input = kParametersAt;
   // In the order of kIds, which is that of the members.
-  const StanceParameters<Jet> parameters([&](Parameter id) { return Jet(p[id], input++); });
-  return StanceAt(self, parameters, Angles<Jet>(jets.q), jets, force);
+  const StanceParameters<StanceJet> parameters(
+      [&](Parameter id) { return StanceJet(p[id], input++); });
+  return StanceAt(self, parameters, Angles<StanceJet>(jets.q), jets, force);
 }
 
 // One output's derivatives by the state, by s and by the parameters. own: of the cart's forces.
@@ -37,7 +38,7 @@ struct OutputJacobian {
   double by_step = 0.0;
   Eigen::Matrix<double, 1, kNumParameters> by_parameter;
 
-  OutputJacobian(const Jet& output, const SelfForce::Jacobian& own) {
+  OutputJacobian(const StanceJet& output, const SelfForce::Jacobian& own) {
     by_state.segment<2>(2) = output.v.head<2>().transpose();
     by_state.tail<4>() = output.v.segment<4>(kVelocityAt).transpose();
     by_step = output.v[kStepAt];
@@ -77,7 +78,7 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
       self.Friction(p, state.qd) + self.Balance(p, state, state.qd) + self.Linear(p, state);
   SelfForce::Jacobian of_own;
   self.MotionJacobian(p, state, state.qd, &of_own);
-  const StanceForces<Jet> jets = JetsOfStance(self, p, state, own.head<2>());
+  const StanceForces<StanceJet> jets = JetsOfStance(self, p, state, own.head<2>());
   const OutputJacobian next(jets.next_step, of_own);
   stance->next_by_state = next.by_state;
   stance->next_by_step = next.by_step;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
@@ -120,7 +121,7 @@ TEST_F(AnyRecordingTest, PendulumsAloneAreShown) {
   const AppRun shown = RunApp("pushid-animate", with({"--out=" + Path("m.html")}));
   ASSERT_EQ(shown.exit_code, 0) << shown.err;
   EXPECT_TRUE(Contains(shown.err, "right_knee")) << shown.err;
-  EXPECT_TRUE(Contains(shown.err, "pendulums alone are shown"));
+  EXPECT_TRUE(Contains(shown.err, "only pendulums are shown"));
   EXPECT_TRUE(Contains(ReadText(Path("m.html")), "<html"));
   EXPECT_TRUE(
       Refused(RunApp("pushid-animate", with({"--restoration=rigid", "--out=" + Path("n.html")})),
@@ -163,7 +164,7 @@ TEST_F(AnyRecordingTest, Inspect) {
   EXPECT_TRUE(Contains(run.out, "12, 12 can be read, 12 have a push"));
   run = RunApp("pushid-inspect", {manifest_, "--svg_out=" + Path("m.svg")});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_TRUE(Contains(run.err, "a manifest has nothing to draw"));
+  EXPECT_TRUE(Contains(run.err, "a manifest contains nothing to draw"));
   EXPECT_FALSE(std::filesystem::exists(Path("m.svg")));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {}), {"name one or more files"}));
   EXPECT_TRUE(Refused(RunApp("pushid-inspect", {"a", "b", "--svg_out=" + Path("x.svg")}),
@@ -195,7 +196,7 @@ TEST_F(AnyRecordingTest, Manifest) {
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> bad = {
       {{pattern}, {"--folder is missing"}},
       {{"--folder=" + folder_.string()}, {"--pattern is missing"}},
-      {{"--folder=" + folder_.string(), pattern}, {"no mass is known of"}},
+      {{"--folder=" + folder_.string(), pattern}, {"no mass is given for"}},
       {{"--folder=" + folder_.string(), pattern, "--mass_kg=-1"}, {"--mass_kg"}},
       {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--fps=0.1"}, {"--fps"}},
       {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--push_kind=soft"}, {"'soft'"}},
@@ -232,7 +233,7 @@ TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "11 recordings kept as they were, 2 added"));
   EXPECT_TRUE(Contains(run.out, missing));
-  EXPECT_TRUE(Contains(run.out, "does not find them: renamed"));
+  EXPECT_TRUE(Contains(run.out, "do not match the pattern: renamed"));
   const auto after = Json(Path("made.json"))["recordings"];
   ASSERT_EQ(after.size(), 13u);
   for (int i = 0; i < 11; ++i) EXPECT_EQ(after[i], json["recordings"][i]);
@@ -261,10 +262,11 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
-  EXPECT_TRUE(Contains(run.out, "goes elsewhere than pushed in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "moves in another direction than the push in 1 case (" + id(1)));
   EXPECT_TRUE(Contains(run.out, "moves before being pushed in 1 case (" + id(3)));
-  EXPECT_TRUE(Contains(run.out, "face elsewhere than forward in 1 case (" + id(1)));
-  EXPECT_TRUE(Contains(run.out, "no person's distance from the ankles in 1 case (" + id(2)));
+  EXPECT_TRUE(Contains(run.out, "people do not face forward in 1 case (" + id(1)));
+  EXPECT_TRUE(
+      Contains(run.out, "the distance between hip and ankles is implausible in 1 case (" + id(2)));
 }
 
 // The push of a recording through a C3D channel, a list of two halves, and with its clock wrong.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -76,7 +77,7 @@ class BadInputTest : public AppTest {
   std::string model_, bvh_, push_, text_;
 };
 
-struct Case {
+struct DamageCase {
   const char* what;
   std::function<void()> damage;
   std::vector<std::string> says;
@@ -85,10 +86,10 @@ struct Case {
 TEST_F(BadInputTest, MotionFiles) {
   const std::string line = Bvh() + ":" + std::to_string(FirstMotionLine()) + ": ";
   const std::string number = MotionNumber();
-  const std::vector<Case> cases = {
+  const std::vector<DamageCase> cases = {
       {"missing", [&] { std::filesystem::remove(Path(Bvh())); }, {Bvh(), "no such file"}},
-      {"empty", [&] { WriteText(Bvh(), ""); }, {Bvh(), "no BVH file"}},
-      {"no BVH", [&] { WriteText(Bvh(), "frame,fx\n0,1\n"); }, {Bvh() + ":1", "no BVH file"}},
+      {"empty", [&] { WriteText(Bvh(), ""); }, {Bvh(), "not a BVH file"}},
+      {"not a BVH", [&] { WriteText(Bvh(), "frame,fx\n0,1\n"); }, {Bvh() + ":1", "not a BVH file"}},
       {"truncated in the hierarchy",
        [&] { WriteText(Bvh(), bvh_.substr(0, bvh_.find("MOTION") / 2)); },
        {Bvh() + ":"}},
@@ -116,7 +117,7 @@ TEST_F(BadInputTest, MotionFiles) {
        [&] { DamageEntry([](ordered_json& r) { r["length_unit"] = "m"; }); },
        {Bvh(), "looks like mm, pass --length_unit=mm"}},
   };
-  for (const Case& one : cases) {
+  for (const DamageCase& one : cases) {
     SCOPED_TRACE(one.what);
     one.damage();
     ExpectRefused(one.says);
@@ -135,7 +136,7 @@ TEST_F(BadInputTest, FewerThanThreeFrames) {
 
 TEST_F(BadInputTest, PushFiles) {
   const std::string csv = PushCsv();
-  const std::vector<Case> cases = {
+  const std::vector<DamageCase> cases = {
       {"missing", [&] { std::filesystem::remove(Path(csv)); }, {csv, "no such file"}},
       {"empty", [&] { WriteText(csv, ""); }, {csv, "empty"}},
       {"header alone", [&] { WriteText(csv, "frame,fx,fy,ftheta,fphi\n"); }, {csv}},
@@ -157,7 +158,7 @@ TEST_F(BadInputTest, PushFiles) {
        },
        {csv, "longer than the motion", "46 rows", "45 frames"}},
   };
-  for (const Case& one : cases) {
+  for (const DamageCase& one : cases) {
     SCOPED_TRACE(one.what);
     one.damage();
     ExpectRefused(one.says);
@@ -176,7 +177,7 @@ TEST_F(BadInputTest, Manifests) {
     return entry([kg](ordered_json& r) { r["subjects"][0]["mass_kg"] = kg; });
   };
   const std::string at = "manifest.json:";
-  const std::vector<Case> cases = {
+  const std::vector<DamageCase> cases = {
       {"missing", [&] { std::filesystem::remove(manifest_); }, {"manifest.json", "no such file"}},
       {"empty file", [&] { WriteText("manifest.json", ""); }, {"manifest.json", "empty"}},
       {"no recordings",
@@ -213,7 +214,7 @@ TEST_F(BadInputTest, Manifests) {
        },
        {at, id_, "unique"}},
   };
-  for (const Case& one : cases) {
+  for (const DamageCase& one : cases) {
     SCOPED_TRACE(one.what);
     one.damage();
     ExpectRefused(one.says);

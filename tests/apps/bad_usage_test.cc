@@ -2,6 +2,7 @@
 // before any fit starts.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,15 @@ namespace {
 
 using BadUsageTest = AppTest;
 
-struct Case {
+struct UsageCase {
   std::vector<std::string> flags;
   std::vector<std::string> says;
 };
 
 TEST_F(BadUsageTest, FitFlags) {
   const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time";
-  const std::vector<Case> cases = {
-      {{"--fix=mew"}, {"--fix", "'mew'", "no parameter", "Kp_theta"}},
+  const std::vector<UsageCase> cases = {
+      {{"--fix=mew"}, {"--fix", "'mew'", "not a parameter", "Kp_theta"}},
       {{"--free=mew"}, {"--free", "'mew'"}},
       {{"--fix=mu=fast"}, {"--fix", "'mu=fast'", "number"}},
       {{"--fix=mu=nan"}, {"--fix", "'mu=nan'", "number"}},
@@ -48,7 +49,8 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--ids=nobody"}, {"'nobody'", "manifest.json"}},
       {{"--length_unit=inch"}, {"--length_unit", "'inch'", "mm, cm or m"}},
       {{"--length_scale=-1"}, {"--length_scale is -1", "metres of one file unit"}},
-      {{"--length_scale=0.01", "--length_unit=cm"}, {"--length_scale", "beside --length_unit"}},
+      {{"--length_scale=0.01", "--length_unit=cm"},
+       {"--length_scale", "together with --length_unit"}},
       {{"--horizons=8,x"}, {"--horizons", "'x'"}},
       {{"--horizons=99999999999999"}, {"--horizons", "'99999999999999'"}},
       {{"--sigma_hip=0"}, {"--sigma_hip", "positive"}},
@@ -88,7 +90,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--seed=abc"}, {"seed", "abc"}},
   };
   const int files = CountFiles();
-  for (const Case& one : cases) {
+  for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
     std::vector<std::string> flags = {Recordings(), "--model_out=" + Path("out.json")};
     flags.insert(flags.end(), one.flags.begin(), one.flags.end());
@@ -133,7 +135,7 @@ TEST_F(BadUsageTest, ExchangedAnklesAreDoubted) {
         {"hip", "Hips"}, {"left_ankle", "RightAnkle"}, {"right_ankle", "LeftAnkle"}};
   });
   const AppRun run = RunApp("pushid-fit", {exchanged, "--quiet"});
-  EXPECT_TRUE(Contains(run.err, "face elsewhere than forward in 1 case"));
+  EXPECT_TRUE(Contains(run.err, "people do not face forward in 1 case"));
 }
 
 // The file that is read must still be there, byte for byte.
@@ -201,8 +203,8 @@ TEST_F(BadUsageTest, Models) {
       {"", "empty"},
       {good.substr(0, good.size() / 2), "JSON"},
       {"[]\n", "model"},
-      {"{}\n", "no pushid model"},
-      {ReadText(manifest_), "no pushid model"},
+      {"{}\n", "not a pushid model"},
+      {ReadText(manifest_), "not a pushid model"},
       {json([](auto& m) { m["format_version"] = 999; }), "newer"},
       {json([](auto& m) { m["values"].erase("mu"); }), "'values/mu'"},
       {json([](auto& m) { m["values"]["mu"] = "much"; }), "'values/mu'"},
@@ -210,8 +212,8 @@ TEST_F(BadUsageTest, Models) {
       {json([](auto& m) { m["model"]["posture"] = "lying"; }), "posture"},
       {json([](auto& m) { m.erase("table"); }), "table"},
       {json([](auto& m) { m["parameters"] = 3; }), "'parameters'"},
-      {json([](auto& m) { m["format"] = 3; }), "no pushid model"},
-      {json([](auto& m) { m["format_version"] = "new"; }), "no pushid model"},
+      {json([](auto& m) { m["format"] = 3; }), "not a pushid model"},
+      {json([](auto& m) { m["format_version"] = "new"; }), "not a pushid model"},
       {json([](auto& m) { m["values"]["tail_time"] = 0; }), "tail_time"},
       {json([](auto& m) { m["fit"]["best_start"] = 7; }), "best_start"},
       {json([](auto& m) { m["parameters"].erase(m["parameters"].begin()); }), "correlation"},
@@ -239,7 +241,7 @@ TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
 TEST_F(BadUsageTest, WhatIfsAndIds) {
   const std::string model = "--model=" + FitModel();
   const std::string out = "--out=" + Path("out.csv");
-  const std::vector<Case> cases = {
+  const std::vector<UsageCase> cases = {
       {{"--set=mew=1"}, {"--set", "'mew'"}},
       {{"--set=Kp_thta=1"}, {"--set", "'Kp_thta'", "is Kp_theta meant?"}},
       {{"--set=mu"}, {"--set", "mu"}},
@@ -251,7 +253,7 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
       {{"--frames=1"}, {"--frames"}},
       {{"--frames=2000000000"}, {"--frames"}},
   };
-  for (const Case& one : cases) {
+  for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
     std::vector<std::string> flags = {model, Recordings(), "--id=" + id_, out};
     flags.insert(flags.end(), one.flags.begin(), one.flags.end());
@@ -261,7 +263,7 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
 }
 
 TEST_F(BadUsageTest, SimulationFlags) {
-  const std::vector<Case> cases = {
+  const std::vector<UsageCase> cases = {
       {{"--people=0"}, {"is 0; it must"}},
       {{"--frames=2"}, {"frames is 2; it must"}},
       {{"--fps=nan"}, {"fps is nan; it must"}},
@@ -270,7 +272,7 @@ TEST_F(BadUsageTest, SimulationFlags) {
       {{"--set=mew=1"}, {"--set", "'mew'"}},
       {{"--set=tail_time=0"}, {"--set", "tail_time = 0"}},
   };
-  for (const Case& one : cases) {
+  for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
     EXPECT_TRUE(
         Refused(RunApp("pushid-simulate", {"--out=" + Path("made"), one.flags[0]}, 30), one.says));
@@ -282,7 +284,7 @@ TEST_F(BadUsageTest, PushFlags) {
   const std::string good_sensor =
       "--sensor=" + WriteText("good.csv", "time,force\n0,1\n0.2,90\n0.5,1\n");
   const std::string sensor = "--sensor=" + WriteText("sensor.csv", "time,force\n0,1\n0.5,nan\n");
-  const std::vector<Case> cases = {
+  const std::vector<UsageCase> cases = {
       {{"--first_frame=5", "--end_frame=3"}, {id_, "from frame 5 to 3"}},
       {{"--first_frame=500", "--end_frame=600"}, {id_, "frames 0 to"}},
       {{"--person=4"}, {id_, "no person 4"}},
@@ -291,7 +293,7 @@ TEST_F(BadUsageTest, PushFlags) {
       {{sensor}, {"sensor.csv:3", "'nan'"}},
       {{good_sensor, "--direction=a,b"}, {"--direction", "'a,b'"}},
   };
-  for (const Case& one : cases) {
+  for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
     std::vector<std::string> flags = {Recordings(), "--id=" + id_, "--out=" + Path("push.csv")};
     flags.insert(flags.end(), one.flags.begin(), one.flags.end());
@@ -302,7 +304,7 @@ TEST_F(BadUsageTest, PushFlags) {
 
 TEST_F(BadUsageTest, CrossValidationFlags) {
   WriteText("folds.json", "{\"folds\": [{\"name\": \"1\", \"held_out\": [\n\n\"nobody\"]}]}");
-  const std::vector<Case> cases = {
+  const std::vector<UsageCase> cases = {
       {{"--scheme=random"}, {"--scheme", "'random'"}},
       {{"--folds=1"}, {"--folds"}},
       {{"--folds=13"}, {"--folds"}},
@@ -318,7 +320,7 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"},
        {"--compare", "'held'", "nothing is left"}},
   };
-  for (const Case& one : cases) {
+  for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
     EXPECT_TRUE(
         Refused(RunApp("pushid-crossvalidate", {Recordings(), one.flags[0]}, 30), one.says));

@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ TEST_F(BatchFaultTest, LimitsEndAJobAndSaySo) {
   const std::string endless = "\"--bootstrap=100000\"";
   const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
   EXPECT_EQ(slow.exit_code, 2) << slow.err;
-  EXPECT_TRUE(Contains(slow.out, "out of time after 0.5 s"));
+  EXPECT_TRUE(Contains(slow.out, "timed out after 0.5 s"));
   const AppRun big = Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"));
   EXPECT_EQ(big.exit_code, 2) << big.err;
   EXPECT_TRUE(Contains(big.out, "1 failed"));
@@ -112,7 +113,7 @@ TEST_F(BatchFaultTest, AJobThatAnotherProcessHoldsIsLeftToIt) {
   const AppRun run = Batch(plan);
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_TRUE(Contains(run.out, "1 done, 0 failed, 0 done before"));
-  EXPECT_TRUE(Contains(run.err, "left to another pushid-batch that is at work on them: 1 job;"));
+  EXPECT_TRUE(Contains(run.err, "left to another pushid-batch that is running them: 1 job;"));
   close(held);
   EXPECT_TRUE(Contains(Batch(plan).out, "1 done, 0 failed, 1 done before"));
 }
@@ -145,7 +146,7 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
                                 {"-s", "INT", std::to_string(0.5 * kSlowdown),
                                  std::string(PUSHID_BIN_DIR) + "/pushid-batch", plan, "--quiet"});
   EXPECT_EQ(run.exit_code, 124) << run.err;  // timeout's own
-  EXPECT_TRUE(Contains(run.err, "the same command goes on from here"));
+  EXPECT_TRUE(Contains(run.err, "run the same command to continue"));
   EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
   EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
   const int done = std::atoi(run.out.c_str() + run.out.rfind('\n', run.out.size() - 2) + 1);

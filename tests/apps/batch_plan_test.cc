@@ -22,9 +22,9 @@ TEST_F(BatchPlanTest, WrongFlagsAreToldBeforeAnyJob) {
       {"--self_force=bogus", "--self_force is 'bogus'"},
       {"--length_unit=inch", "--length_unit is 'inch'"},
       {"--lowpass_hz=-1", "--lowpass_hz is -1"},
-      {"--help", "--help makes no fit"},
-      {"--version", "--version makes no fit"},
-      {"--bootstrap_file=b", "--bootstrap_file would be written by every job"},
+      {"--help", "--help does not run a fit"},
+      {"--version", "--version does not run a fit"},
+      {"--bootstrap_file=b", "--bootstrap_file would be overwritten by every job"},
   };
   for (const auto& [flag, says] : flags) {
     SCOPED_TRACE(flag);
@@ -58,9 +58,9 @@ TEST_F(BatchPlanTest, BadPlansAreToldWhereAndWhy) {
       {data + "[output]\ndir = \"out\"\n", "at least one [[variant]]"},
       {data + rest + "[[variant]]\nname = \"a\"\n", "two variants are called 'a'"},
       {data + "[[variant]]\nname = \"a\"\nflags = [3]\n[output]\ndir = \"o\"\n",
-       "plan.toml:5: flags must be a list of texts"},
+       "plan.toml:5: flags must be a list of strings"},
       {data + "[[variant]]\nname = \"a\"\nflags = [\"x\"]\n[output]\ndir = \"o\"\n",
-       "'x' is no flag"},
+       "'x' is not a flag"},
       {data + "[[variant]]\nname = \"a\"\nflags = [\"--model_out=x\"]\n[output]\ndir = \"o\"\n",
        "--model_out is set by the batch"},
       {"[data]\nrecordings = \"missing.json\"\n" + rest, "plan.toml:2: recordings: "},
@@ -72,7 +72,7 @@ TEST_F(BatchPlanTest, BadPlansAreToldWhereAndWhy) {
     EXPECT_TRUE(Refused(run, {bad.says})) << bad.text;
   }
   EXPECT_TRUE(Refused(Batch("--plan=" + Path("none.toml")), {"none.toml", "no such file"}));
-  EXPECT_TRUE(Refused(Batch("--plan=" + folder_.string()), {"is a folder; name the plan in it"}));
+  EXPECT_TRUE(Refused(Batch("--plan=" + folder_.string()), {"is a folder; give the plan in it"}));
   const std::string good = "--plan=" + WriteText("plan.toml", data + rest);
   EXPECT_TRUE(Refused(Batch(good, {"--shard=3/2"}), {"--shard is '3/2'"}));
   EXPECT_TRUE(Refused(Batch(good, {"--job=zz"}), {"no job 'zz'"}));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
@@ -92,7 +93,8 @@ TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
                 1e-9 * std::abs(mean));
   }
   EXPECT_EQ(found, 2);
-  EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "each group over its replicas"));
+  EXPECT_TRUE(
+      Contains(ReadText(Path("out/summary.html")), "spread over the replicas of each group"));
 }
 
 TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {

@@ -1,6 +1,7 @@
 // What all executables share: help, version, flag files, exit codes, what goes to which stream.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ TEST_F(CommandLineTest, OutputsOfFormatsThatNothingWrites) {
   EXPECT_TRUE(
       Refused(RunApp("pushid-predict", {Recordings(), "--model=" + FitModel(), "--id=" + id_,
                                         "--restoration=rigid", "--out=" + Path("body.fbx")}),
-              {"body.fbx", "nothing writes .fbx", ".bvh"}));
+              {"body.fbx", "no program writes .fbx", ".bvh"}));
 }
 
 TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
@@ -67,14 +68,14 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
   AppRun run = interrupted("pushid-fit", {Recordings(), "--bootstrap=1000000", "--quiet",
                                           "--model_out=" + Path("m.json")});
   EXPECT_EQ(run.exit_code, 130) << run.err;
-  EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; files are written whole or not at all"));
+  EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; no partial file is left"));
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
   const std::string kept = Path("replicas.csv");
   run = interrupted("pushid-fit",
                     {Recordings(), "--bootstrap=1000000", "--quiet", "--bootstrap_file=" + kept});
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_TRUE(
-      Contains(run.err, "replicas so far are in " + kept + ", and the same command goes on"));
+      Contains(run.err, "finished replicas are in " + kept + "; run the same command to continue"));
 }
 
 TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {

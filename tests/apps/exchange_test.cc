@@ -1,6 +1,7 @@
 // pushid-export and what it writes, read again; crowds as formations.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ TEST_F(ExchangeTest, TheFitOfTheDatasetIsThatOfTheRecordings) {
         << name;
   }
   EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + bids}),
-                      {"is there already", "--overwrite"}));
+                      {"already exists", "--overwrite"}));
   EXPECT_EQ(RunApp("pushid-export", {Recordings(), "--out=" + bids, "--overwrite"}).exit_code, 0);
 }
 
@@ -97,7 +98,7 @@ TEST_F(ExchangeTest, TrajectoriesOfRecordings) {
   EXPECT_TRUE(Contains(seen.out, "45 at 60 per second"));
   EXPECT_TRUE(
       Refused(RunApp("pushid-export", {Recordings(), "--format=txt", "--out=" + Path("crowd")}),
-              {"is there already"}));
+              {"already exists"}));
 }
 
 TEST_F(ExchangeTest, ExportRefuses) {
@@ -106,14 +107,14 @@ TEST_F(ExchangeTest, ExportRefuses) {
                       {"bids, txt or sqlite"}));
   // The folder of the recordings themselves.
   EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + folder_.string()}),
-                      {"manifest.json", "no output of pushid-export"}));
+                      {"manifest.json", "not an output of pushid-export"}));
   // Another one's data set, whatever --overwrite says.
   const std::string theirs = Path("theirs");
   std::filesystem::create_directories(theirs);
   for (const char* file : {"participants.tsv", "dataset_description.json"}) {
     WriteText(std::string("theirs/") + file, R"({"Name": "Gait", "BIDSVersion": "1.9.0"})");
     EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + theirs, "--overwrite"}),
-                        {file, "no output of pushid-export"}));
+                        {file, "not an output of pushid-export"}));
   }
   EXPECT_TRUE(Contains(ReadText(theirs + "/dataset_description.json"), "Gait"));
   const std::string twins = ChangedManifest([](nlohmann::ordered_json& json) {
@@ -155,7 +156,7 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   EXPECT_TRUE(refused({"--trajectories_out=" + crowd}, "both name"));
   EXPECT_TRUE(refused({"--trajectories_out=a.csv"}, "trajectories end in .txt"));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--formation_frame=1"}),
-                      {"--formation_frame goes with a file"}));
+                      {"--formation_frame needs a trajectory file"}));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -228,7 +229,7 @@ TEST_F(FitAppTest, OnlyTheRecordingsAskedForAreFitted) {
 TEST_F(FitAppTest, GainsThatCannotBeToldApartAreNamed) {
   FitModel("m.json", {"--free=mu,Kp_x,Kp_y", "--preset_priors=false", "--settling_weight=0"});
   EXPECT_TRUE(Contains(fit_.out, "unidentifiable"));
-  EXPECT_TRUE(Contains(fit_.out, "mu, Kp_x and Kp_y cannot be told apart"));
+  EXPECT_TRUE(Contains(fit_.out, "mu, Kp_x and Kp_y cannot be separated"));
 }
 
 TEST_F(FitAppTest, ThePlainPresetFitsToo) {

@@ -155,7 +155,7 @@ TEST_F(SmallDiskTest, ABootstrapStopsAtTheFirstReplicaItCannotKeep) {
   EXPECT_EQ(full.exit_code, 1) << full.out << full.err;
   EXPECT_TRUE(Contains(full.err, file + ": "));
   EXPECT_TRUE(Contains(full.err, "No space left on device"));
-  EXPECT_TRUE(Contains(full.err, "the same command goes on from here"));
+  EXPECT_TRUE(Contains(full.err, "run the same command to continue"));
   EXPECT_EQ(ReadText(file).rfind(kept, 0), 0u) << "what was kept is gone";
   fs::remove(Path("disk/filler"));
   EXPECT_EQ(RunApp("pushid-fit", few).exit_code, 0);

@@ -1,5 +1,6 @@
 // --observed in predict, evaluate and crossvalidate; --population in fit.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/apps/app_fixture.h"
 
@@ -107,7 +108,7 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
       Refused(RunApp("pushid-crossvalidate", {Recordings(), "--preset=ldp", "--observed=9"}),
               {"no push tail", "--push_tail=exponential"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--population"}),
-                      {"--population", "no push tail"}));
+                      {"--population", "push tail, and the model has none"}));
   const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
                       {"ldp.json", "no push tail"}));

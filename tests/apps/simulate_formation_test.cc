@@ -63,7 +63,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   for (int n = 1; n < 4; ++n) EXPECT_GT(std::stod(onsets[n]), std::stod(onsets[n - 1])) << run.out;
   EXPECT_TRUE(Contains(run.out, "4 of 4 people moved by 2 cm or more; from person 0 to 3"));
   EXPECT_TRUE(Contains(run.out, "outcome: judged 2 s after the last push, or after the onset"));
-  EXPECT_TRUE(Contains(ReadText(Path("wave.svg")), "parameters leave open"));
+  EXPECT_TRUE(Contains(ReadText(Path("wave.svg")), "uncertainty of the parameters"));
 
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
@@ -101,8 +101,8 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
                                                 "--formation=line", "--people=1"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out,
-                       "moved by 2 cm or more\nthe fit warned: ends behind the start\n"
-                       "the fit warned: in 2 recordings (a, b): the file has gaps\n"));
+                       "moved by 2 cm or more\nwarning of the fit: ends behind the start\n"
+                       "warning of the fit: in 2 recordings (a, b): the file has gaps\n"));
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
@@ -126,7 +126,7 @@ TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
 TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
   const AppRun run = RunApp("pushid-simulate", {"--model=" + alone_, "--formation=line"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(Contains(run.err, "people will not touch"));
+  EXPECT_TRUE(Contains(run.err, "people will not affect each other"));
   EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
   const AppRun one =
       RunApp("pushid-simulate", {"--model=" + alone_, "--formation=grid", "--people=1"});

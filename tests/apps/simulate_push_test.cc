@@ -170,7 +170,7 @@ TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
 TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
   const AppRun usual = MakePush({"--first_frame=15", "--end_frame=30"});
   ASSERT_EQ(usual.exit_code, 0) << usual.err;
-  EXPECT_TRUE(Contains(usual.out, "m/s where it begins"));
+  EXPECT_TRUE(Contains(usual.out, "m/s at its start"));
   EXPECT_EQ(usual.err.find("stands out"), std::string::npos) << usual.err;
   const AppRun at_rest =
       MakePush({"--first_frame=15", "--end_frame=30", "--initial_velocity=zero", "--overwrite"});
@@ -229,7 +229,7 @@ TEST_F(PushAppTest, ManifestsMerge) {
   ASSERT_EQ(merged.exit_code, 0) << merged.err;
   EXPECT_EQ(Json(Path("merged.json"))["values"], Json(Path("whole.json"))["values"]);
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=" + a + "," + manifest_}),
-                      {"manifest.json:", id_, "stands in " + a}));
+                      {"manifest.json:", id_, "this id is in " + a}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=" + a + "," + b, "--model_out=" + b}),
                       {"--recordings and --model_out both name"}));
 }

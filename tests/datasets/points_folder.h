@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "datasets/files/numeric_table.h"
@@ -39,7 +40,7 @@ class PointsFolderTest : public RecordingFolderTest {
   void Use(const std::string& file, MotionFormat format) {
     entry().motion_format = format;
     entry().motion = {file};
-    entry().json.clear();
+    entry().json->clear();
     if (format == MotionFormat::kTrc) {
       ASSERT_FALSE(WriteTrc(Path(file), motion_));
     }

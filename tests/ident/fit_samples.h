@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/files/random.h"
@@ -14,6 +15,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/results/fit_result.h"
+#include "ident/results/identified_model.h"
 
 namespace pushid {
 
@@ -46,6 +48,16 @@ inline std::vector<PendulumRecording> MakePendulums(const SyntheticOptions& opti
   const auto made = MakeSyntheticRecordings(options);
   EXPECT_TRUE(made.ok()) << made.error().ToString();
   return AsPendulums(Recordings(made.value()));
+}
+
+// The truth behind the recordings of `study`, as if it had been fitted.
+inline IdentifiedModel TruthOf(const SyntheticOptions& study,
+                               ParameterTable table = MakePreset("tail").value().table) {
+  IdentifiedModel model;
+  model.options = study.model;
+  model.parameters = study.parameters;
+  model.table = std::move(table);
+  return model;
 }
 
 // The tail preset as a user gets it, its fixed parameters at the truth of `study`, whose recordings

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-ParameterSet<double> Parameters(double height) {
+ParameterSet<double> ContactParameters(double height) {
   ParameterSet<double> p{};
   p[kContactStiffness] = 2500.0;
   p[kContactDistance] = 0.4;
@@ -27,7 +27,7 @@ PairForce<T> Contact(const Pair& pair, const ParameterSet<T>& p, const PendulumS
   return InteractionBetween(terms, nullptr, pair, p, n, j);
 }
 
-Pair TwoPeople(double distance) {
+Pair PairApart(double distance) {
   Pair pair;
   pair.body_n = {70.0, 0.95, 0.1};
   pair.body_j = {90.0, 1.02, 0.08};
@@ -46,17 +46,18 @@ PendulumState<double> AtRest(const Vector4<double>& q) { return {q, Vector4<doub
 
 TEST(Contact, NobodyIsLoadedWhereHeStoodAtTheStart) {
   for (double distance : {0.1, 0.3, 0.4, 0.6}) {
-    const Pair pair = TwoPeople(distance);
-    const PairForce<double> force =
-        Contact<double>(pair, Parameters(0.5), AtRest(pair.first_n.q), AtRest(pair.first_j.q));
+    const Pair pair = PairApart(distance);
+    const PairForce<double> force = Contact<double>(pair, ContactParameters(0.5),
+                                                    AtRest(pair.first_n.q), AtRest(pair.first_j.q));
     EXPECT_FALSE(force.acts) << distance;
     EXPECT_EQ(force.on_n.norm(), 0.0);
   }
 }
 
 TEST(Contact, PushesApartAndIsMutual) {
-  const Pair pair = TwoPeople(0.6);
-  const PairForce<double> force = Contact(pair, Parameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
+  const Pair pair = PairApart(0.6);
+  const PairForce<double> force =
+      Contact(pair, ContactParameters(0.5), Near(0.35, 0.8), Near(0.6, 0.0));
   ASSERT_TRUE(force.acts);
   EXPECT_LT(force.on_n[0], 0.0);  // n stands behind j and is pushed back
   EXPECT_GT(force.on_j[0], 0.0);
@@ -65,11 +66,11 @@ TEST(Contact, PushesApartAndIsMutual) {
 
 // Whichever is called first, the forces are the same.
 TEST(Contact, DoesNotDependOnTheOrder) {
-  const Pair pair = TwoPeople(0.6);
+  const Pair pair = PairApart(0.6);
   const Pair swapped = pair.Swapped();
   const auto a = Near(0.33, 0.5), b = Near(0.58, -0.2);
-  const PairForce<double> one = Contact(pair, Parameters(0.7), a, b);
-  const PairForce<double> other = Contact(swapped, Parameters(0.7), b, a);
+  const PairForce<double> one = Contact(pair, ContactParameters(0.7), a, b);
+  const PairForce<double> other = Contact(swapped, ContactParameters(0.7), b, a);
   ASSERT_TRUE(one.acts);
   EXPECT_LT((one.on_n - other.on_j).norm(), 1e-12 * one.on_n.norm());
   EXPECT_LT((one.on_j - other.on_n).norm(), 1e-12 * one.on_j.norm());
@@ -79,7 +80,7 @@ TEST(Contact, DoesNotDependOnTheOrder) {
 // derivative of the force by the states is symmetric over all eight coordinates.
 TEST(Contact, SpringHasAPotential) {
   using Jet = ceres::Jet<double, 8>;
-  ParameterSet<double> p = Parameters(0.6);
+  ParameterSet<double> p = ContactParameters(0.6);
   p[kContactDamping] = 0.0;
   ParameterSet<Jet> parameters;
   for (int i = 0; i < kNumParameters; ++i) parameters[i] = Jet(p[i]);
@@ -90,7 +91,7 @@ TEST(Contact, SpringHasAPotential) {
     j.q[i] = Jet(b.q[i], 4 + i);
     n.qd[i] = j.qd[i] = Jet(0.0);
   }
-  const PairForce<Jet> force = Contact(TwoPeople(0.6), parameters, n, j);
+  const PairForce<Jet> force = Contact(PairApart(0.6), parameters, n, j);
   ASSERT_TRUE(force.acts);
   Eigen::Matrix<double, 8, 8> stiffness;
   for (int row = 0; row < 4; ++row) {
@@ -101,14 +102,14 @@ TEST(Contact, SpringHasAPotential) {
 }
 
 TEST(Contact, ForceAndSlopeVanishAtFirstTouch) {
-  const Pair pair = TwoPeople(0.6);
+  const Pair pair = PairApart(0.6);
   double before = 0.0;
   // Walk n towards j in steps of 0.1 mm: no step of the force where the contact begins.
   for (int i = 0; i <= 1000; ++i) {
     PendulumState<double> n;
     n.q = {0.15 + 1e-4 * i, 0.0, 0.0, 0.0};
     const PendulumState<double> j = AtRest(pair.first_j.q);
-    const double now = Contact(pair, Parameters(0.5), n, j).on_j[0];
+    const double now = Contact(pair, ContactParameters(0.5), n, j).on_j[0];
     EXPECT_GE(now, before);
     EXPECT_LT(now - before, 0.3);  // 2500 N/m x 0.1 mm and a little
     before = now;
@@ -129,7 +130,7 @@ TEST(Contact, TravelsThroughARow) {
                                        HalfSinePush(scene.people[0].body, 80.0, 12, scene.dt)));
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = true;
-  ParameterSet<double> p = Parameters(0.5);
+  ParameterSet<double> p = ContactParameters(0.5);
   p[kMu] = 30.0, p[kKpTheta] = 1800.0, p[kKpPhi] = 1500.0, p[kKdTheta] = p[kKdPhi] = 70.0;
   p[kAx] = -12.0, p[kTailTime] = 0.2;
   RolloutPath<double> path;

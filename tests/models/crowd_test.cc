@@ -8,7 +8,7 @@
 namespace pushid {
 namespace {
 
-ParameterSet<double> Touching() {
+ParameterSet<double> BlockParameters() {
   ParameterSet<double> p{};
   p[kMu] = 25.0, p[kKpTheta] = p[kKpPhi] = 1700.0, p[kKdTheta] = p[kKdPhi] = 80.0, p[kAx] = -9.0;
   p[kTailGain] = 1.0, p[kTailTime] = 0.2, p[kTailExponent] = 1.0;
@@ -52,9 +52,10 @@ TEST_P(CrowdOf, IsTheRolloutForAnyNumberOfThreads) {
   options.stance = GetParam();
   RolloutPath<double> path;
   ASSERT_TRUE(
-      Rollout<double>(scene, options, {Touching()}, InitialVelocities(scene), kFrames, &path).ok);
+      Rollout<double>(scene, options, {BlockParameters()}, InitialVelocities(scene), kFrames, &path)
+          .ok);
   for (int threads : {1, 2, 4}) {
-    Crowd crowd(scene, options, {Touching()}, threads);
+    Crowd crowd(scene, options, {BlockParameters()}, threads);
     for (int t = 1; t < kFrames; ++t) ASSERT_TRUE(crowd.Advance().ok);
     EXPECT_EQ(crowd.frame(), kFrames - 1);
     for (int n = 0; n < scene.num_people(); ++n) {
@@ -70,9 +71,9 @@ INSTANTIATE_TEST_SUITE_P(SlidingAndStanding, CrowdOf,
 
 TEST(Crowd, NamesWhoFallsAndStaysBefore) {
   Scene scene = Block(2, 3);
-  ParameterSet<double> weak = Touching();
+  ParameterSet<double> weak = BlockParameters();
   weak[kKpTheta] = -3000.0;
-  std::vector<ParameterSet<double>> sets(6, Touching());
+  std::vector<ParameterSet<double>> sets(6, BlockParameters());
   sets[4] = weak;
   scene.people[4].start.qd[2] = 0.5;
   Crowd crowd(scene, Options(), sets, 1);

@@ -9,13 +9,12 @@
 namespace pushid {
 namespace {
 
-constexpr double kDt = 1.0 / 60.0;
 // By drive_gain, drive_torque and drive_time.
-using Jet = ceres::Jet<double, 3>;
+using DriveJet = ceres::Jet<double, 3>;
 
-ParameterSet<Jet> Jets(const ParameterSet<double>& p) {
-  ParameterSet<Jet> jets;
-  for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
+ParameterSet<DriveJet> Jets(const ParameterSet<double>& p) {
+  ParameterSet<DriveJet> jets;
+  for (int i = 0; i < kNumParameters; ++i) jets[i] = DriveJet(p[i]);
   jets[kDriveGain].v[0] = jets[kDriveTorque].v[1] = jets[kDriveTime].v[2] = 1.0;
   return jets;
 }
@@ -26,7 +25,7 @@ TEST(Drive, ForceAndItsDerivatives) {
     for (int trial = 0; trial < 20; ++trial) {
       const ParameterSet<double> p = RandomParameters(&random);
       const Vector4<double> lately = RandomVector(&random, size);
-      const Vector4<Jet> force = DriveForce<Jet>(Jets(p), lately.cast<Jet>());
+      const Vector4<DriveJet> force = DriveForce<DriveJet>(Jets(p), lately.cast<DriveJet>());
       for (int row = 0; row < 4; ++row) {
         const int own = row < 2 ? 0 : 1;
         EXPECT_EQ(force[row].a, p[row < 2 ? kDriveGain : kDriveTorque] * lately[row]);
@@ -47,10 +46,10 @@ TEST(Drive, MemoryAndItsDerivativeByTheTime) {
     for (int trial = 0; trial < 20; ++trial) {
       const ParameterSet<double> p = RandomParameters(&random);
       const Vector4<double> lately = RandomVector(&random, size), now = RandomVector(&random, size);
-      const Vector4<Jet> next =
-          NextReceived<Jet>(Jets(p), lately.cast<Jet>(), now.cast<Jet>(), kDt);
-      const double memory = std::exp(-kDt / p[kDriveTime]);
-      const double slope = memory * kDt / (p[kDriveTime] * p[kDriveTime]);
+      const Vector4<DriveJet> next =
+          NextReceived<DriveJet>(Jets(p), lately.cast<DriveJet>(), now.cast<DriveJet>(), kSampleDt);
+      const double memory = std::exp(-kSampleDt / p[kDriveTime]);
+      const double slope = memory * kSampleDt / (p[kDriveTime] * p[kDriveTime]);
       for (int row = 0; row < 4; ++row) {
         EXPECT_NEAR(next[row].a, now[row] + memory * (lately[row] - now[row]), 1e-12 * size);
         EXPECT_NEAR(next[row].v[2], slope * (lately[row] - now[row]), 1e-12 * size);
@@ -65,7 +64,7 @@ TEST(Drive, DiesOutOnceContactEnds) {
   Vector4<double> lately(100.0, -20.0, 50.0, 10.0);
   const double before = DriveForce(p, lately).norm();
   for (int frame = 0; frame < 60; ++frame) {
-    lately = NextReceived<double>(p, lately, Vector4<double>::Zero(), kDt);
+    lately = NextReceived<double>(p, lately, Vector4<double>::Zero(), kSampleDt);
   }
   EXPECT_NEAR(DriveForce(p, lately).norm(), before * std::exp(-1.0 / 0.3), 1e-9);
 }

@@ -12,7 +12,7 @@
 namespace pushid {
 namespace {
 
-ParameterSet<double> Parameters() {
+ParameterSet<double> TouchingParameters() {
   ParameterSet<double> p{};
   p[kMu] = 25.0, p[kKpTheta] = 1650.0, p[kKpPhi] = 1750.0, p[kKdTheta] = 85.0, p[kKdPhi] = 75.0;
   p[kContactStiffness] = 3000.0, p[kContactDamping] = 200.0;
@@ -20,7 +20,7 @@ ParameterSet<double> Parameters() {
   return p;
 }
 
-std::vector<double> RandomWeights(const PairShape& shape, Random* random) {
+std::vector<double> PairWeights(const PairShape& shape, Random* random) {
   std::vector<double> weights(shape.num_weights());
   for (double& w : weights) w = random->Uniform(-1.0, 1.0);
   return weights;
@@ -48,11 +48,11 @@ TEST(LearnedPair, SizesAndNames) {
 TEST(LearnedPair, IsSilentWithoutLoad) {
   Random random(5);
   const PairShape shape{{4}};
-  const std::vector<double> weights = RandomWeights(shape, &random);
+  const std::vector<double> weights = PairWeights(shape, &random);
   for (const double apart : {0.601, 0.7, 5.0}) {
     const Two two(apart);
     PairForce<double> force;
-    AddLearnedPair(shape, weights.data(), two.pair, Parameters(), two.n, two.j, &force);
+    AddLearnedPair(shape, weights.data(), two.pair, TouchingParameters(), two.n, two.j, &force);
     EXPECT_FALSE(force.acts) << apart;
     EXPECT_EQ(force.on_n.norm() + force.on_j.norm(), 0.0) << apart;
   }
@@ -61,7 +61,7 @@ TEST(LearnedPair, IsSilentWithoutLoad) {
   for (const double apart : {0.57, 0.54, 0.45}) {
     const Two two(apart);
     PairForce<double> force;
-    AddLearnedPair(shape, weights.data(), two.pair, Parameters(), two.n, two.j, &force);
+    AddLearnedPair(shape, weights.data(), two.pair, TouchingParameters(), two.n, two.j, &force);
     EXPECT_TRUE(force.acts);
     EXPECT_GT(force.on_n.norm(), last) << apart;
     last = force.on_n.norm();
@@ -71,11 +71,12 @@ TEST(LearnedPair, IsSilentWithoutLoad) {
 TEST(LearnedPair, EachAsksAlone) {
   Random random(6);
   const PairShape shape{{3, 2}};
-  const std::vector<double> weights = RandomWeights(shape, &random);
+  const std::vector<double> weights = PairWeights(shape, &random);
   const Two two(0.45);
   PairForce<double> one, other;
-  AddLearnedPair(shape, weights.data(), two.pair, Parameters(), two.n, two.j, &one);
-  AddLearnedPair(shape, weights.data(), two.pair.Swapped(), Parameters(), two.j, two.n, &other);
+  AddLearnedPair(shape, weights.data(), two.pair, TouchingParameters(), two.n, two.j, &one);
+  AddLearnedPair(shape, weights.data(), two.pair.Swapped(), TouchingParameters(), two.j, two.n,
+                 &other);
   EXPECT_LT((one.on_n - other.on_j).norm(), 1e-12);
   EXPECT_LT((one.on_j - other.on_n).norm(), 1e-12);
   EXPECT_GT((one.on_n + one.on_j).norm(), 1.0) << "not mutual";
@@ -88,7 +89,7 @@ TEST(LearnedPair, NumbersOfPeopleDoNotMatter) {
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = options.interaction.learned = true;
   options.learned =
-      std::make_shared<LearnedTerms>(LearnedTerms{{}, RandomWeights(shape, &random), {}, shape});
+      std::make_shared<LearnedTerms>(LearnedTerms{{}, PairWeights(shape, &random), {}, shape});
   const auto roll = [&options](const std::vector<int>& order) {
     Scene scene;
     for (int who : order) {
@@ -99,7 +100,8 @@ TEST(LearnedPair, NumbersOfPeopleDoNotMatter) {
     scene.pushes = {MakeScenePush(static_cast<int>(pushed), 0, PushKind::kExternal,
                                   std::vector<Vector4<double>>(8, {300.0, 0.0, 150.0, 0.0}))};
     RolloutPath<double> path;
-    EXPECT_TRUE(Rollout(scene, options, {Parameters()}, InitialVelocities(scene), 60, &path).ok);
+    EXPECT_TRUE(
+        Rollout(scene, options, {TouchingParameters()}, InitialVelocities(scene), 60, &path).ok);
     return path;
   };
   const RolloutPath<double> plain = roll({0, 1, 2}), mixed = roll({2, 0, 1});

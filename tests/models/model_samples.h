@@ -9,6 +9,8 @@
 
 namespace pushid {
 
+inline constexpr double kSampleDt = 1.0 / 60.0;  // s
+
 inline Body RandomBody(Random* random) {
   return {random->Uniform(50, 110), random->Uniform(0.77, 1.08), random->Uniform(0.0, 0.12)};
 }

@@ -52,7 +52,7 @@ TEST(NeighbourGrid, EqualsAllPairs) {
   }
 }
 
-ParameterSet<double> Touching() {
+ParameterSet<double> CrowdParameters() {
   ParameterSet<double> p{};
   p[kMu] = 25.0, p[kKpTheta] = p[kKpPhi] = 1700.0, p[kKdTheta] = p[kKdPhi] = 80.0, p[kAx] = -9.0;
   p[kTailGain] = 1.0, p[kTailTime] = 0.2, p[kTailExponent] = 1.0;
@@ -64,7 +64,7 @@ ParameterSet<double> Touching() {
   return p;
 }
 
-Scene Crowd(int people, Random* random) {
+Scene RandomCrowd(int people, Random* random) {
   Scene scene;
   for (int n = 0; n < people; ++n) {
     ScenePerson person;
@@ -85,7 +85,7 @@ TEST(NeighbourGrid, OrderOfPeopleNeverChangesTheRollout) {
   options.interaction.potential = options.interaction.lean = options.interaction.drive = true;
   Random random(2);
   for (int people : {4, 20}) {
-    const Scene scene = Crowd(people, &random);
+    const Scene scene = RandomCrowd(people, &random);
     // Person n of the other scene is person shuffled[n] of this one.
     std::vector<int> shuffled(people);
     std::iota(shuffled.begin(), shuffled.end(), 0);
@@ -97,10 +97,11 @@ TEST(NeighbourGrid, OrderOfPeopleNeverChangesTheRollout) {
 
     RolloutPath<double> path, other_path;
     ASSERT_TRUE(
-        Rollout<double>(scene, options, {Touching()}, InitialVelocities(scene), 60, &path).ok);
-    ASSERT_TRUE(
-        Rollout<double>(other, options, {Touching()}, InitialVelocities(other), 60, &other_path)
+        Rollout<double>(scene, options, {CrowdParameters()}, InitialVelocities(scene), 60, &path)
             .ok);
+    ASSERT_TRUE(Rollout<double>(other, options, {CrowdParameters()}, InitialVelocities(other), 60,
+                                &other_path)
+                    .ok);
     double farthest = 0.0;
     for (int t = 0; t < 60; ++t) {
       for (int n = 0; n < people; ++n) {
@@ -118,14 +119,14 @@ TEST(NeighbourGrid, OrderOfPeopleNeverChangesTheRollout) {
 
 TEST(Contact, MomentumIsPassedOnNotMade) {
   Random random(3);
-  const Scene scene = Crowd(6, &random);
+  const Scene scene = RandomCrowd(6, &random);
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = true;
   RolloutPath<double> path;
   FrameTable<NetForce<double>> trace;
-  ASSERT_TRUE(
-      Rollout<double>(scene, options, {Touching()}, InitialVelocities(scene), 60, &path, &trace)
-          .ok);
+  ASSERT_TRUE(Rollout<double>(scene, options, {CrowdParameters()}, InitialVelocities(scene), 60,
+                              &path, &trace)
+                  .ok);
   for (int t = 0; t < 60; ++t) {
     Vector4<double> sum = Vector4<double>::Zero();
     double largest = 0.0;

@@ -27,7 +27,7 @@ InteractionNetwork RandomNetwork(const std::vector<int>& sizes, Activation activ
   return network;
 }
 
-ParameterSet<double> Parameters() {
+ParameterSet<double> NetworkParameters() {
   ParameterSet<double> p{};
   p[kNeighbourRange] = 0.6;
   return p;
@@ -62,7 +62,7 @@ TEST(NetworkInteraction, JetsCarryTheDerivativesThrough) {
   PendulumState<double> n = RandomState(&random, 0.1), j = RandomState(&random, 0.1);
   j.q[0] += 0.4;
   const auto force_of = [&](const PendulumState<double>& a, const PendulumState<double>& b) {
-    return InteractionBetween(terms, &network, Pair{}, Parameters(), a, b);
+    return InteractionBetween(terms, &network, Pair{}, NetworkParameters(), a, b);
   };
   PendulumState<Jet> a, b;
   for (int i = 0; i < 4; ++i) {
@@ -70,7 +70,7 @@ TEST(NetworkInteraction, JetsCarryTheDerivativesThrough) {
     b.q[i] = Jet(j.q[i], 8 + i), b.qd[i] = Jet(j.qd[i], 12 + i);
   }
   ParameterSet<Jet> p;
-  for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(Parameters()[i]);
+  for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(NetworkParameters()[i]);
   const PairForce<Jet> jets = InteractionBetween(terms, &network, Pair{}, p, a, b);
   ASSERT_TRUE(jets.acts);
   for (int column = 0; column < 16; ++column) {
@@ -99,7 +99,7 @@ TEST(NetworkInteraction, LdpsSizeRunsInARollout) {
   ModelOptions options;
   options.interaction.network = true;
   options.interaction_network = network;
-  ParameterSet<double> p = Parameters();
+  ParameterSet<double> p = NetworkParameters();
   p[kMu] = 40.0, p[kKpTheta] = p[kKpPhi] = 1800.0, p[kKdTheta] = p[kKdPhi] = 80.0;
   p[kTailTime] = p[kDriveTime] = 0.2;
   RolloutPath<double> path;

@@ -49,7 +49,7 @@ Matrix4<double> MeasurementError(const Body& body, const ParameterSet<double>& p
 struct Experiment {
   Scene scene;
   ModelOptions options;
-  ParameterSet<double> p;
+  ParameterSet<double> p{};
   int frames;
 
   int num_inputs() const { return 8 + 4 * (frames - 1); }

@@ -10,9 +10,8 @@
 namespace pushid {
 namespace {
 
-using Jet = ceres::Jet<double, kNumParameters>;
+using ParameterJet = ceres::Jet<double, kNumParameters>;
 using TailJacobian = Eigen::Matrix<double, 4, kNumParameters>;
-constexpr double kDt = 1.0 / 60.0;
 
 ScenePush RandomPush(Random* random, int rows, PushKind kind, int start_frame = 3) {
   std::vector<Vector4<double>> force;
@@ -26,17 +25,17 @@ TEST(PushTail, FollowsItsFormula) {
   ParameterSet<double> p = RandomParameters(&random);
   p[kTailTime] = 0.2;
   ASSERT_EQ(push.EndFrame(), 9);
-  EXPECT_EQ(TailForce(push, p, 8, kDt), Vector4<double>(Vector4<double>::Zero()));
+  EXPECT_EQ(TailForce(push, p, 8, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
   Vector4<double> mean = Vector4<double>::Zero();
   for (const Vector4<double>& row : push.force) mean += row / 6.0;
   const Vector4<double> gain(p[kTailGain], p[kTailGain], p[kTailTorque], p[kTailTorque]);
   // A push of six frames lasts the reference duration, whatever the exponent.
-  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(6 * kDt)), 0.2, 1e-15);
-  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(12 * kDt)), 0.2 * std::pow(2.0, p[kTailExponent]),
-              1e-14);
+  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(6 * kSampleDt)), 0.2, 1e-15);
+  EXPECT_NEAR(TailDecayTime(p, LogTailDuration(12 * kSampleDt)),
+              0.2 * std::pow(2.0, p[kTailExponent]), 1e-14);
   for (int k : {0, 1, 12}) {
-    const Vector4<double> expected = gain.cwiseProduct(mean) * std::exp(-k * kDt / 0.2);
-    ExpectClose(TailForce(push, p, 9 + k, kDt), expected, 1e-13, 1.0);
+    const Vector4<double> expected = gain.cwiseProduct(mean) * std::exp(-k * kSampleDt / 0.2);
+    ExpectClose(TailForce(push, p, 9 + k, kSampleDt), expected, 1e-13, 1.0);
   }
 }
 
@@ -46,9 +45,9 @@ TEST(PushTail, ExternalAndEmptyPushesHaveNone) {
   for (const ScenePush& push :
        {RandomPush(&random, 6, PushKind::kExternal), RandomPush(&random, 0, PushKind::kNet)}) {
     TailJacobian jacobian = TailJacobian::Zero();
-    AddTailJacobian(push, p, 20, kDt, &jacobian);
+    AddTailJacobian(push, p, 20, kSampleDt, &jacobian);
     EXPECT_EQ(jacobian, TailJacobian(TailJacobian::Zero()));
-    EXPECT_EQ(TailForce(push, p, 20, kDt), Vector4<double>(Vector4<double>::Zero()));
+    EXPECT_EQ(TailForce(push, p, 20, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
   }
 }
 
@@ -62,12 +61,13 @@ TEST(PushTail, StaysInProportionToTheWholePush) {
     p[kTailExponent] = exponent;
     double last_share = 10.0;
     for (int frames : {6, 12, 15, 22, 60, 120}) {
-      const Vector4<double> force(kImpulse / (frames * kDt), 0.0, 0.0, 0.0);
+      const Vector4<double> force(kImpulse / (frames * kSampleDt), 0.0, 0.0, 0.0);
       const ScenePush push = MakeScenePush(
           0, 2, PushKind::kNet, std::vector<Vector4<double>>(static_cast<size_t>(frames), force));
       double tail = 0.0;
-      for (int frame = 0; frame < 20000; ++frame) tail += TailForce(push, p, frame, kDt)[0] * kDt;
-      EXPECT_NEAR(WholeImpulse(push, p, kDt), kImpulse + tail, 1e-9 * tail) << frames;
+      for (int frame = 0; frame < 20000; ++frame)
+        tail += TailForce(push, p, frame, kSampleDt)[0] * kSampleDt;
+      EXPECT_NEAR(WholeImpulse(push, p, kSampleDt), kImpulse + tail, 1e-9 * tail) << frames;
       const double share = tail / kImpulse;
       if (exponent == 0.0 || frames > 24) {
         EXPECT_LT(share, last_share) << frames;
@@ -96,15 +96,15 @@ TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
     const ScenePush push = RandomPush(&random, rows, kind);
     ParameterSet<double> p = RandomParameters(&random);
     p[kTailTime] = random.Uniform(0.05, 0.5);
-    ParameterSet<Jet> jets;
-    for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i], i);
+    ParameterSet<ParameterJet> jets;
+    for (int i = 0; i < kNumParameters; ++i) jets[i] = ParameterJet(p[i], i);
     for (int frame : {0, push.EndFrame() - 1, push.EndFrame(), push.EndFrame() + 17}) {
-      const Vector4<Jet> force = TailForce(push, jets, frame, kDt);
+      const Vector4<ParameterJet> force = TailForce(push, jets, frame, kSampleDt);
       TailJacobian expected;
       for (int i = 0; i < 4; ++i) expected.row(i) = force[i].v.transpose();
       // The Jacobian is added to what is there.
       TailJacobian jacobian = TailJacobian::Constant(7.0);
-      AddTailJacobian(push, p, frame, kDt, &jacobian);
+      AddTailJacobian(push, p, frame, kSampleDt, &jacobian);
       ExpectClose((jacobian - TailJacobian::Constant(7.0)).eval(), expected, 1e-12, 7.0);
     }
   }
@@ -157,8 +157,8 @@ TEST(Scene, ScaledPushesScaleTheTailToo) {
   EXPECT_EQ(scene.LastPushEnd(), 12);
   for (int i : {0, 1}) {
     ExpectClose(scaled.pushes[i].force[2], (1.4 * scene.pushes[i].force[2]).eval(), 1e-14);
-    ExpectClose(TailForce(scaled.pushes[i], p, 30, kDt),
-                (1.4 * TailForce(scene.pushes[i], p, 30, kDt)).eval(), 1e-14);
+    ExpectClose(TailForce(scaled.pushes[i], p, 30, kSampleDt),
+                (1.4 * TailForce(scene.pushes[i], p, 30, kSampleDt)).eval(), 1e-14);
   }
 }
 

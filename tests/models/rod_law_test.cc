@@ -66,7 +66,7 @@ TEST(RodLaw, SizesAndNames) {
   EXPECT_EQ(RodName(ldp), "mlp:256-128-256");
 }
 
-ParameterSet<double> StandingParameters() {
+ParameterSet<double> RodParameters() {
   ParameterSet<double> p{};
   p[kMu] = 40.0, p[kKpTheta] = p[kKpPhi] = 1700.0, p[kKdTheta] = p[kKdPhi] = 90.0;
   p[kAx] = p[kAy] = -9.0, p[kTailGain] = 1.0, p[kTailTorque] = 0.3, p[kTailTime] = 0.2;
@@ -93,10 +93,10 @@ ModelOptions WithRod(const RodShape& rod, const NetworkShape& self, double size,
   return options;
 }
 
-RolloutPath<double> Roll(const Scene& scene, const ModelOptions& options, int frames) {
+RolloutPath<double> RollStanding(const Scene& scene, const ModelOptions& options, int frames) {
   RolloutPath<double> path;
-  const RolloutStatus status = Rollout<double>(scene, options, {StandingParameters()},
-                                               InitialVelocities(scene), frames, &path);
+  const RolloutStatus status =
+      Rollout<double>(scene, options, {RodParameters()}, InitialVelocities(scene), frames, &path);
   EXPECT_TRUE(status.ok) << status.quantity;
   return path;
 }
@@ -108,7 +108,7 @@ TEST(RodLaw, IsSilentAtRest) {
   const Scene scene = TwoPeople(0.0);
   for (const RodShape& shape : EveryLaw()) {
     for (const NetworkShape& self : {kNoNetwork, kSeeing}) {
-      const auto path = Roll(scene, WithRod(shape, self, 3.0, &random), 100);
+      const auto path = RollStanding(scene, WithRod(shape, self, 3.0, &random), 100);
       for (int n = 0; n < 2; ++n) {
         EXPECT_LT(std::abs(path.At(99, n).rod), 1e-12) << RodName(shape);
         EXPECT_EQ(path.At(1, n).rod, 0.0) << RodName(shape);
@@ -127,7 +127,8 @@ TEST(RodLaw, ZeroWeightsAreAConstantRodToTheLastBit) {
       network->rod = {};
       ModelOptions constant;
       if (self.any()) constant.learned = network;
-      const auto path = Roll(scene, moving, 120), expected = Roll(scene, constant, 120);
+      const auto path = RollStanding(scene, moving, 120),
+                 expected = RollStanding(scene, constant, 120);
       for (int t = 0; t < 120; ++t) {
         for (int n = 0; n < 2; ++n) {
           ASSERT_EQ(path.At(t, n).q, expected.At(t, n).q) << RodName(shape) << " frame " << t;
@@ -143,8 +144,8 @@ TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
   Random random(74);
   const Scene scene = TwoPeople(40.0);
   for (const RodShape& shape : EveryLaw()) {
-    const auto path = Roll(scene, WithRod(shape, kNoNetwork, 0.6, &random), 40);
-    const auto constant = Roll(scene, {}, 40);
+    const auto path = RollStanding(scene, WithRod(shape, kNoNetwork, 0.6, &random), 40);
+    const auto constant = RollStanding(scene, {}, 40);
     EXPECT_GT(std::abs(path.At(39, 0).rod), 1e-6) << RodName(shape);
     EXPECT_GT((path.At(39, 0).q - constant.At(39, 0).q).norm(), 1e-6) << RodName(shape);
   }
@@ -153,7 +154,7 @@ TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
 TEST(RodLaw, LdpsSizeRunsInARollout) {
   Random random(75);
   const RodShape ldp{RodKind::kMlp, {256, 128, 256}};
-  const auto path = Roll(TwoPeople(40.0), WithRod(ldp, kSeeing, 0.05, &random), 60);
+  const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kSeeing, 0.05, &random), 60);
   EXPECT_NE(path.At(59, 0).rod, 0.0);
 }
 
@@ -162,8 +163,8 @@ TEST(RodLaw, CrowdsHaveRodsToo) {
   Random random(76);
   const Scene scene = TwoPeople(40.0);
   const ModelOptions options = WithRod({RodKind::kMlp, {4}}, kSeeing, 0.8, &random);
-  const auto path = Roll(scene, options, 50);
-  Crowd crowd(scene, options, {StandingParameters()}, 2);
+  const auto path = RollStanding(scene, options, 50);
+  Crowd crowd(scene, options, {RodParameters()}, 2);
   for (int t = 1; t < 50; ++t) {
     ASSERT_TRUE(crowd.Advance().ok);
     for (int n = 0; n < 2; ++n) {
@@ -185,7 +186,7 @@ TEST(RodLaw, AFailureNamesTheRod) {
   const Scene scene = TwoPeople(40.0);
   RolloutPath<double> path;
   const RolloutStatus status =
-      Rollout<double>(scene, options, {StandingParameters()}, InitialVelocities(scene), 200, &path);
+      Rollout<double>(scene, options, {RodParameters()}, InitialVelocities(scene), 200, &path);
   ASSERT_FALSE(status.ok);
   EXPECT_EQ(status.quantity, "rod");
   EXPECT_EQ(status.person, 0);

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "datasets/files/random.h"
+#include "tests/models/model_samples.h"
 
 namespace pushid {
 namespace {
-
-constexpr double kStep = 1.0 / 60.0;
 
 // Sample of four cubics in time, powers by row.
 SmoothedSample Cubic(const Eigen::Matrix4d& c, double s) {
@@ -24,11 +23,11 @@ TEST(SavitzkyGolay, IsExactOnCubics) {
       const Eigen::Matrix4d c =
           Eigen::Matrix4d::NullaryExpr([&](auto, auto) { return random.Uniform(-2, 2); });
       std::vector<Eigen::Vector4d> samples;
-      for (int t = 0; t < frames; ++t) samples.push_back(Cubic(c, t * kStep).value);
-      const auto smoothed = SavitzkyGolay(samples, window, kStep);
+      for (int t = 0; t < frames; ++t) samples.push_back(Cubic(c, t * kSampleDt).value);
+      const auto smoothed = SavitzkyGolay(samples, window, kSampleDt);
       ASSERT_EQ(smoothed.size(), samples.size());
       for (int t = 0; t < frames; ++t) {
-        const SmoothedSample expected = Cubic(c, t * kStep);
+        const SmoothedSample expected = Cubic(c, t * kSampleDt);
         EXPECT_LT((smoothed[t].value - expected.value).norm(), 1e-12) << window << ", " << t;
         EXPECT_LT((smoothed[t].rate - expected.rate).norm(), 1e-10) << window << ", " << t;
         EXPECT_LT((smoothed[t].acceleration - expected.acceleration).norm(), 1e-8)
@@ -47,7 +46,7 @@ TEST(SavitzkyGolay, WiderWindowsLeaveLessNoise) {
   double before = 20.0;  // root sum square of 400 unit normals
   for (int window : {5, 9, 17, 33}) {
     double sum = 0.0;
-    for (const SmoothedSample& s : SavitzkyGolay(samples, window, kStep)) {
+    for (const SmoothedSample& s : SavitzkyGolay(samples, window, kSampleDt)) {
       sum += s.value[0] * s.value[0];
     }
     EXPECT_LT(std::sqrt(sum), before) << window;
@@ -58,7 +57,7 @@ TEST(SavitzkyGolay, WiderWindowsLeaveLessNoise) {
 TEST(SavitzkyGolay, TooShortASignalIsReturnedAsItIs) {
   for (int frames : {0, 1, 4}) {
     const std::vector<Eigen::Vector4d> samples(frames, Eigen::Vector4d(1, 2, 3, 4));
-    const auto smoothed = SavitzkyGolay(samples, 11, kStep);
+    const auto smoothed = SavitzkyGolay(samples, 11, kSampleDt);
     ASSERT_EQ(smoothed.size(), samples.size());
     for (const SmoothedSample& s : smoothed) {
       EXPECT_EQ(s.value, samples[0]);

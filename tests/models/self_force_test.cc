@@ -12,9 +12,8 @@ namespace {
 
 // Derivatives by [q, qd], by the previous (xd, yd), and by the parameters, in that order.
 constexpr int kPrevious = 8, kParameters = 10, kVariables = kParameters + kNumParameters;
-using Jet = ceres::Jet<double, kVariables>;
+using SelfForceJet = ceres::Jet<double, kVariables>;
 using AllDerivatives = Eigen::Matrix<double, 4, kVariables>;
-constexpr double kDt = 1.0 / 60.0;
 
 struct Point {
   ParameterSet<double> p;
@@ -24,16 +23,16 @@ struct Point {
 
 template <typename Force>
 AllDerivatives Automatic(const Point& point, const Force& force) {
-  ParameterSet<Jet> p;
-  PendulumState<Jet> state;
-  Vector4<Jet> previous = point.previous.cast<Jet>();
+  ParameterSet<SelfForceJet> p;
+  PendulumState<SelfForceJet> state;
+  Vector4<SelfForceJet> previous = point.previous.cast<SelfForceJet>();
   for (int i = 0; i < 4; ++i) {
-    state.q[i] = Jet(point.state.q[i], i);
-    state.qd[i] = Jet(point.state.qd[i], 4 + i);
+    state.q[i] = SelfForceJet(point.state.q[i], i);
+    state.qd[i] = SelfForceJet(point.state.qd[i], 4 + i);
   }
-  for (int i = 0; i < 2; ++i) previous[i] = Jet(point.previous[i], kPrevious + i);
-  for (int i = 0; i < kNumParameters; ++i) p[i] = Jet(point.p[i], kParameters + i);
-  const Vector4<Jet> value = force(p, state, previous);
+  for (int i = 0; i < 2; ++i) previous[i] = SelfForceJet(point.previous[i], kPrevious + i);
+  for (int i = 0; i < kNumParameters; ++i) p[i] = SelfForceJet(point.p[i], kParameters + i);
+  const Vector4<SelfForceJet> value = force(p, state, previous);
   AllDerivatives derivatives;
   for (int i = 0; i < 4; ++i) derivatives.row(i) = value[i].v.transpose();
   return derivatives;
@@ -81,7 +80,7 @@ void ExpectCorrectJacobian(double magnitude, uint64_t seed) {
   Random random(seed);
   for (const ModelOptions& options : EveryModel()) {
     const Vector4<double> q0 = 0.1 * RandomState(&random).q;
-    const SelfForce self(options, RandomBody(&random), q0, kDt);
+    const SelfForce self(options, RandomBody(&random), q0, kSampleDt);
     Point point{RandomParameters(&random), RandomState(&random, magnitude),
                 RandomVector(&random, 3.0 * magnitude)};
     if (magnitude < 1.0) point.state.q += q0;  // rest is the initial posture
@@ -130,8 +129,8 @@ TEST(SelfForce, TurnedPhysicsGivesTurnedForces) {
     }
     const Body body = RandomBody(&random);
     const Vector4<double> q0 = 0.1 * RandomState(&random).q;
-    const SelfForce self(options, body, q0, kDt);
-    const SelfForce turned_self(options, body, Turn(q0), kDt);
+    const SelfForce self(options, body, q0, kSampleDt);
+    const SelfForce turned_self(options, body, Turn(q0), kSampleDt);
     const PendulumState<double> state = RandomState(&random);
     const Vector4<double> previous = RandomVector(&random, 3.0);
     const PendulumState<double> turned{Turn(state.q), Turn(state.qd)};
@@ -146,7 +145,7 @@ TEST(SelfForce, ParametersAlongYActOnYAndPhiAlone) {
   ModelOptions options;
   options.friction = FrictionKind::kAnisotropic;
   options.cart_derivative = CartDerivative::kBackward;
-  const SelfForce self(options, RandomBody(&random), Vector4<double>::Zero(), kDt);
+  const SelfForce self(options, RandomBody(&random), Vector4<double>::Zero(), kSampleDt);
   const PendulumState<double> state = RandomState(&random);
   const Vector4<double> previous = RandomVector(&random, 3.0);
   SelfForce::Jacobian jacobian;
@@ -171,11 +170,11 @@ TEST(SelfForce, IsotropicFrictionIgnoresMuY) {
   const Vector4<double> q0 = Vector4<double>::Zero(), qd(0.5, -0.2, 1.0, 1.0);
   ModelOptions options;
   options.friction = FrictionKind::kIsotropic;
-  ExpectClose(SelfForce(options, body, q0, kDt).Friction(p, qd), Vector4<double>(-50, 20, 0, 0),
-              1e-14);
+  ExpectClose(SelfForce(options, body, q0, kSampleDt).Friction(p, qd),
+              Vector4<double>(-50, 20, 0, 0), 1e-14);
   options.friction = FrictionKind::kAnisotropic;
-  ExpectClose(SelfForce(options, body, q0, kDt).Friction(p, qd), Vector4<double>(-50, 8, 0, 0),
-              1e-14);
+  ExpectClose(SelfForce(options, body, q0, kSampleDt).Friction(p, qd),
+              Vector4<double>(-50, 8, 0, 0), 1e-14);
 }
 
 TEST(SelfForce, GainsScaleWithTheBodyAsAsked) {
@@ -199,7 +198,7 @@ TEST(SelfForce, HeldPostureNeedsNoGain) {
   options.posture = Posture::kInitial;
   const Body body = RandomBody(&random);
   const PendulumState<double> start{{0.3, -0.2, 0.1, -0.05}, Vector4<double>::Zero()};
-  const SelfForce self(options, body, start.q, kDt);
+  const SelfForce self(options, body, start.q, kSampleDt);
   const Vector4<double> force =
       self.Total(RandomParameters(&random), start, Vector4<double>(Vector4<double>::Zero()));
   ExpectClose(Acceleration(body, start, force), Vector4<double>(Vector4<double>::Zero()), 1e-13);

@@ -16,7 +16,7 @@ ModelOptions Threshold() {
 }
 
 // Round numbers near those of the published recordings.
-ParameterSet<double> StandingParameters() {
+ParameterSet<double> SteppingParameters() {
   ParameterSet<double> p{};
   p[kMu] = p[kMuY] = 80.0, p[kAx] = 15.0, p[kAy] = 15.0;
   p[kKpTheta] = p[kKpPhi] = 1150.0, p[kKdTheta] = p[kKdPhi] = 330.0;
@@ -55,7 +55,7 @@ RolloutPath<double> PathOf(const Scene& scene, const ParameterSet<double>& p, do
 
 double HipEnd(double impulse, double rate = 60.0) {
   const Scene scene = PushedFor(impulse, rate);
-  const RolloutPath<double> path = PathOf(scene, StandingParameters(), 4.0);
+  const RolloutPath<double> path = PathOf(scene, SteppingParameters(), 4.0);
   const PendulumState<double>& end = path.At(path.num_frames() - 1, 0);
   EXPECT_LT(end.qd.norm(), 0.1);
   return HipPosition(scene.people[0].body, end.q).x();
@@ -85,7 +85,7 @@ TEST(Stance, DoesNotDependOnTheFrameRate) {
 TEST(Stance, FeetHoldWhileTheCapturePointIsOverThem) {
   ForceTrace trace;
   const Scene scene = PushedFor(10.0);
-  const RolloutPath<double> path = PathOf(scene, StandingParameters(), 2.0, &trace);
+  const RolloutPath<double> path = PathOf(scene, SteppingParameters(), 2.0, &trace);
   const double most = 0.9 * 80.0 * kGravity * 0.1 * 1.5;
   for (int t = 0; t < path.num_frames(); ++t) {
     EXPECT_LT(std::abs(path.At(t, 0).q[0]), 0.003) << t;
@@ -96,10 +96,10 @@ TEST(Stance, FeetHoldWhileTheCapturePointIsOverThem) {
 
 // On ice the same push makes the feet slip.
 TEST(Stance, StaticFrictionIsLimited) {
-  ParameterSet<double> ice = StandingParameters();
+  ParameterSet<double> ice = SteppingParameters();
   ice[kStaticFriction] = 0.005;
   const Scene scene = PushedFor(15.0);
-  const RolloutPath<double> firm = PathOf(scene, StandingParameters(), 1.0);
+  const RolloutPath<double> firm = PathOf(scene, SteppingParameters(), 1.0);
   const RolloutPath<double> slips = PathOf(scene, ice, 1.0);
   double moved = 0.0;
   for (int t = 0; t < firm.num_frames(); ++t) {
@@ -112,7 +112,7 @@ TEST(Stance, TheReactionOfTheGroundIsTheMissingMomentum) {
   ForceTrace trace;
   const Scene scene = PushedFor(30.0);
   const Body& body = scene.people[0].body;
-  const RolloutPath<double> path = PathOf(scene, StandingParameters(), 2.0, &trace);
+  const RolloutPath<double> path = PathOf(scene, SteppingParameters(), 2.0, &trace);
   const auto momentum = [&](int t) {
     const PendulumState<double>& s = path.At(t, 0);
     return body.mass * s.qd[0] + body.point_mass() * body.rod_length * std::cos(s.q[2]) * s.qd[2];
@@ -126,7 +126,7 @@ TEST(Stance, TheReactionOfTheGroundIsTheMissingMomentum) {
 
 // The way back from a switch is slower than the switch.
 TEST(Stance, TheStepStateIsLatched) {
-  const StanceParameters<double> p = Stances(StandingParameters());
+  const StanceParameters<double> p = Stances(SteppingParameters());
   double s = 0.0;
   for (int t = 0; t < 18; ++t) s = NextStepState(p, 2.0, s, 1.0 / 60);
   EXPECT_GT(s, 0.85);
@@ -159,7 +159,7 @@ TEST(Stance, CapturePointIsThatOfTheHip) {
 // The torque between legs and trunk does what it says, and its momentum is the cart forces' alone.
 TEST(Stance, FootTorqueMovesTheCartAsAsked) {
   Random random(6);
-  ParameterSet<double> parameters = StandingParameters();
+  ParameterSet<double> parameters = SteppingParameters();
   parameters[kStepGain] = 1.3;
   const StanceParameters<double> p = Stances(parameters);
   for (int trial = 0; trial < 50; ++trial) {
@@ -193,12 +193,12 @@ TEST(Stance, ANetPushIsTheWholeForce) {
   Scene scene = PushedFor(30.0);
   scene.pushes[0].kind = PushKind::kNet;
   ForceTrace trace;
-  PathOf(scene, StandingParameters(), 1.5, &trace);
+  PathOf(scene, SteppingParameters(), 1.5, &trace);
   for (int t = 0; t < scene.pushes[0].EndFrame(); ++t) {
     EXPECT_EQ(trace.At(t, 0).Total(), scene.pushes[0].force[t]);
   }
   scene.pushes[0].kind = PushKind::kNetWithoutFriction;
-  const RolloutPath<double> other = PathOf(scene, StandingParameters(), 1.5, &trace);
+  const RolloutPath<double> other = PathOf(scene, SteppingParameters(), 1.5, &trace);
   for (int t = 1; t < scene.pushes[0].EndFrame(); ++t) {
     const Vector4<double> rest = trace.At(t, 0).Total() - scene.pushes[0].force[t];
     const Vector4<double>& qd = other.At(t, 0).qd;
@@ -208,7 +208,7 @@ TEST(Stance, ANetPushIsTheWholeForce) {
 
 // At rest, at the edges and far out: finite everywhere.
 TEST(Stance, IsFiniteAtTheEdges) {
-  const ParameterSet<double> p = StandingParameters();
+  const ParameterSet<double> p = SteppingParameters();
   const Body body{80.0, 0.95, 0.1};
   const SelfForce self(Threshold(), body, Vector4<double>::Zero(), 1.0 / 60);
   for (double offset : {0.0, 1e-300, 1e-12, 0.1, -0.06, 1.0}) {

@@ -72,7 +72,7 @@ def test_options_are_those_of_the_flags(made):
         pushid.fit(made[0], fricton="anisotropic")
     with pytest.raises(pushid.UsageError, match="preset"):
         pushid.fit(made[0], preset="nonsense")
-    with pytest.raises(pushid.UsageError, match="no parameter"):
+    with pytest.raises(pushid.UsageError, match="not a parameter"):
         pushid.fit(made[0], fix={"nu": 3})
     held = pushid.fit(made[0], fix={"mu": np.float64(25)}, prior={"Kp_theta": (1500, np.float32(300))})
     assert held["mu"].value == 25.0 and held["mu"].fixed
@@ -96,7 +96,7 @@ def test_arrays_of_any_layout(made, order, dtype):
 @pytest.mark.parametrize("changed, says", [
     (dict(hip=np.zeros((90, 2))), r"hip has the shape \(90, 2\)"),
     (dict(hip=np.zeros((80, 3))), "frames"),
-    (dict(hip=np.full((90, 3), np.nan)), "not seen"),
+    (dict(hip=np.full((90, 3), np.nan)), "missing"),
     (dict(hip=np.full((90, 3), "a")), "must hold numbers"),
     (dict(mass=-3.0), "mass"),
     (dict(mass=[70.0, 80.0]), "as many"),

@@ -10,7 +10,7 @@ namespace {
 
 const Body kBody{72.0, 0.93, 0.08};
 
-PendulumState<double> RandomState(double magnitude, Random* random) {
+PendulumState<double> UniformState(double magnitude, Random* random) {
   PendulumState<double> state;
   for (int i = 0; i < 4; ++i) {
     state.q[i] = random->Uniform(-magnitude, magnitude);
@@ -26,12 +26,7 @@ MeasuredFrame Measure(const PendulumState<double>& state) {
 void ExpectTwins(const PendulumState<double>& state, const MeasuredFrame& measured,
                  const ResidualSigmas& sigmas) {
   using Jet = ceres::Jet<double, 8>;
-  PendulumState<Jet> jets;
-  for (int i = 0; i < 4; ++i) {
-    jets.q[i] = Jet(state.q[i], i);
-    jets.qd[i] = Jet(state.qd[i], 4 + i);
-  }
-  const FrameVector<Jet> expected = FrameResidual(kBody, jets, measured, sigmas);
+  const FrameVector<Jet> expected = FrameResidual(kBody, JetState<Jet>(state, 0), measured, sigmas);
   FrameJacobian<8> jacobian;
   jacobian.setConstant(std::nan(""));
   const FrameVector<double> r =
@@ -60,10 +55,10 @@ TEST_P(FrameTwins, AgreeInThreeRegimes) {
   for (double magnitude : {1e-8, 1.2}) {
     SCOPED_TRACE(magnitude);
     for (int i = 0; i < 50; ++i) {
-      MeasuredFrame measured = Measure(RandomState(magnitude, &random));
+      MeasuredFrame measured = Measure(UniformState(magnitude, &random));
       measured.weight = i % 3 == 0 ? 1.0 : random.Uniform(0.0, 1.0);
       measured.hip += Vector3<double>(0.02, -0.01, 0.03) * magnitude;
-      ExpectTwins(RandomState(magnitude, &random), measured, sigmas);
+      ExpectTwins(UniformState(magnitude, &random), measured, sigmas);
     }
   }
 }
@@ -75,9 +70,9 @@ TEST_P(FrameTwins, OfLdpsLossAgreeToo) {
   for (double magnitude : {0.0, 1e-8, 1.2}) {
     SCOPED_TRACE(magnitude);
     for (int i = 0; i < 20; ++i) {
-      MeasuredFrame measured = Measure(RandomState(magnitude, &random));
+      MeasuredFrame measured = Measure(UniformState(magnitude, &random));
       measured.weight = random.Uniform(0.0, 1.0);
-      ExpectTwins(RandomState(magnitude, &random), measured, sigmas);
+      ExpectTwins(UniformState(magnitude, &random), measured, sigmas);
     }
   }
 }
@@ -115,8 +110,8 @@ TEST(FrameResidual, RobustCostIsPseudoHuber) {
     for (double magnitude : {1e-8, 0.1, 1.2}) {
       ResidualSigmas sigmas;
       sigmas.robust = d;
-      const PendulumState<double> state = RandomState(magnitude, &random);
-      const MeasuredFrame measured = Measure(RandomState(magnitude, &random));
+      const PendulumState<double> state = UniformState(magnitude, &random);
+      const MeasuredFrame measured = Measure(UniformState(magnitude, &random));
       const double s =
           RawFrameResidual(kBody, state, Angles<double>(state.q), measured, sigmas).squaredNorm();
       const double cost = 0.5 * FrameResidual(kBody, state, measured, sigmas).squaredNorm();
@@ -132,8 +127,8 @@ TEST(FrameResidual, WithoutRobustScaleItIsPlain) {
   Random random(23);
   ResidualSigmas sigmas;
   sigmas.robust = 0.0;
-  const PendulumState<double> state = RandomState(1.0, &random);
-  const MeasuredFrame measured = Measure(RandomState(1.0, &random));
+  const PendulumState<double> state = UniformState(1.0, &random);
+  const MeasuredFrame measured = Measure(UniformState(1.0, &random));
   EXPECT_EQ(FrameResidual(kBody, state, measured, sigmas),
             RawFrameResidual(kBody, state, Angles<double>(state.q), measured, sigmas));
   sigmas.robust = 1e9;  // so wide a scale is plain least squares too
@@ -149,8 +144,8 @@ TEST(FrameResidual, WeightOfTheFrame) {
   for (double robust : {0.0, 0.5}) {
     ResidualSigmas sigmas;
     sigmas.robust = robust;
-    const PendulumState<double> state = RandomState(1.0, &random);
-    MeasuredFrame measured = Measure(RandomState(1.0, &random));
+    const PendulumState<double> state = UniformState(1.0, &random);
+    MeasuredFrame measured = Measure(UniformState(1.0, &random));
     const FrameVector<double> full = FrameResidual(kBody, state, measured, sigmas);
     measured.weight = 0.25;
     EXPECT_LT((FrameResidual(kBody, state, measured, sigmas) - 0.25 * full).norm(), 1e-15);

@@ -67,7 +67,7 @@ inline void ExpectFixedWeightsAreTheModels(const ModelOptions& options, Random* 
     if (map.num_weights > 0) blocks.push_back(options.learned->weights);
     return EvaluateCost(RolloutResidual(problem), blocks, std::vector<bool>(blocks.size(), true));
   };
-  const Evaluation with = evaluate(fitted), without = evaluate(fixed);
+  const CostEvaluation with = evaluate(fitted), without = evaluate(fixed);
   EXPECT_EQ(with.residuals, without.residuals);
   // Products of other sizes round otherwise.
   EXPECT_TRUE(with.jacobians[0].isApprox(without.jacobians[0], 1e-12));

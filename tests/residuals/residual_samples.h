@@ -99,6 +99,19 @@ inline ParameterBlocks RandomBlocks(const ParameterMap& map, const BlockLayout& 
   return blocks;
 }
 
+inline constexpr int kPairStates = 16;  // numbers of the states of two people
+
+// Its numbers vary by the columns from `first` on.
+template <typename Jet>
+PendulumState<Jet> JetState(const PendulumState<double>& state, int first) {
+  PendulumState<Jet> jets;
+  for (int i = 0; i < 4; ++i) {
+    jets.q[i] = Jet(state.q[i], first + i);
+    jets.qd[i] = Jet(state.qd[i], first + 4 + i);
+  }
+  return jets;
+}
+
 // People in a row, leaning a little when `lean` (rad) is not zero.
 inline Scene SceneOfPeople(int num_people, double lean, Random* random) {
   Scene scene;

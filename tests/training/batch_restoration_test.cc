@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -75,12 +76,12 @@ TEST_F(BatchRestorationTest, WrongFlagsAreToldBeforeAnyJob) {
       {"\"--kind=bogus\"", "--kind is 'bogus'"},
       {"\"--effort=0\"", "--effort must lie above 0"},
       {"\"--postprocess=glue\"", "--postprocess names 'glue'"},
-      {"\"--observed=12\"", "--observed goes with --crossvalidate"},
+      {"\"--observed=12\"", "--observed needs --crossvalidate"},
       {"\"--kind=mrt\"", "--kind=mrt is a peer"},
-      {"\"--crossvalidate=4\"", "--crossvalidate is set by the batch itself: say folds in [jobs]"},
-      {"\"--out=here\"", "--out would be written by every job"},
-      {"\"window\"", "'window' is no flag"},
-      {"3", "restoration must be a list of texts"},
+      {"\"--crossvalidate=4\"", "--crossvalidate is set by the batch itself: set folds in [jobs]"},
+      {"\"--out=here\"", "--out would be overwritten by every job"},
+      {"\"window\"", "'window' is not a flag"},
+      {"3", "restoration must be a list of strings"},
   };
   for (const auto& [flag, says] : wrong) {
     SCOPED_TRACE(flag);
@@ -100,7 +101,7 @@ TEST_F(BatchRestorationTest, AProgramThatIsNotBuiltIsNamed) {
     fs::copy(fs::path(PUSHID_BIN_DIR) / program, bin / program);
   }
   const AppRun run = RunProgram((bin / "pushid-batch").string(), {Plan(kBodies), "--list"});
-  EXPECT_TRUE(Refused(run, {"plan.toml:", "built where LibTorch is found"}));
+  EXPECT_TRUE(Refused(run, {"plan.toml:", "only built with LibTorch"}));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Diffusion by pushid-train-generator and pushid-generate, as a user runs them.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -91,12 +92,12 @@ TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
   EXPECT_EQ(choice["blend"], candidates[0]["blend"]);
   const AppRun chosen = Generate({"--json_out=" + Path("e.json")});
   ASSERT_EQ(chosen.exit_code, 0) << chosen.err;
-  EXPECT_TRUE(Contains(chosen.out, "as cross-validation chose: "));
+  EXPECT_TRUE(Contains(chosen.out, "selected by cross-validation: "));
   // Hardly trained, diffusion loses to the synthetic people's own physics.
   const AppRun asked = Generate(
       {"--physics=" + Path("g/physics.json"), "--blend=0", "--json_out=" + Path("a.json")});
   ASSERT_EQ(asked.exit_code, 0) << asked.err;
-  EXPECT_FALSE(Contains(asked.out, "as cross-validation chose"));
+  EXPECT_FALSE(Contains(asked.out, "selected by cross-validation"));
   EXPECT_LT(Json(Path("e.json"))["mean"]["MPJPE_m"], Json(Path("a.json"))["mean"]["MPJPE_m"]);
 }
 
@@ -112,21 +113,21 @@ TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
 
 TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=best", "--crossvalidate=2"}),
-                      {"takes its own folds"}));
+                      {"makes its own folds"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=good"}), {"--accuracy is 'good'"}));
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--push_spread=1"}),
-                      {"--push_spread goes with --samples"}));
+  EXPECT_TRUE(
+      Refused(Train({"--out=" + Path("g"), "--push_spread=1"}), {"--push_spread needs --samples"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--dataset=cmu"}), {"give --dataset=pushes"}));
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--jitter=1"}),
-                      {"--jitter goes with --kind=particles"}));
+  EXPECT_TRUE(
+      Refused(Train({"--out=" + Path("g"), "--jitter=1"}), {"--jitter needs --kind=particles"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--pooling=all"}), {"--pooling is 'all'"}));
   EXPECT_TRUE(
-      Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend goes with --crossvalidate"}));
-  EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"give --physics"}));
+      Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend needs --crossvalidate"}));
+  EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"need --physics"}));
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}), {"--accuracy=best"}));
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
-  EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"give --physics"}));
+  EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"needs --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--nomirror"}), {"--mirror", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-std::vector<ObservedGroup> Groups() {
+std::vector<ObservedGroup> PushedGroups() {
   std::vector<ObservedGroup> groups;
   for (int i = 0; i < 6; ++i) {
     groups.push_back(PushedGroup(2 + i % 2, 36 + i, 2.0f + static_cast<float>(i)));
@@ -18,7 +18,7 @@ std::vector<ObservedGroup> Groups() {
   return groups;
 }
 
-DiffusionTrainingOptions Quick(int steps) {
+DiffusionTrainingOptions QuickDiffusion(int steps) {
   DiffusionTrainingOptions options;
   options.steps = steps;
   options.groups = 2;
@@ -27,7 +27,7 @@ DiffusionTrainingOptions Quick(int steps) {
   return options;
 }
 
-void ExpectSame(const DiffusionNetwork& a, const DiffusionNetwork& b) {
+void ExpectSameTensors(const DiffusionNetwork& a, const DiffusionNetwork& b) {
   TensorList of_a, of_b;
   AddTensors("n", a, &of_a);
   AddTensors("n", b, &of_b);
@@ -38,7 +38,7 @@ void ExpectSame(const DiffusionNetwork& a, const DiffusionNetwork& b) {
 }
 
 TEST(DiffusionTrainerTest, Learns) {
-  DiffusionTrainer trainer(Groups(), Groups(), Quick(100));
+  DiffusionTrainer trainer(PushedGroups(), PushedGroups(), QuickDiffusion(100));
   const TrainingPoint first = trainer.RunRound();
   TrainingPoint last = first;
   while (!trainer.Done()) last = trainer.RunRound();
@@ -47,30 +47,30 @@ TEST(DiffusionTrainerTest, Learns) {
 }
 
 TEST(DiffusionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
-  const DiffusionTrainingOptions options = Quick(2 * kDiffusionRound);
+  const DiffusionTrainingOptions options = QuickDiffusion(2 * kDiffusionRound);
   const auto trained = [&options] {
-    DiffusionTrainer trainer(Groups(), Groups(), options);
+    DiffusionTrainer trainer(PushedGroups(), PushedGroups(), options);
     while (!trainer.Done()) trainer.RunRound();
     return trainer.Network();
   };
   const DiffusionNetwork one = trained();
-  ExpectSame(one, trained());
-  DiffusionTrainer broken(Groups(), Groups(), options);
+  ExpectSameTensors(one, trained());
+  DiffusionTrainer broken(PushedGroups(), PushedGroups(), options);
   broken.RunRound();
   const std::string state = broken.State();
-  DiffusionTrainer resumed(Groups(), Groups(), options);
+  DiffusionTrainer resumed(PushedGroups(), PushedGroups(), options);
   ASSERT_TRUE(resumed.Resume(state));
   while (!resumed.Done()) resumed.RunRound();
-  ExpectSame(one, resumed.Network());
+  ExpectSameTensors(one, resumed.Network());
   EXPECT_FALSE(resumed.Resume("no state"));
 }
 
 TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
   for (const auto& row : Names(SocialPooling{})) {
     for (const bool pendulum : {false, true}) {
-      DiffusionTrainingOptions options = Quick(10);
+      DiffusionTrainingOptions options = QuickDiffusion(10);
       options.structure = {row.value, pendulum};
-      std::vector<ObservedGroup> groups = Groups();
+      std::vector<ObservedGroup> groups = PushedGroups();
       for (ObservedGroup& group : groups) {
         for (ObservedMotion& person : group) {
           if (pendulum) person.pendulum = 0.9f * person.frames.topRows(3);

@@ -2,6 +2,7 @@
 // is said of pushes that a generator has not learned from.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
                              "--joints_out=" + Path("j.csv"), "--bodies_out=" + Path("b.bvh")});
   const AppRun run = Simulate(flags);
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(Contains(run.err, "of kind net and is given some of kind external"));
+  EXPECT_TRUE(Contains(run.err, "of kind net and is applied to pushes of kind external"));
   EXPECT_TRUE(Contains(run.out, "5 people in a diamond"));
   const std::string page = ReadText(Path("p.html"));
   EXPECT_TRUE(Contains(page, "bodies by diffusion"));
@@ -66,9 +67,9 @@ TEST_F(FormationGeneratorTest, PushesOfAnotherKindAreToldOf) {
     for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
   }));
   EXPECT_EQ(other.exit_code, 0) << other.err;
-  const size_t told = other.err.find("is given some of kind external");
+  const size_t told = other.err.find("is applied to pushes of kind external");
   EXPECT_NE(told, std::string::npos) << other.err;
-  EXPECT_EQ(other.err.find("is given", told + 20), std::string::npos) << other.err;
+  EXPECT_EQ(other.err.find("is applied", told + 20), std::string::npos) << other.err;
 }
 
 TEST_F(FormationGeneratorTest, MistakesAreNamed) {
@@ -76,9 +77,8 @@ TEST_F(FormationGeneratorTest, MistakesAreNamed) {
   ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
   ASSERT_EQ(Train({"--noise_steps=5", "--out=" + Path("particles")}).exit_code, 0);
   EXPECT_TRUE(Refused(Simulate({"--restoration=rigid"}), {"--restoration and --generator"}));
-  EXPECT_TRUE(Refused(Simulate({"--postprocess=none"}), {"--postprocess goes with --restoration"}));
-  EXPECT_TRUE(
-      Refused(Simulate({"--generator=", "--blend=0.5"}), {"--blend goes with --generator"}));
+  EXPECT_TRUE(Refused(Simulate({"--postprocess=none"}), {"--postprocess needs --restoration"}));
+  EXPECT_TRUE(Refused(Simulate({"--generator=", "--blend=0.5"}), {"--blend needs --generator"}));
   EXPECT_TRUE(Refused(Simulate({"--generator=", "--joints_out=" + Path("p.csv")}),
                       {"--joints_out needs bodies", "--restoration", "--generator"}));
   EXPECT_TRUE(Refused(Simulate({"--blend=1.5"}), {"--blend is 1.5"}));

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -135,7 +136,7 @@ TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
   EXPECT_TRUE(Contains(far.err, "raise --samples or --target_distance"));
   const AppRun least = Generate({"--target_window=3", "--json_out=" + Path("least.json")});
   ASSERT_EQ(least.exit_code, 0) << least.err;
-  EXPECT_TRUE(Contains(least.out, "the most probable path to the end of window 3"));
+  EXPECT_TRUE(Contains(least.out, "most probable path to the end of window 3"));
   EXPECT_GT(Json("least.json")["path"]["iterations"], 0);
 }
 
@@ -144,16 +145,16 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train("g", {"--cell=rnn"}), {"--cell is 'rnn'", "gru, lstm"}));
   EXPECT_TRUE(Refused(Train("g", {"--kind=waves"}), {"--kind is 'waves'"}));
   EXPECT_TRUE(
-      Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate takes folds of pushes"}));
-  EXPECT_TRUE(Refused(Train("g", {"--observed=1"}), {"--observed goes with --dataset=pushes"}));
+      Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate makes folds of pushes"}));
+  EXPECT_TRUE(Refused(Train("g", {"--observed=1"}), {"--observed needs --dataset=pushes"}));
   EXPECT_TRUE(Refused(Train("g", {"--jitter=-1"}), {"--jitter is -1"}));
   WriteText("clips/train/sway/sway_2.txt", "1,2\n");
   EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
-  EXPECT_TRUE(
-      Refused(Generate({"--target_window=3", "--target_distance=1"}), {"chooses among --samples"}));
-  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id goes with --dataset=pushes"}));
+  EXPECT_TRUE(Refused(Generate({"--target_window=3", "--target_distance=1"}),
+                      {"--target_distance needs --samples"}));
+  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id needs --dataset=pushes"}));
   EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh, .gltf, .glb or .csv"}));
 }
 
@@ -163,7 +164,7 @@ TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
   const std::string used = "\"used\": [1, 2, 3, 4]";
   WriteText("clips/skeleton.json",
             skeleton.replace(skeleton.find(used), used.size(), "\"used\": [1, 3, 4]"));
-  EXPECT_TRUE(Refused(Generate({}), {"3 particles", "the 4 that the generator knows"}));
+  EXPECT_TRUE(Refused(Generate({}), {"3 particles", "the 4 particles of the generator"}));
 }
 
 class PushGeneratorAppTest : public AppTest {
@@ -212,7 +213,7 @@ TEST_F(PushGeneratorAppTest, MistakesAreNamed) {
                       {"forecasts pushes; give --dataset=pushes"}));
   EXPECT_TRUE(Refused(
       RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(), "--protocol=test"}),
-      {"--protocol goes with --dataset=cmu"}));
+      {"--protocol needs --dataset=cmu"}));
   EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(),
                                                  "--page_out=" + Path("p.html")}),
                       {"--id is missing"}));

@@ -9,11 +9,11 @@
 namespace pushid {
 namespace {
 
-std::vector<MrtGroup> Groups() {
+std::vector<MrtGroup> WalkingGroups() {
   return {{WalkingGroup(2, 60), 1.0}, {WalkingGroup(3, 50), 0.5}, {WalkingGroup(1, 45), 1.0}};
 }
 
-MrtOptions Quick() {
+MrtOptions QuickMrt() {
   MrtOptions options;
   options.epochs = 4;
   options.windows = 24;
@@ -22,16 +22,16 @@ MrtOptions Quick() {
 }
 
 TEST(MrtTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
-  MrtOptions options = Quick();
+  MrtOptions options = QuickMrt();
   options.epochs = 12;
-  MrtTrainer trainer(Groups(), Groups(), options);
+  MrtTrainer trainer(WalkingGroups(), WalkingGroups(), options);
   const TrainingPoint first = trainer.RunEpoch();
   double best = first.validation_loss;
   while (!trainer.Done()) best = std::min(best, trainer.RunEpoch().validation_loss);
   EXPECT_LT(best, 0.7 * first.validation_loss);
   const MrtPeer peer(trainer.Best());
   double error = 0.0;
-  for (const MrtGroup& group : Groups()) {
+  for (const MrtGroup& group : WalkingGroups()) {
     const int frames = static_cast<int>(group.people[0].size());
     const std::vector<BodyMotion> said = peer.Continue(group.people, frames);
     double of_group = 0.0;
@@ -49,10 +49,10 @@ TEST(MrtTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
 
 TEST(MrtTrainerTest, TheNetworkWithoutLibTorchIsTheTrainedOne) {
   for (const MrtSize size : {MrtSize::kSmall, MrtSize::kPublished}) {
-    MrtOptions options = Quick();
+    MrtOptions options = QuickMrt();
     options.size = size;
     options.windows = 4;
-    MrtTrainer trainer(Groups(), Groups(), options);
+    MrtTrainer trainer(WalkingGroups(), WalkingGroups(), options);
     trainer.RunEpoch();
     const MrtView view = MrtViewOf(WalkingGroup(3, 20), 19, 1);
     const Eigen::MatrixXf ways = PredictedWays(trainer.Best(), view);
@@ -63,9 +63,9 @@ TEST(MrtTrainerTest, TheNetworkWithoutLibTorchIsTheTrainedOne) {
 
 TEST(MrtTrainerTest, ParametersAreAsManyAsTheirMatricesHave) {
   for (const MrtSize size : {MrtSize::kSmall, MrtSize::kPublished}) {
-    MrtOptions options = Quick();
+    MrtOptions options = QuickMrt();
     options.size = size;
-    const MrtTrainer trainer(Groups(), Groups(), options);
+    const MrtTrainer trainer(WalkingGroups(), WalkingGroups(), options);
     TensorList tensors;
     AddTensors(trainer.Best(), &tensors);
     Eigen::Index count = 0;
@@ -84,15 +84,15 @@ TEST(MrtTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
     AddTensors(trainer->Best(), &tensors);
     return tensors;
   };
-  MrtTrainer whole(Groups(), Groups(), Quick());
+  MrtTrainer whole(WalkingGroups(), WalkingGroups(), QuickMrt());
   const TensorList one = trained(&whole);
-  MrtTrainer broken(Groups(), Groups(), Quick());
+  MrtTrainer broken(WalkingGroups(), WalkingGroups(), QuickMrt());
   for (int i = 0; i < 2; ++i) broken.RunEpoch();
   const std::string state = broken.State();  // before another trainer sows the draws
-  MrtTrainer resumed(Groups(), Groups(), Quick());
+  MrtTrainer resumed(WalkingGroups(), WalkingGroups(), QuickMrt());
   ASSERT_TRUE(resumed.Resume(state));
   const TensorList other = trained(&resumed);
-  MrtTrainer repeated(Groups(), Groups(), Quick());
+  MrtTrainer repeated(WalkingGroups(), WalkingGroups(), QuickMrt());
   const TensorList same = trained(&repeated);
   for (size_t i = 0; i < one.size(); ++i) {
     EXPECT_TRUE(one[i].values == other[i].values) << one[i].name;
@@ -107,13 +107,13 @@ TEST(MrtTrainerTest, TakesTheGroupsThatAreLongEnough) {
   EXPECT_FALSE(HasWindow({WalkingGroup(1, 39)}));
   EXPECT_TRUE(HasFrameAfter({WalkingGroup(1, 21)}));
   EXPECT_FALSE(HasFrameAfter({WalkingGroup(1, 20)}));
-  std::vector<MrtGroup> groups = Groups(), held = Groups();
+  std::vector<MrtGroup> groups = WalkingGroups(), held = WalkingGroups();
   groups.push_back({WalkingGroup(2, 30)}), held.push_back({WalkingGroup(2, 20)});
   const auto first_loss = [](const std::vector<MrtGroup>& training,
                              const std::vector<MrtGroup>& judged) {
-    return MrtTrainer(training, judged, Quick()).RunEpoch().validation_loss;
+    return MrtTrainer(training, judged, QuickMrt()).RunEpoch().validation_loss;
   };
-  EXPECT_EQ(first_loss(groups, held), first_loss(Groups(), Groups()));
+  EXPECT_EQ(first_loss(groups, held), first_loss(WalkingGroups(), WalkingGroups()));
 }
 
 }  // namespace

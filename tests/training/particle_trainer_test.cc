@@ -17,7 +17,7 @@ std::vector<LearntParticles> Motions(int count, float phase) {
   return motions;
 }
 
-ParticleTrainingOptions Quick() {
+ParticleTrainingOptions QuickParticles() {
   ParticleTrainingOptions options;
   options.observed = 12;
   options.predicted = 8;
@@ -45,7 +45,7 @@ void ExpectSame(const ParticleNetwork& a, const ParticleNetwork& b) {
 }
 
 TEST(ParticleTrainerTest, LearnsBeyondConstantVelocity) {
-  ParticleTrainingOptions options = Quick();
+  ParticleTrainingOptions options = QuickParticles();
   options.steps = 300;
   options.noise_steps = 0;
   ParticleTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
@@ -58,7 +58,7 @@ TEST(ParticleTrainerTest, LearnsBeyondConstantVelocity) {
 }
 
 TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
-  ParticleTrainingOptions options = Quick();
+  ParticleTrainingOptions options = QuickParticles();
   options.critic = 0.01;  // its state counts too
   const ParticleNetwork one = Trained(options);
   ExpectSame(one, Trained(options));
@@ -83,7 +83,7 @@ TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
   structures[4].particles = false;
   structures[5].corrected_frames = 5;  // of eight: later ones keep the last correction
   for (size_t i = 0; i < structures.size(); ++i) {
-    ParticleTrainingOptions options = Quick();
+    ParticleTrainingOptions options = QuickParticles();
     options.structure = structures[i];
     options.steps = 30;
     options.noise_steps = 0;
@@ -111,7 +111,7 @@ TEST(ParticleTrainerTest, LearnsFromWhatActsOnPeople) {
     for (int t = 4; t < 12; ++t) pushed.motion.col(t).array() += 0.01f * push * (t - 3);
     motions.push_back(pushed);
   }
-  ParticleTrainingOptions options = Quick();
+  ParticleTrainingOptions options = QuickParticles();
   options.structure.controls = 1;
   options.mirrored = 0.0;
   options.mirrored_controls = {1.0f};
@@ -142,7 +142,7 @@ TEST(ParticleTrainerTest, TheLikelihoodFindsTheNoiseAndTheSquaredErrorLosesIt) {
     }
     motions.push_back(walk);
   }
-  ParticleTrainingOptions options = Quick();
+  ParticleTrainingOptions options = QuickParticles();
   options.noise_steps = 150;
   const auto mean_log_noise = [&](NoiseLoss loss) {
     options.noise_loss = loss;
@@ -170,7 +170,7 @@ TEST(ParticleTrainerTest, FindsTheCorrelationsOfTheNoise) {
     }
     motions.push_back(walk);
   }
-  ParticleTrainer trainer(FourParticles(), motions, {}, Quick());
+  ParticleTrainer trainer(FourParticles(), motions, {}, QuickParticles());
   while (!trainer.Done()) trainer.RunRound();
   const Eigen::MatrixXf mix = trainer.Network().noise_mix;
   EXPECT_TRUE(mix.isLowerTriangular());
@@ -198,7 +198,7 @@ TEST(ParticleTrainerTest, BonesCanBeLearntToo) {
     }
     motions.push_back(swing);
   }
-  ParticleTrainingOptions options = Quick();
+  ParticleTrainingOptions options = QuickParticles();
   options.steps = 100;
   options.noise_steps = 0;
   options.mirrored = 0.0;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -222,7 +223,7 @@ TEST_F(RestorationAppTest, CrossValidatesOnTheFoldsOfGenerators) {
   EXPECT_DOUBLE_EQ(Json(Path("g.json"))["baselines"]["rigid"]["mean"]["hipADE_m"], interleaved);
   EXPECT_TRUE(Refused(RunApp("pushid-train-restoration",
                              {Recordings(), model_, "--scheme=subject", "--out=" + Path("o")}),
-                      {"--scheme goes with --crossvalidate"}));
+                      {"--scheme needs --crossvalidate"}));
 }
 
 // Shown first frames, bodies err less.
@@ -246,7 +247,7 @@ TEST_F(RestorationAppTest, CrossValidatesAfterFramesThatWereSeen) {
   EXPECT_LT(error("--observed=20"), error("--seed=1"));
   EXPECT_TRUE(Refused(RunApp("pushid-train-restoration",
                              {Recordings(), model_, "--observed=20", "--out=" + Path("o")}),
-                      {"--observed goes with --crossvalidate"}));
+                      {"--observed needs --crossvalidate"}));
 }
 
 // Peers know no pendulum, and are compared over all frames and over those that they are not given.

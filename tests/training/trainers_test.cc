@@ -22,7 +22,7 @@ RegressionSamples Samples(int count, uint64_t seed) {
   return samples;
 }
 
-RegressionOptions Quick() {
+RegressionOptions QuickRegression() {
   RegressionOptions options;
   options.hidden = 32;
   options.dropout = 0.1;
@@ -33,14 +33,14 @@ RegressionOptions Quick() {
 }
 
 DenseNetwork TrainedInOneGo() {
-  RegressionTrainer trainer(Samples(1000, 1), Samples(200, 2), Quick());
+  RegressionTrainer trainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
   while (!trainer.Done()) trainer.RunEpoch();
   return trainer.Best();
 }
 
 TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
   const RegressionSamples held = Samples(200, 2);
-  RegressionTrainer trainer(Samples(1000, 1), held, Quick());
+  RegressionTrainer trainer(Samples(1000, 1), held, QuickRegression());
   const TrainingPoint first = trainer.RunEpoch();
   double best = first.validation_loss;
   while (!trainer.Done()) best = std::min(best, trainer.RunEpoch().validation_loss);
@@ -51,10 +51,10 @@ TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
 
 TEST(RegressionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const DenseNetwork one = TrainedInOneGo(), again = TrainedInOneGo();
-  RegressionTrainer broken(Samples(1000, 1), Samples(200, 2), Quick());
+  RegressionTrainer broken(Samples(1000, 1), Samples(200, 2), QuickRegression());
   for (int i = 0; i < 5; ++i) broken.RunEpoch();
   const std::string state = broken.State();
-  RegressionTrainer resumed(Samples(1000, 1), Samples(200, 2), Quick());
+  RegressionTrainer resumed(Samples(1000, 1), Samples(200, 2), QuickRegression());
   ASSERT_TRUE(resumed.Resume(state));
   while (!resumed.Done()) resumed.RunEpoch();
   for (size_t i = 0; i < one.layers.size(); ++i) {
@@ -69,7 +69,7 @@ TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
   Random random(8);
   noise.targets = RandomMatrix(2, 64, 1.0, &random);
   held.targets = RandomMatrix(2, 64, 1.0, &random);
-  RegressionOptions options = Quick();
+  RegressionOptions options = QuickRegression();
   options.epochs = 400;
   options.patience = 5;
   RegressionTrainer trainer(noise, held, options);

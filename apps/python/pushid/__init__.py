@@ -1,4 +1,4 @@
-"""pushid: friction, balance gains and the way of a push, identified from recordings of pushed people.
+"""pushid: identifies friction, balance gains and push propagation from recordings of pushed people.
 
     import pushid
     recordings = pushid.read("manifest.json", setting="single")
@@ -6,7 +6,7 @@
     print(result["mu"].value, result["mu"].interval)
     result.report("report.html")
 
-World: z up, x forward (the push's direction), y left; m, s, N, rad. Arrays that come out are read-only.
+World: z up, x forward (the direction of the push), y left; m, s, N, rad. Returned arrays are read-only.
 """
 from ._pushid import DataError, FitError, UsageError
 from ._pushid import version as __version__

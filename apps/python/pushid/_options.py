@@ -1,4 +1,4 @@
-"""Options of a fit by the names of pushid-fit's flags, and command lines as calls from Python."""
+"""Options of a fit, named as the flags of pushid-fit, and command lines converted to Python calls."""
 import difflib
 import numbers
 import shlex
@@ -9,12 +9,12 @@ from . import _pushid
 
 
 def options():
-    """The options of a fit: {name: (what it means, default)}; None where the preset decides."""
+    """The options of a fit: {name: (meaning, default)}; a default of None is set by the preset."""
     return {name: (meaning, default) for name, meaning, default in _pushid.options()}
 
 
 def _word(value):
-    """One value as the command line spells it; NumPy's numbers as Python's."""
+    """One value in command-line form; NumPy numbers as Python numbers."""
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, numbers.Integral):
@@ -23,7 +23,7 @@ def _word(value):
 
 
 def text_of(name, value):
-    """A list, or a dict of parameters, as the command line spells it."""
+    """A list, or a dict of parameters, in command-line form."""
     if isinstance(value, dict):
         if name == "prior":  # {name: (mean, sigma)}
             return ",".join(f"{key}:{_word(mean)}:{_word(sigma)}" for key, (mean, sigma) in value.items())
@@ -32,7 +32,7 @@ def text_of(name, value):
 
 
 def given(asked):
-    """Keyword arguments as (name, text), checked by name; None: as if it was not given."""
+    """Keyword arguments as (name, text), with checked names; None counts as not given."""
     known = options()
     for name in asked:
         if name in known:

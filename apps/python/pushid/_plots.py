@@ -1,4 +1,4 @@
-"""Pictures by matplotlib, of the numbers that results hold."""
+"""Matplotlib figures of results."""
 import html
 
 
@@ -14,7 +14,7 @@ def _free(result):
 
 
 def intervals(result, axes=None):
-    """Each free parameter with its 95 % interval, over its value."""
+    """Each free parameter with its 95 % interval, relative to its value."""
     axes = _axes(axes)
     shown = [p for p in _free(result) if p.interval and p.value != 0]
     for row, p in enumerate(shown):
@@ -28,7 +28,7 @@ def intervals(result, axes=None):
 
 
 def motion(result, recording, axes=None, **how):
-    """x of everybody's hip over time: measured, predicted, and the band."""
+    """x of all hips over time: measured, predicted, and the band."""
     axes = _axes(axes)
     predicted = result.predict(recording, **how)
     seconds = [t / recording.fps for t in range(recording.num_frames)]
@@ -49,7 +49,7 @@ def motion(result, recording, axes=None, **how):
 
 
 def profile(result, name, axes=None):
-    """The cost along a parameter, in units of what bounds its 95 % interval."""
+    """The cost along a parameter, in units of the threshold of its 95 % interval."""
     found = {row["name"]: row for row in result.profiles}
     if name not in found:
         raise KeyError(f"there is no profile of '{name}'; ask for it by result.profile('{name}')")
@@ -66,7 +66,7 @@ def profile(result, name, axes=None):
 
 
 def wave(formation, axes=None):
-    """How a push goes through people: speed of the hips, onsets, and their bands where there are any."""
+    """Propagation of a push through people: speed of the hips, onsets, and their bands if there are any."""
     axes = _axes(axes)
     speed = formation["speed"].T
     people, frames = speed.shape
@@ -86,7 +86,7 @@ def wave(formation, axes=None):
 
 
 def _bar(p):
-    """The interval over the value, from 0 to 2, as a small picture."""
+    """The interval relative to the value, from 0 to 2, as a small picture."""
     if not p.interval or p.value == 0:
         return ""
     low, high = (max(0.0, min(2.0, end / p.value)) for end in p.interval)

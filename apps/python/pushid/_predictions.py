@@ -1,4 +1,4 @@
-"""What a fitted model says of people who stand together, of frames as they come, and of whole bodies."""
+"""Predictions of a fitted model: formations, frame-by-frame prediction, and whole bodies."""
 import os
 
 import numpy as np
@@ -9,61 +9,61 @@ from ._recordings import checked
 
 
 class Formation(dict):
-    """People who stand together after a push; plot() draws the wave.
+    """A formation of people after a push; plot() draws the wave.
 
     "hip" (frames, people, 3), "states" (frames, people, 8), "speed" (frames, people), in m/s, negative backwards,
-    "onset_s" (None: never), "displacement" (m along x), "outcome", "fps", "wave_speed" (m/s, from the first who moves
-    to the foremost; None: there is none), and "onset_band90" and "wave_speed_band90" if asked for.
+    "onset_s" (None: never), "displacement" (m along x), "outcome", "fps", "wave_speed" (m/s, from the first person
+    that moves to the foremost; None: undefined), and "onset_band90" and "wave_speed_band90" if requested.
     """
 
     def plot(self, **options):
-        """Time across, people down, colour the hip's speed (matplotlib); returns the axes."""
+        """The wave (matplotlib): time horizontally, people vertically, hip speed as colour; returns the axes."""
         from . import _plots
         return _plots.wave(self, **options)
 
 
 def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=80.0, push_duration=0.2,
                        mass=85.0, rod=0.95, duration=4.0, fps=60.0, set=None, onset_bands=False):
-    """A fitted model on people who stand together; see Formation.
+    """Rolls a fitted model out on a formation of people; see Formation.
 
     shape: "line", "diamond" or "grid"; spacing in m, push in N s along +x at the hip of person `pushed`. onset_bands:
-    also when each person begins to move with parameters drawn from what the fit leaves open, 90 %.
+    also compute 90 % bands of the onsets, by drawing parameters from their covariance.
     """
     return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration, mass,
                                                 rod, duration, fps, text_of("set", set or {}), onset_bands))
 
 
 class OnlinePredictor:
-    """A prediction that learns from every frame it is shown; recording: people, pushes and frame 0."""
+    """A prediction that is updated with every observed frame; recording: people, pushes and frame 0."""
 
     def __init__(self, result, recording, frames):
         self._online = _pushid.Online(result._model, *checked(recording), frames)
 
     def observe(self, hip, left_ankle, right_ankle):
-        """The next frame, frame 1 first: (people, 3) each, or (3,) of one person, in m."""
+        """Adds the next frame, starting with frame 1: (people, 3) each, or (3,) for one person, in m."""
         self._online.observe(*(np.atleast_2d(np.asarray(a, dtype=float)) for a in (hip, left_ankle, right_ankle)))
 
     @property
     def observed(self):
-        """How many frames were seen, frame 0 among them."""
+        """Number of observed frames, including frame 0."""
         return self._online.observed
 
     def predict(self):
-        """As Result.predict, from what was seen so far, without bands."""
+        """As Result.predict, from the frames observed so far, without bands."""
         return self._online.predict()
 
 
 class Restoration:
-    """Networks that turn pendulums into bodies."""
+    """Networks that convert pendulum motion into whole-body motion."""
 
     def __init__(self, restoration):
         self._restoration = restoration
 
     @classmethod
     def load(cls, folder):
-        """Of a folder that pushid-train-restoration wrote, or "rigid"."""
+        """Loads a folder that pushid-train-restoration wrote, or "rigid"."""
         return cls(_pushid.load_restoration(os.fspath(folder)))
 
     def apply(self, result, recording, *, observed=0):
-        """The predicted motion of whole bodies: (frames, people, 22, 3), in m. Read with all_joints=True."""
+        """The predicted motion of whole bodies: (frames, people, 22, 3), in m. Needs read(all_joints=True)."""
         return self._restoration.apply(result._model, *checked(recording), observed)

@@ -1,4 +1,4 @@
-"""Recordings: read from manifests, made of arrays, made by the model itself."""
+"""Recordings: read from manifests, made from arrays, or simulated."""
 import os
 
 import numpy as np
@@ -8,7 +8,7 @@ from ._options import text_of
 
 
 class Recordings(list):
-    """A list of recordings, with what was unusual about their files (`warnings`)."""
+    """A list of recordings, with the warnings about their files (`warnings`)."""
 
     def __init__(self, recordings=(), warnings=()):
         super().__init__(recordings)
@@ -27,11 +27,11 @@ def read(manifest, setting="all", *, ids=(), leave_out=(), all_joints=False, max
          resample_fps=0.0, length_unit="", length_scale=0.0):
     """Recordings of a manifest, or of several (a list of paths).
 
-    setting: settings of the manifest, comma-separated, "groups" or "all". ids, leave_out: only these, not these.
+    setting: settings of the manifest, comma-separated, "groups" or "all". ids, leave_out: ids to use or to skip.
     all_joints: keep whole bodies, for restorations and the report's figure. max_gap_s (s), lowpass_hz (Hz, 0: none)
-    and resample_fps (0: as recorded) prepare the motion; length_unit ("mm", "cm", "m") is the files', whatever
-    they say; length_scale instead of it the metres in one of the files' lengths (0: a unit). Raises DataError with
-    file and line.
+    and resample_fps (0: as recorded) prepare the motion; length_unit ("mm", "cm", "m") overrides the unit
+    of the files; length_scale, instead, gives the metres per length unit of the files (0: use the unit). Raises
+    DataError with file and line.
     """
     paths = [manifest] if isinstance(manifest, (str, os.PathLike)) else manifest
     found, told = _pushid.read(",".join(os.fspath(path) for path in paths), setting, _listed(ids),
@@ -52,15 +52,15 @@ def _positions(name, values, metres):
 def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recording", subjects=(), pushed_person=0,
               push_start=0, push_height=1.0, push_kind="external", initial_velocity="zero", setting="single",
               magnitude="unknown", condition="", length_unit="m"):
-    """A recording from arrays, with the checks of one from files.
+    """A recording from arrays, with the same checks as one from files.
 
     hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in length_unit ("mm", "cm" or "m"), z up and x
-    forward; NaN or masked where unseen. mass: kg, a number or one for each person. fps: frames per second.
+    forward; NaN or masked where missing. mass: kg, a number or one for each person. fps: frames per second.
     push: from frame `push_start` on, on `pushed_person`: (rows,) forwards, (rows, 2) or (rows, 3) in N at the height
     `push_height` (a fraction of the way from the ankles to the hip), or (rows, 4): generalized forces in N and N m.
     push_kind: "external" (measured, the whole push), "net" or "net_without_friction". initial_velocity: "zero",
-    "estimated" or "free". subjects: who they are; what one person does errs together. setting, magnitude, condition:
-    labels, by which results may differ. Raises DataError.
+    "estimated" or "free". subjects: ids of the people, by which errors are clustered. setting, magnitude, condition:
+    labels to group results by. Raises DataError.
     """
     rows = None if push is None else np.asarray(push, dtype=float)
     metres = _pushid.metres_per(length_unit)
@@ -74,7 +74,7 @@ def simulate(*, people=4, recordings_per_person=6, people_in_row=1, fps=60.0, fr
              joint_noise_m=0.002, set=None):
     """Recordings of synthetic people with known parameters: (recordings, {name: true value}).
 
-    set: {name: value} of the truth that differs from the default. joint_noise_m: m, one sigma.
+    set: {name: value} of true values that differ from the defaults. joint_noise_m: m, one sigma.
     """
     changed = text_of("set", set or {})
     found, truth = _pushid.simulate(people, recordings_per_person, people_in_row, fps, frames, seed, push_kind,
@@ -83,20 +83,20 @@ def simulate(*, people=4, recordings_per_person=6, people_in_row=1, fps=60.0, fr
 
 
 def checked(recordings):
-    """One recording, or several, as a list."""
+    """One recording, or several, as a list of recordings."""
     found = [recordings] if isinstance(recordings, _pushid.Recording) else list(recordings)
     for one in found:
         if not isinstance(one, _pushid.Recording):
-            raise _pushid.UsageError(f"a recording was asked for, and found {type(one).__name__}; make one by "
+            raise _pushid.UsageError(f"expected a recording, found {type(one).__name__}; make one by "
                                      "pushid.Recording(hip, left_ankle, right_ankle, mass, fps, push) or pushid.read")
     return found
 
 
 def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothing=9, initial_velocity="auto"):
-    """The push of a recording that has none, by inverse dynamics: (rows of 4 generalized forces, first frame, kind).
+    """Estimates a missing push by inverse dynamics: (rows of 4 generalized forces, first frame, kind).
 
-    first_frame, end_frame: the window; -1: found by itself. smoothing: Savitzky-Golay window in frames, odd; 0: none.
-    It takes all that speeds the hip up for the push, often too much.
+    first_frame, end_frame: the window; -1: detected. smoothing: Savitzky-Golay window in frames, odd; 0: none.
+    Everything that accelerates the hip is attributed to the push, which often overestimates it.
     """
     return _pushid.estimate_push(*checked(recording), person, first_frame, end_frame, smoothing, initial_velocity)
 

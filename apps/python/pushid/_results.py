@@ -1,4 +1,4 @@
-"""Fits and what they found."""
+"""Fits and their results."""
 import difflib
 import json
 import os
@@ -12,11 +12,11 @@ from ._recordings import checked
 
 Parameter = namedtuple("Parameter", "name value standard_error interval unit status shares fixed")
 Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`; status
-("identified", "weak", "prior-held", "fixed", ...); shares: what of it data, priors and settling decide."""
+("identified", "weak", "prior-held", "fixed", ...); shares: fractions due to data, priors and settling."""
 
 
 def _numbers(found):
-    """With numbers in place of the texts that stand for those JSON does not know."""
+    """Replaces the strings that stand for infinities and nan in JSON by numbers."""
     if isinstance(found, dict):
         return {name: _numbers(item) for name, item in found.items()}
     if isinstance(found, list):
@@ -28,13 +28,13 @@ class Table(list):
     """A row (dict) for every parameter."""
 
     def to_frame(self):
-        """As a pandas DataFrame; raises ImportError where pandas is not there."""
+        """As a pandas DataFrame; raises ImportError without pandas."""
         import pandas
         return pandas.DataFrame(self)
 
 
 class Result:
-    """What a fit found. result["mu"] is a Parameter; `json` holds everything, as the programs write it."""
+    """The result of a fit. result["mu"] is a Parameter; `json` holds everything, as the programs write it."""
 
     def __init__(self, model):
         self._model, self._json = model, None
@@ -48,12 +48,12 @@ class Result:
 
     @property
     def table(self):
-        """Everything about each parameter, one dict each."""
+        """All values of each parameter, one dict per parameter."""
         return Table(_numbers(self.json["parameters"]))
 
     @property
     def names(self):
-        """Of all parameters, fitted or not."""
+        """Names of all parameters, fitted or not."""
         return [row["name"] for row in self.json["parameters"]]
 
     def __getitem__(self, name):
@@ -68,83 +68,83 @@ class Result:
 
     @property
     def covariance(self):
-        """(names, matrix) of what was fitted, on the fitted scale (positive parameters: their logarithm)."""
+        """(names, matrix) of the fitted parameters, on the fitted scale (positive parameters: their logarithm)."""
         found = self.json["uncertainty"]
         return found["fitted"], np.array(found["covariance_fitted_scale"], dtype=float)
 
     @property
     def converged(self):
-        """Whether the solver did; advice says what to try where it did not."""
+        """Whether the solver converged; if not, see advice."""
         return self._model.converged
 
     @property
     def warnings(self):
-        """What to keep in mind: of the files, the fit and the person it found."""
+        """Warnings about the files, the fit and the fitted person."""
         return self._model.warnings
 
     @property
     def advice(self):
-        """What to try next: [(sentence, call)]."""
+        """Suggested next steps: [(sentence, call)]."""
         return [(sentence, as_call(command)) for sentence, command in self._model.advice]
 
     def _part(self, name):
-        """A part of the json that was just made anew."""
+        """A part of the JSON that was just recomputed."""
         self._json = None
         return _numbers(self.json[name])
 
     def profile(self, *names, num_threads=1, progress=None):
-        """The cost along each of these parameters (none: all), all others fitted anew: {name: profile}.
+        """Profile likelihoods of these parameters (none: all), with all others refitted: {name: profile}.
 
-        A profile has "interval_95", "class" ("identifiable", ...) and "points", a dict of value, cost and the others
-        each. It takes the place of earlier ones. progress: called with (done, total), as by all that fit many times.
+        A profile has "interval_95", "class" ("identifiable", ...) and "points", each a dict of the value, the cost
+        and the other parameters. It replaces earlier profiles. progress: called with (done, total).
         """
         _pushid.profile(self._model, list(names), num_threads, progress)
         return {row["name"]: row for row in self._part("profiles")}
 
     @property
     def profiles(self):
-        """What profile() found last, a dict each."""
+        """Results of the last profile(), one dict per parameter."""
         return _numbers(self.json.get("profiles", []))
 
     def bootstrap(self, replicas=199, *, seed=1, num_threads=1, file="", progress=None):
-        """Refits of people (or recordings) drawn with replacement; the json's part `bootstrap`.
+        """Refits of people (or recordings) drawn with replacement; returns the JSON's part `bootstrap`.
 
-        file: keeps finished replicas, so that a run that was interrupted goes on from there.
+        file: keeps finished replicas, so that an interrupted run can continue.
         """
         _pushid.bootstrap(self._model, replicas, seed, num_threads, os.fspath(file), progress)
         return self._part("bootstrap")
 
     def prior_check(self):
-        """Refits with centres and widths of all priors halved, and doubled; the json's part `prior_check`."""
+        """Refits with means and widths of all priors halved and doubled; returns the JSON's part `prior_check`."""
         _pushid.prior_check(self._model)
         return self._part("prior_check")
 
     def push_check(self, *, noise=0.01, seed=1, num_threads=1, progress=None):
-        """Refits with pushes that might as well have been recorded; the json's part `push_check`.
+        """Refits with other plausible pushes; returns the JSON's part `push_check`.
 
-        noise: of a measured push's sensor, as a share of the push's peak.
+        noise: noise of a push sensor, as a fraction of the push's peak.
         """
         _pushid.push_check(self._model, noise, seed, num_threads, progress)
         return self._part("push_check")
 
     def horizon_check(self, *, num_threads=1, progress=None):
-        """Refits of the first 8, 16, 32 and 64 frames; the json's part `horizon_check`."""
+        """Refits of the first 8, 16, 32 and 64 frames; returns the JSON's part `horizon_check`."""
         _pushid.horizon_check(self._model, num_threads, progress)
         return self._part("horizon_check")
 
     def design(self, parameter="all"):
-        """Which further push would lower the error of a parameter (or of all together) most; see Design."""
+        """Finds the further push that would reduce the error of a parameter (or of all together) most; see Design."""
         return Design(_pushid.design(self._model, parameter))
 
     def predict(self, recording, *, observed=0, frames=0, samples=0, seed=1, set=None):
-        """What the model says will happen, from the first frame (or `observed` of them) and the push.
+        """Predicts the motion from the first frame (or `observed` frames) and the push.
 
         {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
-        90 % bands "lower90" and "upper90" of the frames to come. samples: so many futures drawn, "samples" of the
-        shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; else
-        from the process noise of a model that has one, or parameters from their covariance, with errors of the
-        fitted recordings. frames: how far (0: as far as the recording). set: {name: value} asks "what if". Raises
-        FitError where a rollout leaves the model's domain; warns of pushes unlike the fitted ones.
+        90 % bands "lower90" and "upper90" of the later frames. samples: number of futures to draw, as "samples" of
+        shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; otherwise
+        from the process noise if the model has one, or from the covariance of the parameters and the errors of the
+        fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if". Raises
+        FitError if a rollout leaves the model's domain; warns about pushes unlike the fitted ones.
         """
         return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}))
 
@@ -152,18 +152,18 @@ class Result:
         """The most probable path of a person between two states under the model's process noise.
 
         start, end: {"x": 0.4, "theta": 0.05, "xd": 0.3, ...}: x, y (m), theta, phi (rad) and their rates xd, yd,
-        thetad, phid; what is not named is 0, and the rates at the end are free where none is named. Returns "states"
-        (frames, 1, 8), "noise" (frames, 1, 4), the generalized force that drove it, and "action", -log of its
-        probability density up to a constant: of several ends the most probable one has the least.
+        thetad, phid; components not named are 0, and all final rates are free if none is named. Returns "states"
+        (frames, 1, 8), "noise" (frames, 1, 4), the generalized force along the path, and "action", -log of its
+        probability density up to a constant: the most probable of several ends has the lowest action.
         """
         return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
 
     def smooth(self, recording):
-        """A recording smoothed, its gaps filled, under the model's process noise: as path_between, for everybody."""
+        """Smooths a recording and fills its gaps under the model's process noise: as path_between, for all people."""
         return _pushid.smooth(self._model, *checked(recording))
 
     def evaluate(self, recordings, *, observed=0):
-        """Errors of the predictions beside two baselines, as pushid-evaluate writes them."""
+        """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
         return self._model.evaluate(checked(recordings), observed)
 
     def report(self, path):
@@ -176,7 +176,7 @@ class Result:
         self._model.save(os.fspath(path))
 
     def attach(self, recordings):
-        """Gives a loaded result the recordings it was fitted to, for profiles, bootstrap and the report's figure."""
+        """Attaches the fitted recordings to a loaded result, for profiles, bootstrap and the report's figure."""
         self._model.attach(checked(recordings))
         return self
 
@@ -186,12 +186,12 @@ class Result:
         return _plots.intervals(self, **options)
 
     def plot_motion(self, recording, **options):
-        """A recording's hips and the prediction's, with bands where there are any; returns the axes."""
+        """Recorded and predicted hips, with bands if there are any; returns the axes."""
         from . import _plots
         return _plots.motion(self, recording, **options)
 
     def plot_profile(self, name, **options):
-        """The profile of a parameter that profile() was asked for; returns the axes."""
+        """The profile of a parameter, computed before by profile(); returns the axes."""
         from . import _plots
         return _plots.profile(self, name, **options)
 
@@ -218,7 +218,7 @@ def fit(recordings, *, progress=None, **asked):
     """Identifies the parameters that act on these recordings.
 
     Options have the names, defaults and checks of pushid-fit's flags (pushid.options()): preset="auto",
-    fix={"mu": 30} (or fix=["mu"]: held where they are), free={"Kp_x": 50}, prior={"mu": (30, 10)}, ...
+    fix={"mu": 30} (or fix=["mu"]: held at the default), free={"Kp_x": 50}, prior={"mu": (30, 10)}, ...
     progress: called with (phase, iteration, cost). Ctrl-C ends a fit. Raises DataError, UsageError, FitError.
     """
     told = list(getattr(recordings, "warnings", ()))
@@ -226,7 +226,7 @@ def fit(recordings, *, progress=None, **asked):
 
 
 def load(path):
-    """A result that pushid-fit or Result.save wrote."""
+    """Loads a result that pushid-fit or Result.save wrote."""
     return Result(_pushid.load(os.fspath(path)))
 
 
@@ -234,8 +234,8 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
                   baselines=True, num_threads=1, progress=None, **asked):
     """Errors on recordings that were not fitted, for the options given and each of `candidates`.
 
-    candidates: {name: {option: value}}, on top of the options given. A list of what pushid-crossvalidate writes
-    for each predictor.
+    candidates: {name: {option: value}}, in addition to the options given. Returns a list with the scores that
+    pushid-crossvalidate writes for each predictor.
     """
     all_of_them = [("model", given(asked))]
     for name, more in (candidates or {}).items():
@@ -245,12 +245,12 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
 
 
 class Design(dict):
-    """What one more recording, a force sensor and more people would bring; print() shows it as pushid-fit does.
+    """Benefit of one more recording, a force sensor and more people; print() shows it as pushid-fit does.
 
     "pushes": a Table, best first: direction_deg (from forwards to the left), acceleration (peak force over mass, m/s^2),
     height (of the rod), duration_s, mass_kg, error_ratio {name: standard error with it over the present one} and their
-    mean; "no_push" says why there are none. "sensor_ratio": {name: error with the whole push measured over that
-    without} or "no_sensor"; "sizes": studies of more people and pushes with the errors they would leave.
+    mean; "no_push": the reason if there are none. "sensor_ratio": {name: error with the whole push measured over that
+    without} or "no_sensor"; "sizes": studies with more people and pushes, and their errors.
     """
 
     def __init__(self, found):

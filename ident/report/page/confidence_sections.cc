@@ -14,8 +14,6 @@
 namespace pushid {
 namespace {
 
-constexpr int kColumns = 3;
-constexpr double kPanelWidth = 320, kPanelHeight = 200;
 constexpr int kBars = 24;
 
 ReportFigure CorrelationFigure(const FitResult& result) {
@@ -24,7 +22,7 @@ ReportFigure CorrelationFigure(const FitResult& result) {
   HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0};
   std::vector<std::string> header = {"parameter"};
   for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
-  TextTable numbers(header, std::vector<bool>(header.size(), true));
+  TextTable numbers(header, AllWords(header.size()));
   for (size_t i = 0; i < size; ++i) {
     map.rows.push_back(u.estimates[i].name);
     map.columns.push_back(u.estimates[i].name);
@@ -37,9 +35,10 @@ ReportFigure CorrelationFigure(const FitResult& result) {
     map.values.push_back(row);
     numbers.Add(cells);
   }
-  return {"correlation",
-          "Near 1 or -1: the data say what two parameters do together, not what each does.",
-          DrawHeatMap(map), numbers};
+  return {
+      "correlation",
+      "Near 1 or -1: the data determine the joint effect of two parameters, but not that of each.",
+      DrawHeatMap(map), numbers};
 }
 
 // A multiple of one parameter draws that parameter's curve again.
@@ -101,7 +100,7 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
 
 ReportSection IdentifiabilitySection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"identifiability", "What the data can tell apart", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"identifiability", "Identifiability", {}, {}, {}, {}, {}, ""};
   const Diagnostics& d = result.diagnostics;
   section.paragraphs.push_back(
       "Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
@@ -110,10 +109,10 @@ ReportSection IdentifiabilitySection(const FittedModel& model) {
     section.paragraphs.push_back("Unidentifiable: " + n.sentence);
   }
   if (result.uncertainty.null_directions.empty()) {
-    section.paragraphs.push_back("Data, priors and demands together leave no direction open.");
+    section.paragraphs.push_back("Data, priors and constraints together determine all directions.");
   }
   for (const std::string& held : result.uncertainty.held_directions) {
-    section.paragraphs.push_back("Put in: " + held);
+    section.paragraphs.push_back("Prior-dependent: " + held);
   }
   for (const std::string& note : d.start.notes) section.paragraphs.push_back("Start: " + note);
   const std::string correlations = CorrelationText(result);
@@ -127,15 +126,13 @@ ReportSection ProfileSection(const FittedModel& model) {
   if (model.profiles.empty()) return section;
   section.paragraphs = {
       "Each parameter is moved away from its estimate and everything else refitted. Where the "
-      "curve "
-      "crosses the dashed line the 95 % interval ends; a flat curve means that the data do not "
-      "know."};
+      "curve crosses the dashed line the 95 % interval ends; a flat curve means that the data do "
+      "not determine the parameter."};
   section.paragraphs.push_back(AgreementNote(model));
   section.tables.push_back({"three kinds of intervals", AgreementTable(model)});
   std::vector<Chart> charts;
-  TextTable ends({"profile of", "why it ended below", "above"}, std::vector<bool>(3, true));
-  TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"},
-                    std::vector<bool>(5, true));
+  TextTable ends({"profile of", "why it ended below", "above"}, AllWords(3));
+  TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"}, AllWords(5));
   for (const Profile& p : model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
@@ -150,7 +147,7 @@ ReportSection ProfileSection(const FittedModel& model) {
   section.figures.push_back(
       {"profiles",
        "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
-       DrawCharts(charts, "profiles", kColumns, kPanelWidth, kPanelHeight), numbers});
+       DrawCharts(charts, "profiles", kPanelColumns, kPanelWidth, kPanelHeight), numbers});
   return section;
 }
 
@@ -159,8 +156,8 @@ ReportSection BootstrapSection(const FittedModel& model) {
   ReportSection section{"bootstrap", "Bootstrap", {}, {}, {}, {}, {}, ""};
   if (!model.bootstrap || model.bootstrap->values.empty()) return section;
   const Bootstrap& b = *model.bootstrap;
-  section.paragraphs = {"The fit repeated on what is drawn with replacement, " + ResamplingText(b) +
-                        "."};
+  section.paragraphs = {"The fit was repeated on samples drawn with replacement, " +
+                        ResamplingText(b) + "."};
   if (model.profiles.empty()) {
     section.paragraphs.push_back(AgreementNote(model));
     section.tables.push_back({"two kinds of intervals", AgreementTable(model)});
@@ -178,15 +175,15 @@ ReportSection BootstrapSection(const FittedModel& model) {
     for (const auto& row : b.values) values.push_back(row[i]);
     charts.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
   }
-  TextTable numbers(header, std::vector<bool>(header.size(), true));
+  TextTable numbers(header, AllWords(header.size()));
   for (const auto& row : b.values) {
     std::vector<std::string> cells;
     for (double value : row) cells.push_back(DoubleText(value));
     numbers.Add(cells);
   }
-  section.figures.push_back({"bootstrap", "Replicas, and the estimate of the fit (line).",
-                             DrawCharts(charts, "bootstrap", kColumns, kPanelWidth, kPanelHeight),
-                             numbers});
+  section.figures.push_back(
+      {"bootstrap", "Replicas, and the estimate of the fit (line).",
+       DrawCharts(charts, "bootstrap", kPanelColumns, kPanelWidth, kPanelHeight), numbers});
   return section;
 }
 

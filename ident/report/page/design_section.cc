@@ -12,8 +12,8 @@ constexpr int kBestPushes = 8;
 // The best pushes to record next, over all and for each parameter.
 void AddPushes(const ExperimentDesign& design, ReportSection* section) {
   section->paragraphs.push_back(
-      "What one more recording of a kind would do to the standard errors, from the sensitivities "
-      "at the estimate: for all parameters together (D-optimal) and for each (c-optimal).");
+      "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
+      "the estimate: for all parameters together (D-optimal) and for each (c-optimal).");
   section->tables.push_back(
       {"for all parameters", DesignTable(design, "all", kBestPushes).value()});
   TextTable best({"parameter", "best push", "m/s^2", "height", "s", "kg", "its error"},
@@ -42,8 +42,7 @@ void AddStudies(const StudyPlan& plan, ReportSection* section) {
   }
   section->paragraphs.push_back(StudySizesNote(plan));
   section->tables.push_back(
-      {"standard errors that more people and more pushes of each would leave (the first row: as "
-       "it is)",
+      {"standard errors with more people and more pushes of each (first row: this study)",
        StudySizesTable(plan, "all")});
 }
 

@@ -17,8 +17,6 @@ constexpr size_t kMostOutliers = 20;
 constexpr double kStrongMove = 1.0;     // standard errors
 constexpr double kWorstShown = -300.0;  // % explained; bars of worse ones are cut
 
-std::vector<bool> Words(size_t columns) { return std::vector<bool>(columns, true); }
-
 // Best explained first.
 std::string ExplainedBars(std::vector<const RecordingDiagnostics*> recordings) {
   const double row = 16, left = 190, zero = 200, right = 820;
@@ -121,7 +119,7 @@ ReportSection RecordingSection(const FittedModel& model) {
   std::vector<const RecordingDiagnostics*> sorted;
   TextTable numbers({"recording", "explained_percent", "cost", "lag1", "ljung_box", "ljung_box_p",
                      "outlier_frames"},
-                    Words(7));
+                    AllWords(7));
   for (const RecordingDiagnostics& r : d.recordings) {
     sorted.push_back(&r);
     numbers.Add({r.id, DoubleText(r.explained), DoubleText(r.cost), DoubleText(r.lag1),
@@ -132,13 +130,12 @@ ReportSection RecordingSection(const FittedModel& model) {
                    [](const auto* a, const auto* b) { return a->explained > b->explained; });
   section.figures.push_back({"explained",
                              "Share of the hip's horizontal motion that the model explains; below "
-                             "zero it does worse than "
-                             "a person who stands still.",
+                             "zero it is worse than predicting no motion.",
                              ExplainedBars(sorted), numbers});
   const TextTable outliers = OutlierTable(d);
   if (outliers.rows().size() > 1) {
     section.tables.push_back(
-        {"stretches that the robust loss gives less than half their weight (the 20 worst)",
+        {"intervals that have less than half their weight in the robust loss (the 20 worst)",
          outliers});
   }
   return section;
@@ -146,7 +143,7 @@ ReportSection RecordingSection(const FittedModel& model) {
 
 ReportSection LeverageSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"leverage", "Which recording moves what", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"leverage", "Influence of each recording", {}, {}, {}, {}, {}, ""};
   const Leverage& l = result.diagnostics.leverage;
   if (l.recordings.empty()) return section;
   HeatMap map{
@@ -164,7 +161,7 @@ ReportSection LeverageSection(const FittedModel& model) {
   for (size_t p = 0; p < l.parameters.size(); ++p) {
     header.push_back(l.parameters[p] + " (" + l.units[p] + ")");
   }
-  TextTable numbers(header, Words(header.size()));
+  TextTable numbers(header, AllWords(header.size()));
   for (size_t g : order) {
     map.rows.push_back(l.recordings[g]);
     map.values.push_back(l.in_errors[g]);
@@ -182,19 +179,18 @@ ReportSection LeverageSection(const FittedModel& model) {
 
 ReportSection ResidualSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"residuals", "What is left over", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"residuals", "Residuals", {}, {}, {}, {}, {}, ""};
   const std::vector<Whiteness>& channels = result.diagnostics.whiteness;
   if (channels.empty()) return section;
   section.paragraphs = {
-      "Correlation of the errors with themselves and with the push, frames apart: the mean over "
-      "recordings (line) with two standard errors, and the band of white noise (orange). Errors "
-      "that "
-      "last mean that frames are not independent (so only clustered errors count); errors that "
-      "follow "
-      "the push mean that the model misses part of the answer to it."};
+      "Autocorrelation of the residuals, and their correlation with the push, by lag in frames: "
+      "the mean over recordings (line) with two standard errors, and the band of white noise "
+      "(orange). Autocorrelated residuals mean that frames are not independent (so only clustered "
+      "errors are valid); residuals correlated with the push mean that the model misses part of "
+      "the response to it."};
   std::vector<Chart> own, push;
   TextTable numbers({"channel", "kind", "lag", "correlation", "standard_error", "white_band"},
-                    Words(6));
+                    AllWords(6));
   TextTable tests({"channel", "lag-1 correlation", "white +-", "Ljung-Box", "p"},
                   {true, false, false, false, false});
   for (const Whiteness& w : channels) {

@@ -27,7 +27,7 @@ std::string FigureText(const ReportFigure& figure) {
     return text + "  (" + std::to_string(rows.size() - 1) + " rows: --csv_dir writes them to " +
            figure.name + ".csv)\n";
   }
-  TextTable table(rows[0], std::vector<bool>(rows[0].size(), true));
+  TextTable table(rows[0], AllWords(rows[0].size()));
   for (size_t i = 1; i < rows.size(); ++i) {
     std::vector<std::string> cells;
     for (const std::string& cell : rows[i]) cells.push_back(ForReading(cell));

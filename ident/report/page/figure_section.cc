@@ -5,6 +5,7 @@
 // and exact enough for a picture.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ident/report/page/sections.h"
 
@@ -131,7 +132,7 @@ std::string KeyHtml(const std::vector<RecordingView>& views) {
   std::string key = "<p class=\"key\"><span class=\"measured\">measured</span>";
   if (predicted) key += " <span class=\"predicted\">predicted</span>";
   if (bodies) key += " <span class=\"body\">recorded skeleton</span>";
-  if (pushed) key += " <span class=\"pushed\">who is pushed, and the push</span>";
+  if (pushed) key += " <span class=\"pushed\">pushed person and push</span>";
   return key +
          "</p>\n</div>\n<noscript><p>The moving figure needs JavaScript; everything else on this "
          "page does not.</p></noscript>\n";
@@ -143,8 +144,8 @@ ReportSection FigureSection(const std::vector<RecordingView>& views) {
   ReportSection section{"figure", "Moving figure", {}, {}, {}, {}, {}, ""};
   if (views.empty()) return section;
   section.paragraphs = {
-      "Every recording with what the model predicts from its first frame and the push. The slider "
-      "and the list answer to the arrow keys."};
+      "Every recording with the model's prediction from its first frame and the push. The slider "
+      "and the list can be operated with the arrow keys."};
   int skeletons = 0;
   for (const RecordingView& view : views) skeletons += view.run.num_people();
   const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;

@@ -33,7 +33,7 @@ ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
 
 ReportSection GroupSection(const std::vector<RecordingView>& views,
                            const PropagationSummary& propagation) {
-  ReportSection section{"groups", "What groups do", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"groups", "Groups", {}, {}, {}, {}, {}, ""};
   const ShownGroups groups = GroupsOf(views);
   const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
   const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
@@ -41,11 +41,11 @@ ReportSection GroupSection(const std::vector<RecordingView>& views,
   const auto velocity = CompareHips(groups.recordings, bodies, groups.by_velocity);
   section.paragraphs = {
       bodies.empty()
-          ? "The recordings have no whole bodies, so that only onsets are judged."
-          : "People are rigid here: first poses carried by the predicted hips, which never step.",
+          ? "The recordings have no whole bodies, so only onsets are scored."
+          : "Bodies are rigid here: the first poses move with the predicted hips and never step.",
       GroupMetricsLegend()};
   section.tables.push_back(
-      {"the recordings shown here; pushid-crossvalidate judges by what was not fitted",
+      {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
        GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
   section.tables.push_back(
       {"how the push travels through them, +- a standard error over recordings",

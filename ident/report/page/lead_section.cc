@@ -44,8 +44,8 @@ std::string Known(const FitResult& result) {
   const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
   const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
   return "What is known: " +
-         (known.empty() ? "no parameter is decided by these recordings alone"
-                        : "these recordings decide " + Listed(known)) +
+         (known.empty() ? "these recordings alone identify no parameter"
+                        : "these recordings identify " + Listed(known)) +
          "; " + VerdictSentence(verdict, result.behaviour) + ".";
 }
 
@@ -55,35 +55,36 @@ std::string NotKnown(const FitResult& result) {
     const std::vector<const Estimate*> found = With(result, status);
     if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
   };
-  add(EstimateStatus::kUnidentifiable, "not told by these recordings at all: ");
+  add(EstimateStatus::kUnidentifiable, "not identifiable from these recordings: ");
   add(EstimateStatus::kAtBound, "ended at a bound: ");
-  add(EstimateStatus::kPriorHeld, "decided more by what was put in than by the recordings: ");
+  add(EstimateStatus::kPriorHeld,
+      "determined more by priors or constraints than by the recordings: ");
   add(EstimateStatus::kWeak, "with wide intervals: ");
   const Uncertainty& u = result.uncertainty;
   if (u.clustered && u.num_clusters < kFewClusters) {
     text += (text.empty() ? "" : "; ") + std::string("with ") + std::to_string(u.num_clusters) +
             (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
-            " every interval is a rough guess";
+            " all intervals are rough";
   }
-  return "What is not: " + (text.empty() ? "nothing of what was asked" : text) + ".";
+  return "What is not known: " + (text.empty() ? "no free parameter" : text) + ".";
 }
 
 // Of groups: what was measured and what the model makes of it.
 std::string Travels(const PropagationSummary& p) {
   if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
-  std::string text = "How the push travels, on the recordings that were fitted: in " +
+  std::string text = "How the push travels in the fitted recordings: in " +
                      std::to_string(std::lround(p.figures[kSlownessMeasured].weight)) +
-                     " recordings the onset of motion went through the people at " +
+                     " recordings the onset of motion propagated at " +
                      SpeedText(p.figures[kSlownessMeasured]) +
                      " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";
   const PropagationMean &measured = p.figures[kMomentumMeasured],
                         &predicted = p.figures[kMomentumPredicted];
   if (measured.known() && predicted.known()) {
-    text += "; each person had " + Rounded(measured.value, 2) +
-            " of the momentum of the one before (predicted: " + Rounded(predicted.value, 2) + ")";
+    text += "; the momentum of each person was " + Rounded(measured.value, 2) +
+            " times that of the previous one (predicted: " + Rounded(predicted.value, 2) + ")";
   }
-  return text + "; of " + Rounded(p.movers, 4) + " who moved the model misses " +
-         Rounded(p.missed_movers, 4) + ".";
+  return text + "; the model misses " + Rounded(p.missed_movers, 4) + " of the " +
+         Rounded(p.movers, 4) + " people who moved.";
 }
 
 std::string Next(const FittedModel& model) {

@@ -13,9 +13,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kPanelWidth = 250, kPanelHeight = 170;
-
-std::vector<bool> Words(size_t columns) { return std::vector<bool>(columns, true); }
+constexpr double kMotionWidth = 250, kMotionHeight = 170;
 
 // Bars where a foot is off the ground.
 std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
@@ -125,7 +123,7 @@ TextTable PathNumbers(const RecordingView& view) {
                    "median_phi_rad",
                    "left_foot_stands",
                    "right_foot_stands"},
-                  Words(25));
+                  AllWords(25));
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -159,7 +157,7 @@ TextTable PathNumbers(const RecordingView& view) {
 }
 
 TextTable ForceNumbers(const FormationRun& run) {
-  TextTable table({"person", "frame", "part", "fx_N", "fy_N", "ftheta_Nm", "fphi_Nm"}, Words(7));
+  TextTable table({"person", "frame", "part", "fx_N", "fy_N", "ftheta_Nm", "fphi_Nm"}, AllWords(7));
   const std::vector<ForcePart> parts = ActingParts(run);
   for (int n = 0; n < run.num_people(); ++n) {
     for (int t = 0; t < run.num_frames(); ++t) {
@@ -195,7 +193,7 @@ std::vector<LegendEntry> LegendOf(const RecordingView& view) {
 
 std::string PathPicture(const RecordingView& view) {
   const int people = view.run.recording.num_people();
-  SvgPicture svg(4 * kPanelWidth, 24 + kPanelHeight * people, view.run.recording.id);
+  SvgPicture svg(4 * kMotionWidth, 24 + kMotionHeight * people, view.run.recording.id);
   DrawLegend(LegendOf(view), 52, 16, &svg);
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
@@ -204,10 +202,10 @@ std::string PathPicture(const RecordingView& view) {
         AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")};
     for (size_t i = 0; i < charts.size(); ++i) {
       charts[i].bare_x = n + 1 < people;
-      DrawChart(
-          charts[i],
-          {kPanelWidth * static_cast<double>(i), 24 + kPanelHeight * n, kPanelWidth, kPanelHeight},
-          &svg);
+      DrawChart(charts[i],
+                {kMotionWidth * static_cast<double>(i), 24 + kMotionHeight * n, kMotionWidth,
+                 kMotionHeight},
+                &svg);
     }
   }
   return svg.ToInline();
@@ -241,12 +239,12 @@ std::string MedianText(const std::vector<RecordingView>& views) {
     }
   }
   if (count == 0) return "";
-  return "The line is the median of the predictions that make the bands. The rollout at the "
-         "estimate, to which forces, moving figure and the first errors in the titles belong, "
-         "lies " +
+  return "The line is the median of the predictions that make up the bands. The rollout at the "
+         "estimate, which the forces, the moving figure and the first errors in the titles refer "
+         "to, lies " +
          Rounded(sum / count, 2) + " m from it on average, " + Rounded(most, 2) +
-         " m at most: what other recordings' errors have in common shifts the median, and a "
-         "median of paths obeys no equation of motion.";
+         " m at most: the common part of other recordings' errors shifts the median, and a median "
+         "of paths does not satisfy the equations of motion.";
 }
 
 }  // namespace
@@ -255,12 +253,11 @@ ReportSection MotionSection(const std::vector<RecordingView>& views) {
   ReportSection section{"motion", "Measured and predicted motion", {}, {}, {}, {}, {}, ""};
   if (views.empty()) return section;
   section.paragraphs = {
-      "Predicted from the first frame and the push alone. The bands hold what the parameters leave "
-      "open and, for the person who is pushed, how far people with the same parameters differ; for "
-      "others they show the parameters alone. Bars under the hip show when a foot was off the "
-      "ground. "
-      "The forces explain the motion: balance, friction, "
-      "interaction, push and what else acts add up to the net force (thick)."};
+      "Predicted from the first frame and the push alone. The bands include the uncertainty of the "
+      "parameters and, for the pushed person, the variation between people with the same "
+      "parameters; for others only the uncertainty of the parameters. Bars under the hip show when "
+      "a foot was off the ground. The forces explain the motion: balance, friction, interaction, "
+      "push and all others add up to the net force (thick)."};
   if (const std::string median = MedianText(views); !median.empty()) {
     section.paragraphs.push_back(median);
   }

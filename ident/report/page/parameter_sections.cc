@@ -121,7 +121,7 @@ ReportFigure SharesFigure(const FitResult& result) {
   DrawLegend(legend, kForestLeft, 16, &svg);
   TextTable numbers(
       {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"},
-      std::vector<bool>(8, true));
+      AllWords(8));
   double y = 32;
   for (const Estimate* e : shown) {
     svg.Text(kForestLeft - 12, y + kBarHeight - 3, e->name, "ink end");
@@ -143,7 +143,8 @@ ReportFigure SharesFigure(const FitResult& result) {
                  NameOf(e->status)});
     y += kBarRow;
   }
-  return {"shares", "Whose word each value is: shares of its variance.", svg.ToInline(), numbers};
+  return {"shares", "Shares of each value's variance: data, prior and settling constraint.",
+          svg.ToInline(), numbers};
 }
 
 const Agreement* Find(const std::vector<Agreement>& rows, const std::string& name) {
@@ -166,7 +167,7 @@ ReportSection ParameterSection(const FittedModel& model) {
   TextTable numbers(
       {"parameter", "unit", "value", "nominal", "clustered_lower95", "clustered_upper95",
        "profile_lower95", "profile_upper95", "bootstrap_lower95", "bootstrap_upper95"},
-      std::vector<bool>(10, true));
+      AllWords(10));
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
@@ -197,7 +198,7 @@ ReportSection ParameterSection(const FittedModel& model) {
   section.figures.push_back(
       {"forest",
        "Fitted values (dots) with their 95 % intervals against the nominal values (diamonds). "
-       "Every row has its own scale; an open interval runs to the edge.",
+       "Every row has its own scale; an open interval extends to the edge.",
        Forest(rows, "parameters against nominal values", false).Draw(legend), numbers});
   return section;
 }
@@ -209,10 +210,10 @@ ReportSection UnitSection(const FittedModel& model) {
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() < 2) return section;
   section.paragraphs = {
-      "Partially pooled: each differs from the shared value (diamond) as far as "
-      "its recordings insist."};
+      "Partially pooled: each value deviates from the shared value (diamond) as far as its "
+      "recordings require."};
   if (result.options.pool_by == PoolBy::kCondition) {
-    section.paragraphs.back() += " A recording that names no condition counts by its setting.";
+    section.paragraphs.back() += " A recording without a condition is grouped by its setting.";
   }
   std::map<std::string, std::vector<ForestRow>> by_parameter;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {
@@ -228,8 +229,7 @@ ReportSection UnitSection(const FittedModel& model) {
   const std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook},
                                            {"shared value", kNominalLook}};
   for (const auto& [name, rows] : by_parameter) {
-    TextTable numbers({"unit", "value", "lower95", "upper95", "shared"},
-                      std::vector<bool>(5, true));
+    TextTable numbers({"unit", "value", "lower95", "upper95", "shared"}, AllWords(5));
     for (const ForestRow& row : rows) {
       const Interval& interval = row.intervals[0].first;
       numbers.Add({row.name, DoubleText(row.value), DoubleText(interval.lower),
@@ -240,7 +240,7 @@ ReportSection UnitSection(const FittedModel& model) {
          {{"units_" + name, name + " by " + by, Forest(rows, name, true).Draw(legend), numbers}}});
   }
   section.tables.push_back({"", pooled});
-  section.tables.push_back({"how far they differ", SpreadTable(result)});
+  section.tables.push_back({"spread of the values", SpreadTable(result)});
   return section;
 }
 

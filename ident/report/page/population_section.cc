@@ -55,8 +55,8 @@ ReportFigure ForestFigure(const RecordingEffect& effect) {
                  DoubleText(r.mean - half), DoubleText(r.mean + half), DoubleText(r.alone)});
   }
   return {"recording_effects",
-          "Effects with 95 % intervals (blue), and what is likeliest by each recording alone "
-          "(orange; at the edge where it says little), by person and condition.",
+          "Effects with 95 % intervals (blue) and the estimate from each recording alone (orange; "
+          "at the edge where it is poorly determined), by person and condition.",
           ForestPicture(effects), numbers};
 }
 

@@ -10,9 +10,6 @@
 namespace pushid {
 namespace {
 
-constexpr int kColumns = 3;
-constexpr double kPanelWidth = 320, kPanelHeight = 200;
-
 // One parameter over the logarithm of the horizon, with twice its standard error.
 Chart DriftChart(const RefitTable& check, size_t i, double all_frames) {
   Chart chart;
@@ -39,8 +36,7 @@ Chart DriftChart(const RefitTable& check, size_t i, double all_frames) {
 }
 
 TextTable HorizonNumbers(const RefitTable& check) {
-  TextTable table({"parameter", "unit", "horizon", "value", "standard_error"},
-                  std::vector<bool>(5, true));
+  TextTable table({"parameter", "unit", "horizon", "value", "standard_error"}, AllWords(5));
   for (size_t i = 0; i < check.parameters.size(); ++i) {
     const auto add = [&](const std::string& horizon, double value, double error) {
       table.Add(
@@ -57,27 +53,26 @@ TextTable HorizonNumbers(const RefitTable& check) {
 }  // namespace
 
 ReportSection PushCheckSection(const FittedModel& model) {
-  ReportSection section{"push_check", "How far the pushes decide", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"push_check", "Sensitivity to the pushes", {}, {}, {}, {}, {}, ""};
   if (!model.push_check) return section;
   section.paragraphs = {
-      "The pushes are not known exactly: one made by inverse dynamics depends on its window and on "
-      "smoothing, a measured one carries its sensor's noise and clock. The fit was repeated with "
-      "other pushes; the total error holds what they move beside the standard error."};
+      "The pushes are not known exactly: a push from inverse dynamics depends on its window and on "
+      "smoothing, a measured push on the noise and the clock of its sensor. The fit was repeated "
+      "with other pushes; the total error combines the resulting changes with the standard error."};
   section.tables.push_back(
-      {"errors with the pushes among them", PushErrorTable(*model.push_check)});
+      {"errors including those of the pushes", PushErrorTable(*model.push_check)});
   section.tables.push_back(
-      {"by how much each refit moves a parameter", MovesTable(*model.push_check)});
+      {"change of each parameter in each refit", MovesTable(*model.push_check)});
   return section;
 }
 
 ReportSection PriorCheckSection(const FittedModel& model) {
-  ReportSection section{"prior_check", "Under other priors", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"prior_check", "Sensitivity to the priors", {}, {}, {}, {}, {}, ""};
   if (!model.prior_check || model.prior_check->rows.empty()) return section;
   section.paragraphs = {
-      "The fit repeated with centres and widths of all priors halved, and doubled. A parameter "
-      "that "
-      "the recordings know keeps its value; profiles and bootstrap cannot tell, for they carry the "
-      "same priors."};
+      "The fit was repeated with means and widths of all priors halved, and doubled. A parameter "
+      "that the recordings determine keeps its value; profiles and bootstrap cannot show this, "
+      "because they use the same priors."};
   section.tables.push_back({"values under other priors", PriorTable(*model.prior_check)});
   return section;
 }
@@ -87,8 +82,8 @@ ReportSection HorizonCheckSection(const FittedModel& model) {
   if (!model.horizon_check || model.horizon_check->rows.empty()) return section;
   const RefitTable& check = *model.horizon_check;
   section.paragraphs = {
-      "The fit repeated on the first frames of every recording alone. A parameter that means "
-      "something keeps its value; one that drifts stands for what the model leaves out.",
+      "The fit was repeated on only the first frames of every recording. A parameter with physical "
+      "meaning keeps its value; one that drifts compensates for something that the model omits.",
       DriftText(check)};
   if (const std::string claims = HorizonClaims(check); !claims.empty()) {
     section.paragraphs.push_back(claims);
@@ -100,7 +95,8 @@ ReportSection HorizonCheckSection(const FittedModel& model) {
   for (size_t i = 0; i < check.parameters.size(); ++i) charts.push_back(DriftChart(check, i, all));
   section.figures.push_back(
       {"horizons", "Each parameter by horizon, with twice its standard error.",
-       DrawCharts(charts, "horizons", kColumns, kPanelWidth, kPanelHeight), HorizonNumbers(check)});
+       DrawCharts(charts, "horizons", kPanelColumns, kPanelWidth, kPanelHeight),
+       HorizonNumbers(check)});
   return section;
 }
 

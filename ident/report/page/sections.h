@@ -11,6 +11,10 @@
 
 namespace pushid {
 
+// Charts side by side, unless a section says otherwise.
+inline constexpr int kPanelColumns = 3;
+inline constexpr double kPanelWidth = 320, kPanelHeight = 200;
+
 ReportSection LeadSection(const FittedModel& model, const PropagationSummary& propagation);
 ReportSection SummarySection(const FittedModel& model);
 ReportSection ParameterSection(const FittedModel& model);

@@ -45,8 +45,8 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
   }
   chart.lines = {{ended, kPredictedLook, false}, {ended, kPredictedLook, true}};
   return {"starts_waterfall",
-          "A step is another basin; starts on the lowest one agree. Those with recordings that "
-          "failed are left out.",
+          "Each step is another local minimum; starts on the lowest step agree. Starts with failed "
+          "recordings are left out.",
           DrawCharts({chart}, "waterfall of the starts", 1, kWaterfallWidth, kWaterfallHeight),
           numbers};
 }
@@ -55,7 +55,7 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
 
 ReportSection SolveSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"solve", "How the solver got there", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"solve", "Solver convergence", {}, {}, {}, {}, {}, ""};
   std::vector<const SolveStart*> ranked;
   for (const SolveStart& start : result.starts) ranked.push_back(&start);
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
@@ -87,8 +87,7 @@ ReportSection SolveSection(const FittedModel& model) {
   cost.title = axis.Title();
   gradient.title = "largest gradient component";
   ChartLine c{{}, kPredictedLook, false}, g = c;
-  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"},
-                    std::vector<bool>(5, true));
+  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"}, AllWords(5));
   for (size_t i = 0; i < trace.size(); ++i) {
     const double step = static_cast<double>(i);
     c.points.emplace_back(step, axis.At(trace[i].cost));

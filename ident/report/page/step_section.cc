@@ -29,8 +29,8 @@ ReportFigure MapFigure(const IdentifiedModel& model) {
   }
   picture.values = map.probability;
   return {"step_probability",
-          "Probability that a person of 80 kg steps who is pushed forwards at the hip for so long, "
-          "with such an impulse over the mass.",
+          "Probability that a person of 80 kg steps after a forward push at the hip, by the "
+          "duration of the push and its impulse divided by the mass.",
           DrawHeatMap(picture), numbers};
 }
 

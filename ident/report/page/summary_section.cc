@@ -52,7 +52,7 @@ ReportSection SummarySection(const FittedModel& model) {
   }
   section.tables.push_back({"", facts});
   if (const std::string network = NetworkText(result); !network.empty()) {
-    section.paragraphs.push_back("Learned on top: " + network + ".");
+    section.paragraphs.push_back("Learned terms: " + network + ".");
   }
   const std::string prepared = PreparationText(model.provenance.configuration);
   if (!prepared.empty()) section.paragraphs.push_back(prepared);
@@ -83,13 +83,13 @@ ReportSection BehaviourSection(const FittedModel& model) {
 
 ReportSection ProvenanceSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  ReportSection section{"provenance", "Where this comes from", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"provenance", "Provenance", {}, {}, {}, {}, {}, ""};
   section.paragraphs = {"pushid " + model.provenance.version + ", manifest " +
                         model.provenance.manifest + " (hash " + model.provenance.manifest_hash +
                         ")"};
   TextTable flags({"flag", "value"}, {true, true});
   for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
-  section.tables.push_back({"flags of the fit (what is empty is the preset's)", flags});
+  section.tables.push_back({"flags of the fit (empty: the preset's value)", flags});
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
   for (const FittedRecording& r : result.recordings) {
     files.Add({r.id, std::to_string(r.frames), r.content_hash});

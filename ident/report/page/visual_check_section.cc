@@ -9,8 +9,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kPanelWidth = 300, kPanelHeight = 210, kSmallWidth = 320;
-constexpr int kColumns = 3;
+constexpr double kCheckWidth = 300, kCheckHeight = 210;
 constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
 
 Chart StratumChart(const CheckedStratum& stratum) {
@@ -48,10 +47,10 @@ ReportFigure StrataFigure(const VisualCheck& check) {
     }
   }
   return {"visual_predictive_check",
-          "10th, 50th and 90th percentile over recordings of how far the hip has gone along the "
-          "push, over the speed of the push (lines), and the middle 90 % of the same percentiles "
-          "in simulated recordings (blue; the median's orange).",
-          DrawCharts(charts, "visual predictive check", kColumns, kPanelWidth, kPanelHeight),
+          "10th, 50th and 90th percentile over recordings of the hip's displacement along the "
+          "push, divided by the speed of the push (lines), and the central 90 % of the same "
+          "percentiles in simulated recordings (blue; of the median orange).",
+          DrawCharts(charts, "visual predictive check", kPanelColumns, kCheckWidth, kCheckHeight),
           numbers};
 }
 
@@ -103,9 +102,9 @@ ReportFigure HistogramFigure(const VisualCheck& check) {
   add("along", check.along);
   add("across", check.across);
   return {"probability_integral_transform",
-          "Where the recorded hip lies in the model's distribution, with standard errors clustered "
-          "by recording; even where the model is right.",
-          DrawCharts(charts, "probability integral transform", 2, kSmallWidth, kPanelHeight),
+          "Position of the recorded hip in the model's distribution, with standard errors "
+          "clustered by recording; uniform if the model is correct.",
+          DrawCharts(charts, "probability integral transform", 2, kPanelWidth, kCheckHeight),
           numbers};
 }
 
@@ -119,17 +118,18 @@ std::string TestText(const std::string& axis, const UniformityTest& test) {
 
 ReportSection VisualCheckSection(const FittedModel& model,
                                  const std::vector<RecordingView>& views) {
-  ReportSection section{"checks", "Does the model look right", {}, {}, {}, {}, {}, ""};
+  ReportSection section{"checks", "Visual predictive check", {}, {}, {}, {}, {}, ""};
   std::vector<PendulumRecording> recordings;
   for (const RecordingView& view : views) recordings.push_back(view.run.recording);
   const VisualCheck check = CheckVisually(ModelOf(model.fit), recordings);
   if (check.strata.empty()) return section;
   section.paragraphs = {
-      "Simulated recordings have effects of their own and errors that last; nothing of a recording "
-      "but its first frame and push is used. These recordings were fitted: new ones err more.",
+      "Simulated recordings have their own recording effects and correlated errors; only the first "
+      "frame and the push of a recording are used. These recordings were fitted: errors on new "
+      "ones are larger.",
       "Uniform? " + TestText("along", check.along) + "; " + TestText("across", check.across) +
           ". Values 0.25 s apart, Hotelling's test of five bins, clustered by recording: a small p "
-          "says that the distribution is not right."};
+          "indicates that the distribution is wrong."};
   section.tables.push_back({"", StrataTable(check)});
   section.figures.push_back(StrataFigure(check));
   section.figures.push_back(HistogramFigure(check));

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <csignal>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/content_hash.h"

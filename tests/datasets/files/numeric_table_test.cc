@@ -101,8 +101,8 @@ TEST_F(NumericTableTest, BadTables) {
       {csv, "a,b\n1,inf\n", ":2: b: 'inf' is not a finite number"},
       {storage, "f\nnRows=1\n", "endheader"},
       {storage, "f\nnRows=x\nendheader\na\n1\n", ":2: nRows must be a whole number"},
-      {storage, "f\nnRows=3\nendheader\na\n1\n", "announces 3 rows, the file has 1"},
-      {storage, "f\nnColumns=3\nendheader\na\n1\n", ":4: the head announces 3 columns"},
+      {storage, "f\nnRows=3\nendheader\na\n1\n", "declares 3 rows, the file has 1"},
+      {storage, "f\nnColumns=3\nendheader\na\n1\n", ":4: the header declares 3 columns"},
   };
   for (const Case& one : cases) {
     const Result<NumericTable> read = ReadNumericTable(WriteText("bad", one.text), one.format);

@@ -153,17 +153,17 @@ TEST_F(C3dTest, ManyChannelsTakeScale2) {
 }
 
 TEST_F(C3dTest, DamagedFilesAreNamed) {
-  EXPECT_TRUE(Contains(Damaged(1, "\x51"), "at byte 1: this is no C3D file"));
-  EXPECT_TRUE(Contains(Damaged(0, "\xff"), "the parameters should stand here"));
+  EXPECT_TRUE(Contains(Damaged(1, "\x51"), "at byte 1: this is not a C3D file"));
+  EXPECT_TRUE(Contains(Damaged(0, "\xff"), "the parameters should be here"));
   EXPECT_TRUE(Contains(Damaged(515, "\x50"), "the processor is 80"));
-  EXPECT_TRUE(Contains(Damaged(4, "\x03"), "no multiple of 10"));
+  EXPECT_TRUE(Contains(Damaged(4, "\x03"), "not a multiple of 10"));
   EXPECT_TRUE(Contains(Damaged(20, std::string(4, '\0')), "the frame rate is 0"));
   EXPECT_TRUE(Contains(Damaged(12, std::string("\x00\x00\xc0\x7f", 4)), "the scale of the points"));
   EXPECT_TRUE(Contains(Damaged(8, "\x01"), "the file has no frames"));
-  EXPECT_TRUE(Contains(Damaged(16, std::string(2, '\0')), "does not say where the data start"));
+  EXPECT_TRUE(Contains(Damaged(16, std::string(2, '\0')), "does not give the start of the data"));
   // The distance of the first group to the next record.
   EXPECT_TRUE(Contains(Damaged(523, "\xff\x7f"), "ends inside its parameters"));
-  EXPECT_TRUE(Contains(Damaged(523, "\x01"), "the next parameter stands inside this one"));
+  EXPECT_TRUE(Contains(Damaged(523, "\x01"), "the next parameter begins inside this one"));
 }
 
 TEST_F(C3dTest, TruncatedAnywhereIsAnErrorOrTheWholeFrames) {

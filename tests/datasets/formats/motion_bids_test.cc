@@ -148,7 +148,7 @@ TEST_F(MotionBidsTest, PushesThatCannotBeHeldOrRead) {
                        "_motion.tsv:1: some of the push's four channels have no value"));
   PointMotion twice = TwoPoints();
   twice.names = {"a", "a"};
-  EXPECT_TRUE(Contains(WriteMotionBids(stem, "push", twice, {})->message, "one name"));
+  EXPECT_TRUE(Contains(WriteMotionBids(stem, "push", twice, {})->message, "the same name"));
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ PointMotion SamplePoints() {
   return motion;
 }
 
-void ExpectSame(const std::vector<std::vector<Eigen::Vector3d>>& a,
-                const std::vector<std::vector<Eigen::Vector3d>>& b) {
+void ExpectSameTracks(const std::vector<std::vector<Eigen::Vector3d>>& a,
+                      const std::vector<std::vector<Eigen::Vector3d>>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     ASSERT_EQ(a[i].size(), b[i].size());
@@ -44,7 +44,7 @@ TEST_F(PointFilesTest, TrcRoundTrip) {
   EXPECT_EQ(read.value().names, SamplePoints().names);
   EXPECT_EQ(read.value().rate_hz, 100.0);
   EXPECT_EQ(read.value().unit, LengthUnit::kMillimetre);
-  ExpectSame(read.value().positions, SamplePoints().positions);
+  ExpectSameTracks(read.value().positions, SamplePoints().positions);
 }
 
 // As OpenSim and Cortex write it: tabs at the end of lines, no blank line, a marker that leaves its

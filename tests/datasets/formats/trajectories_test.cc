@@ -80,7 +80,7 @@ TEST_F(TrajectoriesTest, BadText) {
   const std::string head = "# framerate: 10\n";
   EXPECT_TRUE(Contains(TextMessage("1 0 0 0 0\n"), "a line such as '# framerate: 16'"));
   EXPECT_TRUE(Contains(TextMessage("# framerate: fast\n1 0 0 0 0\n"), "as a number"));
-  EXPECT_TRUE(Contains(TextMessage(head), "holds no positions"));
+  EXPECT_TRUE(Contains(TextMessage(head), "contains no positions"));
   EXPECT_TRUE(Contains(TextMessage(head + "1 0 0 0\n1 0 1 1\n"), ":3: person 1 was in frame 0"));
   EXPECT_TRUE(Contains(TextMessage(head + "1 0.5 0 0\n"), ":2: the frame must be a whole number"));
   EXPECT_TRUE(Contains(TextMessage(head + "a 0 0 0\n"), ":2: the id must be a whole number"));
@@ -103,7 +103,7 @@ PointMotion Crowd(const std::vector<std::string>& names) {
   return motion;
 }
 
-void ExpectSame(const Result<PointMotion>& read, const PointMotion& motion, bool heights) {
+void ExpectSameMotion(const Result<PointMotion>& read, const PointMotion& motion, bool heights) {
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(read.value().rate_hz, motion.rate_hz);
   for (std::size_t i = 0; i < motion.names.size(); ++i) {
@@ -121,9 +121,9 @@ void ExpectSame(const Result<PointMotion>& read, const PointMotion& motion, bool
 TEST_F(TrajectoriesTest, ThereAndBack) {
   const PointMotion motion = Crowd({"3", "17"});
   ASSERT_FALSE(WriteTrajectoryText(Path("a.txt"), motion));
-  ExpectSame(ReadTrajectoryText(Path("a.txt")), motion, true);
+  ExpectSameMotion(ReadTrajectoryText(Path("a.txt")), motion, true);
   ASSERT_FALSE(WriteTrajectorySqlite(Path("a.sqlite"), motion));
-  ExpectSame(ReadTrajectorySqlite(Path("a.sqlite")), motion, false);
+  ExpectSameMotion(ReadTrajectorySqlite(Path("a.sqlite")), motion, false);
   EXPECT_EQ(ReadTrajectorySqlite(Path("a.sqlite")).value().names, motion.names);
 }
 
@@ -159,7 +159,7 @@ TEST_F(TrajectoriesTest, BadSqlite) {
   };
   EXPECT_TRUE(Contains(message(Path("none.sqlite")), "none.sqlite: "));
   EXPECT_TRUE(Contains(message(WriteText("text.sqlite", "id,frame\n1,2\n, and more of it")),
-                       "is no SQLite file of JuPedSim: file is not a database"));
+                       "is not a SQLite file of JuPedSim: file is not a database"));
   EXPECT_TRUE(Contains(message(Sqlite("b.sqlite", "CREATE TABLE metadata (key TEXT, value TEXT);")),
                        "fps in the table metadata is 0"));
   EXPECT_TRUE(Contains(message(Sqlite("c.sqlite",

@@ -50,7 +50,7 @@ TEST_F(InspectionTest, AGoodFileHasNoWarnings) {
   const std::string said = Said();
   for (const char* part :
        {"a.trc: TRC", "points          Hips, LANK, RANK", "100 at 100 per second, 1 s",
-        "unit            mm, as the file says", "hip 0.87 m above the ankles",
+        "unit            mm, as given in the file", "hip 0.87 m above the ankles",
         "z is up, the person faces x (by the ankles)", "static (hip 0 m/s)",
         "the hip has moved 2 cm at frame 43 (0.43 s); it goes 0.472 m, mostly along x"}) {
     EXPECT_TRUE(Contains(said, part));
@@ -77,7 +77,7 @@ TEST_F(InspectionTest, FacingInMidStride) {
   }
   const std::string said = Said();
   EXPECT_TRUE(Contains(said, "the person faces x (by the ankles, unsure)"));
-  EXPECT_TRUE(Contains(said, "warning: where the person faces is unsure: one foot is ahead"));
+  EXPECT_TRUE(Contains(said, "warning: the facing direction is uncertain: one foot is ahead"));
   for (const auto& [name, x, y] : {std::tuple("LASI", 100.0, 120.0), {"RASI", 100.0, -120.0}}) {
     motion_.names.push_back(name);
     motion_.positions.emplace_back();
@@ -92,7 +92,7 @@ TEST_F(InspectionTest, WalkingToTheSideIsDoubted) {
   for (int t = 0; t < 100; ++t) {
     for (auto& track : motion_.positions) track[t].y() += 10.0 * t;
   }
-  EXPECT_TRUE(Contains(Said(), "unsure: the hip goes 65 degrees off it"));
+  EXPECT_TRUE(Contains(Said(), "uncertain: the hip goes 65 degrees off it"));
 }
 
 // The left foot goes 0.3 m to the side that the person faces, whatever that axis is called.
@@ -113,11 +113,11 @@ TEST_F(InspectionTest, Units) {
   for (auto& track : motion_.positions) {
     for (Eigen::Vector3d& p : track) p *= 0.1;
   }
-  EXPECT_TRUE(Contains(Said(), "the file says mm, but the person looks like cm: set length_unit"));
+  EXPECT_TRUE(Contains(Said(), "the file gives mm, but the person looks like cm: set length_unit"));
   for (auto& track : motion_.positions) {
     for (Eigen::Vector3d& p : track) p *= 1e-4;
   }
-  EXPECT_TRUE(Contains(Said(), "no unit makes a standing person of it"));
+  EXPECT_TRUE(Contains(Said(), "no unit gives a standing person"));
 }
 
 TEST_F(InspectionTest, GapsAndJumps) {
@@ -133,13 +133,13 @@ TEST_F(InspectionTest, GapsAndJumps) {
 
 TEST_F(InspectionTest, StartAndOnset) {
   for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 2.0 * t;
-  EXPECT_TRUE(Contains(Said(), "the person moves at the start: cut it by first_frame"));
+  EXPECT_TRUE(Contains(Said(), "the person moves at the start: skip the motion by first_frame"));
   for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.1 * t;
   EXPECT_TRUE(Contains(Said(), "the hip never moves by 2 cm: there is no push"));
   // From rest, pushed from the first frame on: cutting the start would cut the push.
   for (int t = 0; t < 100; ++t) motion_.positions[0][t].x() = 0.2 * t * t;
   const std::string pushed = Said();
-  EXPECT_TRUE(Contains(pushed, "start           the push begins at once"));
+  EXPECT_TRUE(Contains(pushed, "start           the push begins at the first frame"));
   EXPECT_EQ(pushed.find("moves at the start"), std::string::npos) << pushed;
 }
 
@@ -222,7 +222,7 @@ TEST_F(InspectionTest, OtherFiles) {
   EXPECT_TRUE(Contains(Of("none.bvh"), "there is no such file"));
   EXPECT_TRUE(Contains(Of(""), "this is a folder"));
   WriteText("x.dat", "hello");
-  EXPECT_TRUE(Contains(Of("x.dat"), "what this is cannot be told"));
+  EXPECT_TRUE(Contains(Of("x.dat"), "unknown kind of file"));
 }
 
 }  // namespace

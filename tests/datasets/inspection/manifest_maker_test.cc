@@ -36,11 +36,11 @@ TEST(NamePatternTest, Matches) {
 }
 
 TEST(NamePatternTest, BadPatternsAndFilling) {
-  EXPECT_TRUE(Contains(Matched("{a", ""), "opens no name"));
-  EXPECT_TRUE(Contains(Matched("{}", ""), "opens no name"));
-  EXPECT_TRUE(Contains(Matched("{a{b}}", ""), "opens no name"));
-  EXPECT_TRUE(Contains(Matched("a}", ""), "closes nothing"));
-  EXPECT_TRUE(Contains(Matched("*.bvh", ""), "names nothing"));
+  EXPECT_TRUE(Contains(Matched("{a", ""), "{ without a name"));
+  EXPECT_TRUE(Contains(Matched("{}", ""), "{ without a name"));
+  EXPECT_TRUE(Contains(Matched("{a{b}}", ""), "{ without a name"));
+  EXPECT_TRUE(Contains(Matched("a}", ""), "} without a {"));
+  EXPECT_TRUE(Contains(Matched("*.bvh", ""), "contains no names"));
   const NamePattern pattern = NamePattern::Parse("push/{a}_{b}.csv").value();
   EXPECT_EQ(pattern.Fill({{"a", "x"}, {"b", "y"}, {"c", "z"}}), "push/x_y.csv");
   EXPECT_FALSE(pattern.Fill({{"a", "x"}}));
@@ -149,7 +149,7 @@ TEST_F(ManifestMakerTest, PushesThatAreNoneAndMassesOfNobodyAreToldOf) {
   ASSERT_EQ(made.value().warnings.size(), 2u);
   EXPECT_TRUE(Contains(made.value().warnings[0], "push/ben_1.csv:1"));
   EXPECT_TRUE(Contains(made.value().warnings[0], "pushid-push --sensor"));
-  EXPECT_TRUE(Contains(made.value().warnings[1], "the masses name bem, whom no recording has"));
+  EXPECT_TRUE(Contains(made.value().warnings[1], "the masses list bem, who is in no recording"));
 }
 
 TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {
@@ -194,7 +194,7 @@ TEST_F(ManifestMakerTest, PeopleOfTwoRecordingsStayApart) {
   EXPECT_EQ(make({"r1_a_p1.bvh", "r1_b_p2.bvh"}, "{take}_*_p{person}.bvh"), "no error");
   EXPECT_TRUE(
       Contains(make({"r1_a_p1.bvh", "r1_a_p2.bvh", "r1_b_p1.bvh"}, "{take}_*_p{person}.bvh"),
-               "r1_a_p1.bvh and r1_b_p1.bvh are both person '1' of recording 'r1'; give what"));
+               "r1_a_p1.bvh and r1_b_p1.bvh are both person '1' of recording 'r1'; replace the "));
   EXPECT_TRUE(Contains(make({"g_1-2,1.bvh", "g-1_2,2.bvh"}, "{take}-{more},{person}.bvh"),
                        "both recording 'g_1_2'; give one of them another name"));
 }
@@ -234,7 +234,7 @@ TEST_F(ManifestMakerTest, RateOfC3d) {
 TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   options_.masses = {};
   options_.mass_kg = 0.0;
-  EXPECT_TRUE(Contains(MakingMessage(), "no mass is known of anna, ben"));
+  EXPECT_TRUE(Contains(MakingMessage(), "no mass is given for anna, ben"));
   options_.mass_kg = 70.0;
   options_.push_pattern = "";
   options_.pattern = "{subject}_*.bvh";

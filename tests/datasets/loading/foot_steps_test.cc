@@ -9,8 +9,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 struct KnownStep {
   double lift_off_s, landing_s, x, y;  // where it takes the foot, m
 };
@@ -45,7 +43,7 @@ struct KnownFoot {
       for (const KnownStep& step : steps) {
         const double way = Swing(t, step.lift_off_s, step.landing_s);
         place += way * Eigen::Vector3d(step.x, step.y, 0.0);
-        height += 0.1 * std::sin(kPi * way);
+        height += 0.1 * std::sin(M_PI * way);
         heel += heel_lift * (Swing(t, step.lift_off_s - 0.15, step.lift_off_s) - way);
       }
       // The ankle turns about the toe as the heel rises: up, and forward by less.

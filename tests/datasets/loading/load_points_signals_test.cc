@@ -18,7 +18,7 @@ TEST_F(LoadPointSignalsTest, UnitsOfTheFile) {
   ExpectTheWalker();  // TRC says m
   manifest_.length_unit = LengthUnit::kMillimetre;
   EXPECT_TRUE(Contains(Message(), "looks like m, pass --length_unit=m"));
-  EXPECT_TRUE(Contains(warnings_[0], "says its lengths are m; they are read as mm"));
+  EXPECT_TRUE(Contains(warnings_[0], "gives lengths in m; they are read as mm"));
 }
 
 TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
@@ -35,7 +35,7 @@ TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
   EXPECT_EQ(LengthUnitFromName("M"), LengthUnit::kMetre);
   EXPECT_EQ(LengthUnitFromName("metres"), LengthUnit::kMetre);
   with_unit("inch");
-  EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': says its lengths are in 'inch'"));
+  EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': gives lengths in 'inch'"));
   entry().length_unit = LengthUnit::kMillimetre;
   ExpectTheWalker();
 }
@@ -64,7 +64,7 @@ TEST_F(LoadPointSignalsTest, TheFirstFrameMustBeSeen) {
   for (int t = 0; t < 3; ++t) motion_.positions[5][t] = kHidden;
   Use("a.trc", MotionFormat::kTrc);
   EXPECT_TRUE(Contains(Message(),
-                       "at frame 0, where the fit starts, hip or ankles are not seen; set "
+                       "at frame 0, where the fit starts, hip or ankles are missing; set "
                        "first_frame to 3 or later"));
   entry().first_frame = 3;
   entry().end_frame = 18;
@@ -85,7 +85,7 @@ TEST_F(LoadPointSignalsTest, RatesThatDiffer) {
   entry().fps = 50.0;
   ASSERT_TRUE(Load().ok());
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "(60 frames per second), the manifest says 50"));
+  EXPECT_TRUE(Contains(warnings_[0], "(60 frames per second), the manifest gives 50"));
 }
 
 // From TRC and C3D heads, a column of times, a mapping; without all of those there is none.
@@ -110,7 +110,7 @@ TEST_F(LoadPointSignalsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
   text.replace(text.find("time"), 4, "tick");
   WriteText("motion.csv", text);
   EXPECT_TRUE(Contains(Message(), Path("motion.csv") + ": recording 'a': neither the file nor the "
-                                                       "manifest says the frame rate; give fps"));
+                                                       "manifest gives the frame rate; give fps"));
   WriteText("map.json", "{\"frame_rate\": 60}");
   entry().mapping = "map.json";
   EXPECT_EQ(rate(), 60.0);

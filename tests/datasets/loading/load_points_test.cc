@@ -67,8 +67,8 @@ TEST_F(LoadPointsTest, BadManifestsOfPoints) {
     const Result<Manifest> read = ReadManifest(WriteText("bad.json", text));
     return read.ok() ? std::string("no error") : read.error().ToString();
   };
-  EXPECT_TRUE(
-      Contains(message("\"trc\":", "\"bvh\": [\"a.bvh\"], \"trc\":"), "trc is given beside bvh"));
+  EXPECT_TRUE(Contains(message("\"trc\":", "\"bvh\": [\"a.bvh\"], \"trc\":"),
+                       "trc is given together with bvh"));
   EXPECT_TRUE(Contains(message("\"trc\":", "\"trk\":"), "bvh is missing"));
   EXPECT_TRUE(Contains(message("\"trc\": [\n    \"a.trc\"\n   ]", "\"trc\": []"),
                        "trc lists 0 files for 1 subjects"));

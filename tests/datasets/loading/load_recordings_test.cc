@@ -131,7 +131,7 @@ TEST_F(LoadRecordingsTest, AxesAreTurned) {
     motion.values[i + 2] = p.x();
   }
   WriteBvhFile("a.bvh", motion);
-  EXPECT_TRUE(Contains(Message(), "say so by \"up\" and \"forward\""));
+  EXPECT_TRUE(Contains(Message(), "set \"up\" and \"forward\""));
   entry().up = "y";
   entry().forward = "+z";
   const auto loaded = Load();
@@ -243,9 +243,9 @@ TEST_F(LoadRecordingsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
   entry().subjects.push_back({"s2", 70.0});
   entry().motion.push_back("b.bvh");
   EXPECT_TRUE(Contains(Message(), Path("b.bvh") +
-                                      ": recording 'a': the file says 25 frames per "
+                                      ": recording 'a': the file gives 25 frames per "
                                       "second, but " +
-                                      Path("a.bvh") + " says 60; give the right one as fps"));
+                                      Path("a.bvh") + " gives 60; give the right one as fps"));
   entry().fps = 60.0;
   EXPECT_TRUE(Load().ok());
   EXPECT_EQ(warnings_.size(), 1u) << "25 is not 60";
@@ -255,7 +255,7 @@ TEST_F(LoadRecordingsTest, FrameCounts) {
   entry().frames = 21;
   EXPECT_EQ(Message(), Path("a.bvh") +
                            ": recording 'a': wrong frame count: the file has 20 frames, "
-                           "the manifest says 21");
+                           "the manifest gives 21");
   entry().frames.reset();
   WriteBvhFile("a.bvh", Walker(2));
   EXPECT_TRUE(Contains(Message(), "the motion has 2 frames; at least three are needed"));

@@ -4,22 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "datasets/files/random.h"
 #include "datasets/loading/low_pass.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/loading/resample.h"
 #include "datasets/loading/track_gaps.h"
+#include "tests/datasets/points_folder.h"
 #include "tests/test_support.h"
 
 namespace pushid {
 namespace {
 
 using Track = std::vector<Eigen::Vector3d>;
-constexpr double kPi = 3.14159265358979323846;
-
-const Eigen::Vector3d kHidden = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
 Track Cubic(int frames) {
   Track track;
@@ -81,12 +78,12 @@ double Gain(double hz, double cutoff_hz, double rate_hz) {
   Track track;
   const int frames = static_cast<int>(20.0 * rate_hz);
   for (int t = 0; t < frames; ++t) {
-    track.push_back({std::sin(2.0 * kPi * hz * t / rate_hz), 0.0, 0.0});
+    track.push_back({std::sin(2.0 * M_PI * hz * t / rate_hz), 0.0, 0.0});
   }
   LowPass(cutoff_hz, rate_hz, &track);
   double in_phase = 0.0, out_of_phase = 0.0, power = 0.0;  // in the middle
   for (int t = frames / 4; t < 3 * frames / 4; ++t) {
-    const double phase = 2.0 * kPi * hz * t / rate_hz;
+    const double phase = 2.0 * M_PI * hz * t / rate_hz;
     in_phase += track[t].x() * std::sin(phase);
     out_of_phase += track[t].x() * std::cos(phase);
     power += std::sin(phase) * std::sin(phase);
@@ -100,7 +97,7 @@ double Gain(double hz, double cutoff_hz, double rate_hz) {
 TEST(LowPassTest, FrequencyResponse) {
   for (double rate : {60.0, 120.0, 1000.0}) {
     for (double hz : {0.5, 3.0, 6.0, 12.0, 20.0}) {
-      const double ratio = std::tan(kPi * hz / rate) / std::tan(kPi * 6.0 / rate);
+      const double ratio = std::tan(M_PI * hz / rate) / std::tan(M_PI * 6.0 / rate);
       EXPECT_NEAR(Gain(hz, 6.0, rate), 1.0 / (1.0 + (std::sqrt(2.0) - 1.0) * std::pow(ratio, 4)),
                   2e-3)
           << hz << " Hz at " << rate;

@@ -52,7 +52,7 @@ TEST(RecordingFromTracks, WhatIsWrongIsTold) {
   };
   using Tracks = TrackedRecording*;
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->fps = 0.0; }), "recording 'trial': fps"));
-  EXPECT_TRUE(Contains(problem([](Tracks t) { t->people.clear(); }), "nobody"));
+  EXPECT_TRUE(Contains(problem([](Tracks t) { t->people.clear(); }), "no people"));
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->people[0].mass_kg = 0.0; }), "mass of 'anna'"));
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->people[0].hip.pop_back(); }), "19, 20 and 20"));
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->pushes[0].person = 1; }), "no person 1"));

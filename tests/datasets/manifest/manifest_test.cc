@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -222,7 +224,7 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
       {"\"length_unit\": \"m\"", "\"length_scale\": -1",
        ":32:20: ", "length_scale is -1; it must be the metres of one file unit"},
       {"\"length_unit\": \"m\"", "\"length_unit\": \"m\", \"length_scale\": 0.0564",
-       ":32:40: ", "length_scale is given beside length_unit"},
+       ":32:40: ", "length_scale is given together with length_unit"},
       {"\"left_ankle\": 3", "\"left_anckle\": 3",
        ":29:", "left_anckle is not known; there may be hip, lower_spine,"},
       {"{\"person\": 0", "{\"person\": 2", ":33:26: ", "push 0: person is '2'"},
@@ -260,7 +262,7 @@ TEST_F(ManifestTest, NothingInIt) {
   EXPECT_TRUE(Contains(message("{\"recordings\": [5]}"), "recording 0: must be an object"));
   EXPECT_TRUE(Contains(message("{\"units\": {\"bvh_length\": \"mm\"}, \"length_scale\": 0.05, "
                                "\"recordings\": [{}]}"),
-                       "length_scale is given beside units.bvh_length"));
+                       "length_scale is given together with units.bvh_length"));
   EXPECT_TRUE(Contains(ReadManifest(Path("none.json")).error().ToString(), "no such file"));
 }
 

@@ -12,18 +12,18 @@
 namespace pushid {
 namespace {
 
-using Vector3 = Eigen::Vector3d;
+using Eigen::Vector3d;
 
 // Presses the platform, platform axes, SI: the force on it at (x, y) of its surface and a free
 // moment about z.
 struct Load {
-  Vector3 force{30.0, -20.0, 700.0};  // z points into the platform: 700 N are the person's weight
+  Vector3d force{30.0, -20.0, 700.0};  // z points into the platform: 700 N are the person's weight
   double x = 0.05, y = -0.08, free_moment = 2.0;
 };
 
 // M about the sensors' origin, `depth` under the surface: r = (x, y, -depth), z down.
-Vector3 MomentAtSensors(const Load& load, double depth) {
-  return Vector3(load.x, load.y, -depth).cross(load.force) + Vector3(0.0, 0.0, load.free_moment);
+Vector3d MomentAtSensors(const Load& load, double depth) {
+  return Vector3d(load.x, load.y, -depth).cross(load.force) + Vector3d(0.0, 0.0, load.free_moment);
 }
 
 C3dFile WithChannels(const C3dPlatform& platform, const std::vector<double>& values) {
@@ -46,16 +46,16 @@ void ExpectLoad(const C3dFile& file, const Load& load) {
   const Result<PlatformRecord> record = EvaluatePlatform(file, 0, LengthUnit::kMillimetre);
   ASSERT_TRUE(record.ok()) << record.error().ToString();
   ASSERT_EQ(record.value().force.size(), 100u);
-  const Vector3 reaction(-load.force.x(), load.force.y(), load.force.z());
+  const Vector3d reaction(-load.force.x(), load.force.y(), load.force.z());
   EXPECT_LT((record.value().force[7] - reaction).norm(), 1e-9)
       << record.value().force[7].transpose();
-  const Vector3 centre(0.3 + load.x, -load.y, 0.0);
+  const Vector3d centre(0.3 + load.x, -load.y, 0.0);
   EXPECT_LT((record.value().centre[7] - centre).norm(), 1e-9)
       << record.value().centre[7].transpose();
   // On the platform +2 N m about z, which points down: on the person the opposite about down, that
   // is the same about up.
   EXPECT_NEAR(record.value().free_moment[7], load.free_moment, 1e-9);
-  EXPECT_LT((record.value().normal - Vector3::UnitZ()).norm(), 1e-12);
+  EXPECT_LT((record.value().normal - Vector3d::UnitZ()).norm(), 1e-12);
 }
 
 TEST(ForcePlatformTest, Type1) {
@@ -69,7 +69,7 @@ TEST(ForcePlatformTest, Type1) {
 
 TEST(ForcePlatformTest, Type2) {
   const Load load;
-  const Vector3 m = 1e3 * MomentAtSensors(load, 0.04);
+  const Vector3d m = 1e3 * MomentAtSensors(load, 0.04);
   const C3dPlatform platform = SampleC3d().platforms[0];
   C3dFile file =
       WithChannels(platform, {load.force.x(), load.force.y(), load.force.z(), m.x(), m.y(), m.z()});
@@ -96,7 +96,7 @@ TEST(ForcePlatformTest, Type3) {
   C3dPlatform platform = SampleC3d().platforms[0];
   platform.type = 3;
   platform.origin = {1e3 * a, 1e3 * b, -1e3 * depth};
-  const Vector3 m = MomentAtSensors(load, depth);
+  const Vector3d m = MomentAtSensors(load, depth);
   Eigen::Matrix4d sums;
   sums << 1, 1, 1, 1, b, b, -b, -b, -a, a, a, -a, 1, -1, 1, -1;
   const Eigen::Vector4d fz = sums.inverse() * Eigen::Vector4d(load.force.z(), m.x(), m.y(), 0.0);
@@ -123,7 +123,7 @@ TEST(ForcePlatformTest, Type4) {
 
 TEST(ForcePlatformTest, BaselineIsTakenOff) {
   const Load load;
-  const Vector3 m = 1e3 * MomentAtSensors(load, 0.04);
+  const Vector3d m = 1e3 * MomentAtSensors(load, 0.04);
   C3dFile file = WithChannels(SampleC3d().platforms[0], {load.force.x(), load.force.y(),
                                                          load.force.z(), m.x(), m.y(), m.z()});
   for (C3dAnalogChannel& channel : file.analog) {
@@ -144,8 +144,8 @@ TEST(ForcePlatformTest, OnAWall) {
       1300.0, 1300.0, 700.0, 700.0;    // +y of it is the world's z: its z is the world's x
   const Result<PlatformRecord> record = EvaluatePlatform(file, 0, LengthUnit::kMillimetre);
   ASSERT_TRUE(record.ok());
-  EXPECT_LT((record.value().normal + Vector3::UnitX()).norm(), 1e-12);
-  EXPECT_LT((record.value().force[0] - Vector3(-700.0, 20.0, -10.0)).norm(), 1e-9)
+  EXPECT_LT((record.value().normal + Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_LT((record.value().force[0] - Vector3d(-700.0, 20.0, -10.0)).norm(), 1e-9)
       << record.value().force[0].transpose();
 }
 

@@ -64,7 +64,7 @@ TEST_F(SensorChoiceTest, Platform) {
   EXPECT_NEAR(ReadSensor(choice).value().force[0].x(), 700.0, 1e-3);
   EXPECT_TRUE(
       Contains(Message(Choice("a.c3d", "platform:2")), "no force platform 2; the file has 1"));
-  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "platform:x")), "'platform:x' is no platform"));
+  EXPECT_TRUE(Contains(Message(Choice("a.c3d", "platform:x")), "'platform:x' is not a platform"));
 }
 
 TEST_F(SensorChoiceTest, ColumnsOfTables) {
@@ -87,7 +87,7 @@ TEST_F(SensorChoiceTest, ColumnsOfTables) {
   EXPECT_EQ(ReadSensor(resting).value().force[1].x(), 2.0 * 5.0 - 30.0);
   resting = Choice("a.mot", "ground_force_v");
   resting.zero_n = 30.0;
-  EXPECT_TRUE(Contains(Message(resting), "a sensor of one number"));
+  EXPECT_TRUE(Contains(Message(resting), "a sensor with a single axis"));
   SensorChoice zero = Choice("a.csv", "");
   zero.gain = 0.0;
   EXPECT_TRUE(Contains(Message(zero), "gain"));
@@ -135,7 +135,8 @@ TEST_F(SensorChoiceTest, Lists) {
       {"[]", "a list of sensors is expected"},
       {"[{}]", "sensor 0: file is missing"},
       {"[{\"file\": \"a\", \"direction\": [1, 2]}]", "direction must be [x, y, z]"},
-      {"[{\"file\": \"a\", \"height\": 1, \"height_m\": 1}]", "height is given beside height_m"},
+      {"[{\"file\": \"a\", \"height\": 1, \"height_m\": 1}]",
+       "height is given together with height_m"},
       {"[{\"file\": \"a\", \"gain\": \"2\"}]", "gain must be the N per unit"},
       {"[{\"file\": \"a\", \"hieght\": 1}]", "hieght is not known; there may be file, column"},
       {"[{\"file\": \"a\", \"idle_force\": -1}]", "at least 0 N"},

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
 #include "ident/figures/svg.h"
 #include "ident/formations/formation_bodies.h"
@@ -15,7 +16,7 @@
 namespace pushid {
 namespace {
 
-Animation TwoPeople() {
+Animation AnimatedPair() {
   Animation animation;
   animation.title = "a </script> & \"b\"";
   AddRecorded({"x"}, {BodyMotion(5, StandingPose())}, &animation);
@@ -30,7 +31,7 @@ Animation TwoPeople() {
 }
 
 TEST(AnimationTest, ThePageStandsAloneAndItsDataParse) {
-  const std::string html = AnimationHtml(TwoPeople());
+  const std::string html = AnimationHtml(AnimatedPair());
   EXPECT_EQ(html.find("http"), std::string::npos);
   const size_t begin = html.find("const data=") + 11, end = html.find(";\nconst $=");
   ASSERT_NE(end, std::string::npos);
@@ -93,7 +94,7 @@ TEST(AnimationTest, NothingRecordedNothingCalledSo) {
   const Animation animation = Moving({0, 1});
   EXPECT_EQ(PoseStripSvg(animation, 2).find("recorded"), std::string::npos);
   EXPECT_EQ(AnimationHtml(animation).find("> recorded<"), std::string::npos);
-  EXPECT_TRUE(Contains(AnimationHtml(TwoPeople()), "> recorded<"));
+  EXPECT_TRUE(Contains(AnimationHtml(AnimatedPair()), "> recorded<"));
 }
 
 TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
@@ -121,7 +122,7 @@ TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
 }
 
 TEST(AnimationTest, TheStripHasItsPosesAndTimes) {
-  const std::string svg = PoseStripSvg(TwoPeople(), 3);
+  const std::string svg = PoseStripSvg(AnimatedPair(), 3);
   EXPECT_TRUE(Contains(svg, "0.0667 s"));
   EXPECT_TRUE(Contains(svg, "a &lt;/script&gt;"));
   size_t heads = 0;

@@ -2,6 +2,7 @@
 #include "ident/bodies/peer_files.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/models/mrt_samples.h"
 #include "tests/test_support.h"
@@ -85,7 +86,7 @@ using PeerFilesTest = TempDirTest;
 TEST_F(PeerFilesTest, MrtComesBackToTheLastBit) {
   RestorationFile file;
   file.kind = RestorationKind::kMrt;
-  file.settings[kMrtSizeKey] = "small";
+  (*file.settings)[kMrtSizeKey] = "small";
   AddTensors(RandomMrt(), &file.tensors);
   ASSERT_FALSE(WriteRestorationFile(Path("m"), file));
   const auto peer = LoadPeer(Path("m"));
@@ -109,9 +110,9 @@ TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
   file.kind = RestorationKind::kMrt;
   EXPECT_TRUE(Contains(error(file), "scaling.tokens.mean is missing; train again"));
   AddTensors(RandomMrt(), &file.tensors);
-  file.settings[kMrtSizeKey] = "large";
+  (*file.settings)[kMrtSizeKey] = "large";
   EXPECT_TRUE(Contains(error(file), "size is 'large'; it must be one of small, published"));
-  file.settings[kMrtSizeKey] = "published";
+  (*file.settings)[kMrtSizeKey] = "published";
   EXPECT_TRUE(Contains(error(file), "local_token.weights is 64 x 66, not 128 x 66"));
   const auto nowhere = LoadPeer(Path("nowhere"));
   ASSERT_FALSE(nowhere.ok());

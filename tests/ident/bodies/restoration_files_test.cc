@@ -2,6 +2,7 @@
 #include "ident/bodies/restoration_files.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/npy.h"
 #include "ident/bodies/body_files.h"
@@ -49,7 +50,7 @@ TEST_F(RestorationFilesTest, AWindowComesBackToTheLastBit) {
 TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
   RestorationFile file;
   file.kind = RestorationKind::kCvae;
-  file.settings["coordinates"] = "ldp";
+  (*file.settings)["coordinates"] = "ldp";
   file.tensors = ToTensors(RandomCvae());
   ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
   const auto loaded = LoadRestoration(Path("c"));
@@ -70,7 +71,7 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
   for (const RestorationView view : {RestorationView::kNeighbours, RestorationView::kPose}) {
     const WindowWeights weights = RandomWindow(1, view);
     RestorationFile file;
-    file.settings["sees"] = NameOf(view);
+    (*file.settings)["sees"] = NameOf(view);
     AddTensors("inputs", weights.inputs, &file.tensors);
     AddTensors("network", weights.network, &file.tensors);
     ASSERT_FALSE(WriteRestorationFile(Path("v"), file));
@@ -81,7 +82,7 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
   }
   RestorationFile file;
   file.kind = RestorationKind::kCvae;
-  file.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
+  *file.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
   file.tensors = ToTensors(RandomCvae(1, {CvaeCoordinates::kTip, false, false}));
   ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
   const auto loaded = LoadRestoration(Path("c"));
@@ -128,12 +129,12 @@ TEST_F(RestorationFilesTest, DamagedOrExchangedWeightsAreRefused) {
   WriteWindow();
   std::string bytes = ReadText(Path("r/weights.npy"));
   WriteText("r/weights.npy", bytes.substr(0, bytes.size() / 2));
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "announces"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "declares"));
   bytes[bytes.size() - 3] ^= 0x10;
   WriteText("r/weights.npy", bytes);
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "weights_hash"));
   WriteText("r/weights.npy", "not a file of numbers");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "no .npy file"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "not a .npy file"));
 }
 
 TEST_F(RestorationFilesTest, NumbersThatAreNoneAreRefused) {
@@ -144,7 +145,7 @@ TEST_F(RestorationFilesTest, NumbersThatAreNoneAreRefused) {
   AddTensors("inputs", weights.inputs, &file.tensors);
   AddTensors("network", weights.network, &file.tensors);
   ASSERT_FALSE(WriteRestorationFile(Path("r"), file));
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "network.1.weights has entries that are no numbers"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "network.1.weights has entries that are not numbers"));
 }
 
 using NpyTest = TempDirTest;

@@ -249,7 +249,7 @@ TEST(Advice, OfNullDirectionsHoldsOneOfThem) {
   ASSERT_FALSE(EditTable({"", "Kp_x,Kp_y", "", "", ""}, &options.table));
   const std::vector<Advice> advice = Advise({Fit(MakePendulums(study), options), {}, {}, {}, {}});
   ASSERT_FALSE(advice.empty());
-  EXPECT_TRUE(Contains(advice.front().sentence, "cannot be told apart"));
+  EXPECT_TRUE(Contains(advice.front().sentence, "cannot be separated"));
   EXPECT_TRUE(Contains(advice.front().command, "--fix=Kp_"));
 }
 

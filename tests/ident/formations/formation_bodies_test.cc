@@ -12,7 +12,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 40;
+constexpr int kBodyFrames = 40;
 
 LoadedGenerator RandomGenerator(double blend, bool pendulum = false) {
   DiffusionStructure structure;
@@ -41,7 +41,7 @@ class GeneratedBodiesTest : public ::testing::Test {
   GeneratedBodiesTest() {
     scene_ = SampleFormation(FormationShape::kDiamond, 5, {0});
     first_poses_ = TakePoses({SyntheticPose(0.9), StandingPose()}, &scene_);
-    run_ = RunFormation(ContactModel(), scene_, kFrames);
+    run_ = RunFormation(ContactModel(), scene_, kBodyFrames);
   }
   std::vector<BodyMotion> Bodies(LoadedGenerator loaded) const {
     EXPECT_FALSE(PrepareForFormation(scene_, "generator", &loaded));
@@ -53,7 +53,7 @@ class GeneratedBodiesTest : public ::testing::Test {
   double FarthestHip(const std::vector<BodyMotion>& bodies) const {
     double farthest = 0.0;
     for (int n = 0; n < run_.num_people(); ++n) {
-      for (int t = 0; t < kFrames; ++t) {
+      for (int t = 0; t < kBodyFrames; ++t) {
         const Eigen::Vector3d way = bodies[n][t].col(kBodyHip) - run_.prediction.hip[n][t];
         farthest = std::max(farthest, way.norm());
       }
@@ -70,15 +70,15 @@ TEST_F(GeneratedBodiesTest, BeginAtTheFirstPosesAndKeepTheirBones) {
   ASSERT_EQ(bodies.size(), 5u);
   double moved = 0.0;
   for (int n = 0; n < 5; ++n) {
-    ASSERT_EQ(bodies[n].size(), static_cast<size_t>(kFrames));
+    ASSERT_EQ(bodies[n].size(), static_cast<size_t>(kBodyFrames));
     EXPECT_LT((bodies[n][0] - first_poses_[n]).norm(), 1e-5);
     for (int j = 1; j < kBodyJoints; ++j) {
       const auto bone = [&](const Pose& pose) {
         return (pose.col(j) - pose.col(kBodyParents[j])).norm();
       };
-      EXPECT_NEAR(bone(bodies[n][kFrames - 1]), bone(first_poses_[n]), 1e-5);
+      EXPECT_NEAR(bone(bodies[n][kBodyFrames - 1]), bone(first_poses_[n]), 1e-5);
     }
-    moved = std::max(moved, (bodies[n][kFrames - 1] - first_poses_[n]).norm());
+    moved = std::max(moved, (bodies[n][kBodyFrames - 1] - first_poses_[n]).norm());
   }
   EXPECT_GT(moved, 0.01) << "random weights move somebody";
 }
@@ -92,7 +92,7 @@ TEST_F(GeneratedBodiesTest, BlendWithTheRunsOwnPhysics) {
 TEST_F(GeneratedBodiesTest, PhysicsGoIntoANetworkThatAsksForThem) {
   const std::vector<BodyMotion> bodies = Bodies(RandomGenerator(0.0, true));
   EXPECT_LT((bodies[0][0] - first_poses_[0]).norm(), 1e-5);
-  EXPECT_GT((bodies[0][kFrames - 1] - first_poses_[0]).norm(), 1e-3);
+  EXPECT_GT((bodies[0][kBodyFrames - 1] - first_poses_[0]).norm(), 1e-3);
 }
 
 // Nothing of what follows the first poses is seen: another run, without physics in it, is the same.
@@ -100,12 +100,12 @@ TEST_F(GeneratedBodiesTest, SeeTheFirstPosesAndThePushAlone) {
   const std::vector<BodyMotion> before = Bodies(RandomGenerator(0.0));
   IdentifiedModel slippery = ContactModel();
   slippery.parameters[kMu] *= 0.5;
-  run_ = RunFormation(slippery, scene_, kFrames);
+  run_ = RunFormation(slippery, scene_, kBodyFrames);
   const std::vector<BodyMotion> after = Bodies(RandomGenerator(0.0));
   for (int n = 0; n < 5; ++n) EXPECT_EQ(before[n].back(), after[n].back());
   scene_.pushes.clear();
   AddHipPush(0, {20.0, 0.0, 0.2}, &scene_);
-  run_ = RunFormation(ContactModel(), scene_, kFrames);
+  run_ = RunFormation(ContactModel(), scene_, kBodyFrames);
   EXPECT_GT((Bodies(RandomGenerator(0.0))[0].back() - before[0].back()).norm(), 1e-4);
 }
 
@@ -126,7 +126,7 @@ TEST_F(GeneratedBodiesTest, AGeneratorThatDoesNotFitIsRefused) {
 TEST_F(GeneratedBodiesTest, PushesOfAnotherKindAreNamed) {
   GeneratorSettings settings = RandomGenerator(0.0).settings;
   const std::string other = OtherPushKinds(settings, scene_);
-  EXPECT_TRUE(Contains(other, "of kind net and is given some of kind external"));
+  EXPECT_TRUE(Contains(other, "of kind net and is applied to pushes of kind external"));
   settings.push_kinds = {PushKind::kNet, PushKind::kExternal};
   EXPECT_EQ(OtherPushKinds(settings, scene_), "");
   settings.push_kinds.clear();

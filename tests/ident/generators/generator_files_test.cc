@@ -2,6 +2,7 @@
 #include "ident/generators/generator_files.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
@@ -15,7 +16,7 @@ class GeneratorFilesTest : public TempDirTest {
     trained_.settings.observed = 12;
     trained_.settings.predicted = 6;
     trained_.settings.layout = FourParticles();
-    trained_.settings.training["note"] = "of a test";
+    (*trained_.settings.training)["note"] = "of a test";
     TrainedParticles& particles = Particles();
     particles.members = {RandomParticles(1), RandomParticles(2)};
     RidgeFit fit;
@@ -54,7 +55,7 @@ TEST_F(GeneratorFilesTest, ComeBackToTheLastBit) {
   EXPECT_EQ(settings.layout.parents, FourParticles().parents);
   EXPECT_EQ(settings.layout.mirrored, FourParticles().mirrored);
   EXPECT_EQ(settings.layout.weights, FourParticles().weights);
-  EXPECT_EQ(settings.training["note"], "of a test");
+  EXPECT_EQ((*settings.training)["note"], "of a test");
 }
 
 TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {

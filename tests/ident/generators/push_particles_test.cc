@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 // Somebody of 80 kg at (2, -1) who is pushed from frame 1 to 3, and somebody who is not.
-BodyRecording Pushed(int frames) {
+BodyRecording OnePushed(int frames) {
   BodyRecording recording;
   recording.pendulum.id = "push";
   recording.pendulum.subject_ids = {"A", "B"};
@@ -33,7 +33,7 @@ BodyRecording Pushed(int frames) {
 }
 
 TEST(PushParticlesTest, PlacesCountFromTheHipAndPushesFromTheirFrame) {
-  const BodyRecording recording = Pushed(6);
+  const BodyRecording recording = OnePushed(6);
   const PushedParticles person = ParticlesOf(recording, 0);
   EXPECT_LT(person.motion.frames.col(0).head<2>().norm(), 1e-6f);
   EXPECT_FLOAT_EQ(person.motion.frames(2, 0), 1.0f);  // the hip's height stays
@@ -48,7 +48,7 @@ TEST(PushParticlesTest, PlacesCountFromTheHipAndPushesFromTheirFrame) {
 }
 
 TEST(PushParticlesTest, TheMirrorIsThatOfBodies) {
-  const BodyRecording recording = Pushed(3);
+  const BodyRecording recording = OnePushed(3);
   const PushedParticles person = ParticlesOf(recording, 0);
   const Trajectories mirrored = Mirrored(person.motion.frames, PushLayout(recording.joint_names));
   const Pose pose = BodyFromParticles(person.motion.frames, Eigen::Vector3d::Zero())[0];
@@ -79,7 +79,7 @@ class StillGenerator : public MotionGenerator {
 };
 
 TEST(PushParticlesTest, AGeneratorGoesOnWhereTheRecordingWasShownTo) {
-  const BodyRecording recording = Pushed(10);
+  const BodyRecording recording = OnePushed(10);
   GeneratorSettings settings;
   settings.observed = 4;
   settings.rate = 60.0;

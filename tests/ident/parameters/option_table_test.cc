@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "ident/parameters/fit_options_json.h"
@@ -107,7 +108,7 @@ TEST(FitOptions, IsValidSaysOptionValueAndConstraint) {
       {[](FitOptions* o) {
          o->horizons = {1, 0};
        },
-       "--horizons is 1; it must hold numbers of frames of at least 2"},
+       "--horizons is 1; it must be numbers of frames of at least 2"},
       {[](FitOptions* o) { o->ensemble = 2; },
        "--ensemble acts on networks, but there is none; add one, as in --self_force=mlp:4"},
       {[](FitOptions* o) { o->model.interaction.network = true; },

@@ -148,7 +148,8 @@ TEST(TableEdits, BadInputIsNamed) {
     const char* part;
   };
   for (const Case& c : {
-           Case{{"nu", "", "", "", ""}, "--fix names 'nu', which is no parameter; there are mu,"},
+           Case{{"nu", "", "", "", ""},
+                "--fix names 'nu', which is not a parameter; there are mu,"},
            Case{{"", "Kp", "", "", ""}, "--free names 'Kp'"},
            Case{{"mu=fast", "", "", "", ""}, "--fix: 'mu=fast' has no number"},
            Case{{"mu=", "", "", "", ""}, "no number after '='"},

@@ -1,5 +1,6 @@
 // Learned self forces and rods by name, by seed and by file.
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "ident/parameters/learned_terms_io.h"
 

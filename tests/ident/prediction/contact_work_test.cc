@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-ScenePerson At(double x, double mass) {
+ScenePerson PersonAt(double x, double mass) {
   ScenePerson person;
   person.body = {mass, 0.95, 0.0};
   person.start.q[0] = x;
@@ -38,7 +38,7 @@ ModelOptions WithContact() {
 // The first walks into the second, who stands 0.5 m away, leans, and goes back as he came.
 struct Bounce {
   Bounce() : path(2 * kHalf + 1, 2) {
-    scene.people = {At(0.0, 70.0), At(0.5, 90.0)};
+    scene.people = {PersonAt(0.0, 70.0), PersonAt(0.5, 90.0)};
     for (int t = 0; t <= 2 * kHalf; ++t) {
       const double s = 1.0 - std::abs(t - kHalf) / static_cast<double>(kHalf);
       path.At(t, 0).q = {0.25 * s, 0.02 * s, 0.05 * s, 0.01 * s};
@@ -94,7 +94,7 @@ double Energy(const Body& body, const PendulumState<double>& state) {
 TEST(ContactWork, IsTheChangeOfEnergy) {
   Scene scene;
   scene.dt = 1e-5;
-  scene.people = {At(0.0, 70.0), At(0.45, 90.0)};
+  scene.people = {PersonAt(0.0, 70.0), PersonAt(0.45, 90.0)};
   scene.people[0].start.qd = {1.2, 0.1, 0.0, 0.0};
   for (double damping : {0.0, 200.0}) {
     const auto p = Contact(damping);
@@ -118,7 +118,7 @@ TEST(ContactWork, IsTheChangeOfEnergy) {
 TEST(ContactFigures, MomentumCrossesFromOneToTheNext) {
   PendulumRecording recording;
   for (int n = 0; n < 4; ++n) {
-    recording.scene.people.push_back(At(0.45 * n, 80.0));
+    recording.scene.people.push_back(PersonAt(0.45 * n, 80.0));
     recording.subject_ids.push_back("S");
   }
   Scene& scene = recording.scene;

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/parameters/presets.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -146,14 +145,6 @@ TEST(Evaluation, NothingScored) {
   EXPECT_EQ(s.mean.recordings, 0);
   EXPECT_EQ(s.mean.hip_ade, 0.0);
   EXPECT_TRUE(s.by_subject.empty());
-}
-
-IdentifiedModel TruthOf(const SyntheticOptions& study) {
-  IdentifiedModel model;
-  model.options = study.model;
-  model.parameters = study.parameters;
-  model.table = MakePreset("tail").value().table;
-  return model;
 }
 
 TEST(Evaluation, TheTruthScoresZero) {

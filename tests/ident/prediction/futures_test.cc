@@ -55,19 +55,11 @@ SyntheticOptions NoisyStudy() {
   return study;
 }
 
-IdentifiedModel TruthOf(const SyntheticOptions& study) {
-  IdentifiedModel model;
-  model.options = study.model;
-  model.table = BaseTable();
-  model.parameters = study.parameters;
-  return model;
-}
-
 // Under the truth the bands hold what they say, in x, y and both angles.
 TEST(Futures, OfTheTruthHoldWhatTheySay) {
   const SyntheticOptions study = NoisyStudy();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const auto summary = EvaluateFutures(TruthOf(study), recordings, 99, 1);
+  const auto summary = EvaluateFutures(TruthOf(study, BaseTable()), recordings, 99, 1);
   ASSERT_TRUE(summary.ok()) << summary.error().ToString();
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
     const std::string name = kFuturesMetrics[i].name;
@@ -85,7 +77,7 @@ TEST(Futures, TheTruthScoresBest) {
   const SyntheticOptions study = NoisyStudy();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   const auto scored = [&](double factor) {
-    IdentifiedModel model = TruthOf(study);
+    IdentifiedModel model = TruthOf(study, BaseTable());
     for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] *= factor;
     return EvaluateFutures(model, recordings, 60, 1).value();
   };
@@ -101,7 +93,7 @@ TEST(Futures, TheTruthScoresBest) {
 TEST(Futures, WithoutProcessNoiseThereAreNone) {
   SyntheticOptions study = TinyStudy();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const auto drawn = DrawFutures(TruthOf(study), recordings[0], 10, 1);
+  const auto drawn = DrawFutures(TruthOf(study, BaseTable()), recordings[0], 10, 1);
   ASSERT_FALSE(drawn.ok());
   EXPECT_NE(drawn.error().ToString().find("process noise"), std::string::npos);
 }

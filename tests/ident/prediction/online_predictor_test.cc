@@ -242,7 +242,7 @@ TEST_F(OnlinePredictorTest, ModelsThatCannotLearnAreRefused) {
   model_.recording_effect.reset();
   MaybeError error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);
-  EXPECT_TRUE(Contains(error->ToString(), "old.json: the model does not say how recordings"));
+  EXPECT_TRUE(Contains(error->ToString(), "old.json: the model has no estimate of how recordings"));
   model_.options.push_tail = PushTail::kNone;
   error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);

@@ -5,20 +5,11 @@
 
 #include <sstream>
 
-#include "ident/parameters/presets.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
 namespace pushid {
 namespace {
-
-IdentifiedModel TruthOf(const SyntheticOptions& study) {
-  IdentifiedModel model;
-  model.options = study.model;
-  model.parameters = study.parameters;
-  model.table = MakePreset("tail").value().table;
-  return model;
-}
 
 std::vector<std::string> Split(const std::string& line) {
   std::vector<std::string> parts;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/prediction/evaluation.h"

@@ -267,7 +267,7 @@ TEST(Behaviour, LinesThatGoBackDoNotMoveOnFarther) {
   FitResult result;
   result.behaviour = b;
   const std::string text = BehaviourText(result) + LinesTable(result).ToString();
-  EXPECT_TRUE(Contains(text, "does NOT move the line on farther: row"));
+  EXPECT_TRUE(Contains(text, "does NOT move the line farther: row"));
   EXPECT_TRUE(Contains(text, "-0.3"));
   EXPECT_TRUE(Contains(text, "-0.6"));
 }

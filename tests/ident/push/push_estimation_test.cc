@@ -24,8 +24,8 @@ PendulumRecording Pendulum(const SyntheticRecording& made) {
   return MakePendulumRecording(made.recording, SkeletonMapping::kExact);
 }
 
-EstimatedPush Estimate(const PendulumRecording& recording, const PushWindow& window,
-                       const PushEstimationOptions& options) {
+EstimatedPush Estimated(const PendulumRecording& recording, const PushWindow& window,
+                        const PushEstimationOptions& options) {
   const Result<EstimatedPush> estimated = EstimatePush(recording, window, options);
   EXPECT_TRUE(estimated.ok()) << estimated.error().ToString();
   return estimated.value();
@@ -57,7 +57,7 @@ TEST(PushEstimation, GivesBackANetPush) {
   options.model.push = PushUse::kAsRecorded;
   for (const SyntheticRecording& made : Make(options)) {
     const ScenePush& truth = made.scene.pushes[0];
-    const EstimatedPush estimated = Estimate(Pendulum(made), {0, truth.EndFrame()}, {});
+    const EstimatedPush estimated = Estimated(Pendulum(made), {0, truth.EndFrame()}, {});
     EXPECT_EQ(estimated.kind, PushKind::kNet);
     ASSERT_EQ(estimated.push.force.size(), truth.force.size());
     for (size_t i = 0; i < truth.force.size(); ++i) {
@@ -85,7 +85,7 @@ TEST(PushEstimation, RolloutReproducesTheMotionExactly) {
           estimation.initial_velocity = velocity;
           estimation.friction_taken_out = friction;
           for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
-            const EstimatedPush estimated = Estimate(recording, window, estimation);
+            const EstimatedPush estimated = Estimated(recording, window, estimation);
             EXPECT_EQ(estimated.push.start_frame, window.start);
             EXPECT_EQ(estimated.push.EndFrame(), window.end);
             ExpectReproduced(recording, estimated);
@@ -113,18 +113,18 @@ TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
     PushEstimationOptions estimation;
     estimation.smoothing_frames = 9;
     const PushWindow inside{30, 50};
-    const EstimatedPush usual = Estimate(recording, inside, estimation);
+    const EstimatedPush usual = Estimated(recording, inside, estimation);
     EXPECT_FALSE(FirstRowStandsOut(usual.push));
     EXPECT_GT(usual.start_speed, 0.1);
     estimation.initial_velocity = InitialVelocity::kZero;
-    const EstimatedPush at_rest = Estimate(recording, inside, estimation);
+    const EstimatedPush at_rest = Estimated(recording, inside, estimation);
     EXPECT_TRUE(FirstRowStandsOut(at_rest.push));
     EXPECT_EQ(at_rest.start_speed, 0.0);
     EXPECT_GT(at_rest.peak_force, 1000.0);
     EXPECT_LT(usual.peak_force, 0.3 * at_rest.peak_force);
     // Before the push people stand still, and are taken to.
     estimation.initial_velocity.reset();
-    EXPECT_EQ(Estimate(recording, {5, 45}, estimation).start_speed, 0.0);
+    EXPECT_EQ(Estimated(recording, {5, 45}, estimation).start_speed, 0.0);
   }
 }
 
@@ -142,10 +142,10 @@ TEST(PushEstimation, SmoothingTakesOutNoiseWithoutShiftingThePush) {
   for (size_t i = 0; i < noisy.size(); ++i) {
     const PushWindow window{5, 45};
     PushEstimationOptions estimation;
-    const EstimatedPush truth = Estimate(Pendulum(clean[i]), window, estimation);
-    const EstimatedPush plain = Estimate(Pendulum(noisy[i]), window, estimation);
+    const EstimatedPush truth = Estimated(Pendulum(clean[i]), window, estimation);
+    const EstimatedPush plain = Estimated(Pendulum(noisy[i]), window, estimation);
     estimation.smoothing_frames = 11;
-    const EstimatedPush smooth = Estimate(Pendulum(noisy[i]), window, estimation);
+    const EstimatedPush smooth = Estimated(Pendulum(noisy[i]), window, estimation);
     double weight = 0.0, centre = 0.0, smooth_weight = 0.0, smooth_centre = 0.0;
     for (size_t k = 0; k < truth.push.force.size(); ++k) {
       const double fx = truth.push.force[k][0], smooth_fx = smooth.push.force[k][0];
@@ -218,7 +218,7 @@ TEST(PushEstimation, AgreesWithThePublishedPushes) {
   double difference = 0.0, size = 0.0;
   for (const Recording& recording : recordings.value()) {
     const Push& published = recording.pushes[0];
-    const EstimatedPush estimated = Estimate(
+    const EstimatedPush estimated = Estimated(
         MakePendulumRecording(recording, SkeletonMapping::kExact), {0, published.EndFrame()}, {});
     for (size_t i = 0; i < published.force.size(); ++i) {
       difference += (estimated.push.force[i] - published.force[i]).squaredNorm();

@@ -12,13 +12,13 @@
 namespace pushid {
 namespace {
 
-struct Pushed {
+struct PushedRecording {
   PendulumRecording recording;
-  TimedForce force;  // whose clock reads `shift` more at frame 0 than it says
+  TimedRecord force;  // whose clock reads `shift` more at frame 0 than it says
 };
 
 // A person pushed by a measured half-sine, and the record of the sensor: the rows' forces at 1 kHz.
-Pushed MakePushed(double shift_s, double noise_m, uint64_t seed) {
+PushedRecording MakePushed(double shift_s, double noise_m, uint64_t seed) {
   SyntheticOptions options;
   options.subjects = 1;
   options.recordings_per_subject = 1;
@@ -33,7 +33,7 @@ Pushed MakePushed(double shift_s, double noise_m, uint64_t seed) {
   const auto made = MakeSyntheticRecordings(options);
   EXPECT_TRUE(made.ok()) << made.error().ToString();
   const Recording& recording = made.value()[0].recording;
-  Pushed pushed;
+  PushedRecording pushed;
   pushed.recording = MakePendulumRecording(recording, SkeletonMapping::kExact);
   const Push& push = recording.pushes[0];
   for (int i = 0; i < 1500; ++i) {
@@ -52,7 +52,7 @@ Pushed MakePushed(double shift_s, double noise_m, uint64_t seed) {
 
 TEST(SensorOffsetTest, FoundWithoutNoise) {
   for (double shift : {0.0, 0.1234, -0.2}) {
-    const Pushed pushed = MakePushed(shift, 0.0, 1);
+    const PushedRecording pushed = MakePushed(shift, 0.0, 1);
     const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5);
     ASSERT_TRUE(offset.ok()) << offset.error().ToString();
     // Half a frame is what semi-implicit steps leave open.
@@ -63,25 +63,25 @@ TEST(SensorOffsetTest, FoundWithoutNoise) {
 
 // What the shift changes is recovered exactly: the bias of the steps is the same.
 TEST(SensorOffsetTest, ShiftsAddUp) {
-  const Pushed a = MakePushed(0.0, 0.0, 1), b = MakePushed(0.15, 0.0, 1);
+  const PushedRecording a = MakePushed(0.0, 0.0, 1), b = MakePushed(0.15, 0.0, 1);
   const double first = EstimateSensorOffset({a.force}, a.recording, 0, 0.5).value().offset_s;
   const double second = EstimateSensorOffset({b.force}, b.recording, 0, 0.5).value().offset_s;
   EXPECT_NEAR(second - first, 0.15, 1e-5);
   // And with the clock set, nothing is left to shift.
-  TimedForce set = b.force;
+  TimedRecord set = b.force;
   set.frame_zero_time_s = 0.15;
   EXPECT_NEAR(EstimateSensorOffset({set}, b.recording, 0, 0.5).value().offset_s, first, 1e-5);
 }
 
 TEST(SensorOffsetTest, TheErrorIsThatOfTheNoise) {
   const double clean = [] {
-    const Pushed pushed = MakePushed(0.1, 0.0, 1);
+    const PushedRecording pushed = MakePushed(0.1, 0.0, 1);
     return EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5).value().offset_s;
   }();
   double square = 0.0, stated = 0.0;
   constexpr int kSeeds = 60;
   for (int seed = 1; seed <= kSeeds; ++seed) {
-    const Pushed pushed = MakePushed(0.1, 0.002, seed);
+    const PushedRecording pushed = MakePushed(0.1, 0.002, seed);
     const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5);
     ASSERT_TRUE(offset.ok()) << offset.error().ToString();
     square += std::pow(offset.value().offset_s - clean, 2) / kSeeds;
@@ -93,7 +93,7 @@ TEST(SensorOffsetTest, TheErrorIsThatOfTheNoise) {
 }
 
 TEST(SensorOffsetTest, TwoSensorsShareTheClock) {
-  Pushed pushed = MakePushed(0.1, 0.0, 1);
+  PushedRecording pushed = MakePushed(0.1, 0.0, 1);
   const double together =
       EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5).value().offset_s;
   for (Eigen::Vector3d& force : pushed.force.record.force) force *= 0.5;
@@ -102,7 +102,7 @@ TEST(SensorOffsetTest, TwoSensorsShareTheClock) {
 }
 
 TEST(SensorOffsetTest, Errors) {
-  Pushed pushed = MakePushed(0.3, 0.0, 1);
+  PushedRecording pushed = MakePushed(0.3, 0.0, 1);
   const auto message = [&](int person, double range) {
     const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, person, range);
     return offset.ok() ? std::string("no error") : offset.error().ToString();
@@ -111,7 +111,7 @@ TEST(SensorOffsetTest, Errors) {
   EXPECT_TRUE(Contains(message(1, 0.5), "there is no person 1"));
   EXPECT_TRUE(Contains(message(0, 0.0), "largest offset"));
   const auto times = [&](double factor) {
-    Pushed scaled = pushed;
+    PushedRecording scaled = pushed;
     for (Eigen::Vector3d& force : scaled.force.record.force) force *= factor;
     return EstimateSensorOffset({scaled.force}, pushed.recording, 0, 0.5);
   };

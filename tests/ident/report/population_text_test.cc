@@ -39,7 +39,7 @@ TEST(PopulationText, SentenceAndTables) {
 TEST(PopulationText, PeopleWhoTouchHaveNoEffects) {
   RecordingEffect effect = Sample();
   effect.recordings.clear();
-  EXPECT_TRUE(Contains(PopulationText(effect), "No effect of recordings"));
+  EXPECT_TRUE(Contains(PopulationText(effect), "No recording effect"));
 }
 
 }  // namespace

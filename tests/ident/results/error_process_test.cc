@@ -14,7 +14,7 @@ namespace {
 constexpr double kDt = 1.0 / 60.0;
 
 // c^2 dt^2 A K_v A', frames 1 .. n.
-Eigen::MatrixXd Covariance(int n, double dt) {
+Eigen::MatrixXd ErrorCovariance(int n, double dt) {
   Eigen::MatrixXd v(n, n);
   for (int t = 0; t < n; ++t) {
     for (int u = 0; u < n; ++u) {
@@ -28,14 +28,14 @@ Eigen::MatrixXd Covariance(int n, double dt) {
 
 Eigen::MatrixXd Scaled(int n, double dt) {
   const int reference = static_cast<int>(std::lround(31.0 / 60.0 / dt));
-  return Covariance(n, dt) / Covariance(reference, dt)(reference - 1, reference - 1);
+  return ErrorCovariance(n, dt) / ErrorCovariance(reference, dt)(reference - 1, reference - 1);
 }
 
 // By hand: the first frame moves by dt v with var v = c^2 (1 - r^2).
 TEST(ErrorProcess, FirstFrameByHand) {
   ErrorProcess process(kDt);
   const double r = std::exp(-kDt / 0.3);
-  const double c2 = 1.0 / Covariance(31, kDt)(30, 30);
+  const double c2 = 1.0 / ErrorCovariance(31, kDt)(30, 30);
   const double pp = kDt * kDt * c2 * (1.0 - r * r);
   const ErrorProcess::Gains gains = process.Next(true);
   EXPECT_NEAR(gains.variance, pp + 0.0025, 1e-15);

@@ -73,7 +73,7 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   }
   EXPECT_TRUE(Contains(
       Complaint({{"preset", "group"}, {"interaction", "spring,damping,drive,network:64-64"}}),
-      "does not know --interaction=drive"));
+      "does not support --interaction=drive"));
   EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
 }
 
@@ -204,7 +204,8 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"seed", "2x"}}, "--seed is '2x'"},
       {{{"pooling_sigma", "guess"}},
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
-      {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}}, "--pooling_sigma says how parameters differ"},
+      {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
+       "--pooling_sigma applies to pooled parameters"},
       {{{"rod", "linear"}, {"takeover_weight", "1"}},
        "a learned force beside gains or contact, but there is none"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
@@ -307,20 +308,20 @@ TEST(PrepareFit, WarnsOfIdenticalRecordings) {
     for (const std::string& warning : told) text += warning + "\n";
     return text;
   };
-  EXPECT_FALSE(Contains(warnings(), "is there again"));
+  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
   recordings.push_back(recordings[0]);
-  EXPECT_FALSE(Contains(warnings(), "is there again"));
+  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
   recordings.back().id = "copy";
   recordings.push_back(recordings[1]);
   recordings.back().id = "other";
   recordings.back().content_hash = "another file";  // and yet the same motion
   EXPECT_TRUE(
-      Contains(warnings(), "the motion of '" + recordings[0].id + "' is there again as copy:"));
-  EXPECT_TRUE(Contains(warnings(), "'" + recordings[1].id + "' is there again as other:"));
+      Contains(warnings(), "the motion of '" + recordings[0].id + "' is repeated in copy:"));
+  EXPECT_TRUE(Contains(warnings(), "'" + recordings[1].id + "' is repeated in other:"));
   EXPECT_TRUE(Contains(warnings(), "--leave_out=other"));
   recordings[6].content_hash = recordings[0].content_hash = "same";
   for (auto& point : recordings[6].hip[0]) point[1] += 1e-9;
-  EXPECT_TRUE(Contains(warnings(), "is there again as copy:"));
+  EXPECT_TRUE(Contains(warnings(), "is repeated in copy:"));
 }
 
 TEST(PrepareFit, RefusesWhatCannotBeFitted) {

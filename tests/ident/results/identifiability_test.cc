@@ -11,10 +11,10 @@
 namespace pushid {
 namespace {
 
-using Names = std::set<std::string>;
+using NameSet = std::set<std::string>;
 
-Names Unidentifiable(const FitResult& result) {
-  Names names;
+NameSet Unidentifiable(const FitResult& result) {
+  NameSet names;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kUnidentifiable) names.insert(e.name);
   }
@@ -36,7 +36,7 @@ SyntheticOptions NoisyStudy() {
   return study;
 }
 
-void ExpectOthersFinite(const FitResult& result, const Names& null) {
+void ExpectOthersFinite(const FitResult& result, const NameSet& null) {
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
     if (null.count(e.name) > 0) {
@@ -55,14 +55,14 @@ TEST(Identifiability, FrictionAndCartGainsTogether) {
   SyntheticOptions study = NoisyStudy();
   study.model.friction = FrictionKind::kIsotropic;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "", "", ""});
-  const Names three = {"mu", "Kp_x", "Kp_y"};
+  const NameSet three = {"mu", "Kp_x", "Kp_y"};
   EXPECT_EQ(Unidentifiable(result), three);
   ExpectOthersFinite(result, three);
 
   ASSERT_EQ(result.uncertainty.null_directions.size(), 1u);
   const NullDirection& null = result.uncertainty.null_directions[0];
-  EXPECT_EQ(Names(null.parameters.begin(), null.parameters.end()), three);
-  EXPECT_TRUE(Contains(null.sentence, "mu, Kp_x and Kp_y cannot be told apart"));
+  EXPECT_EQ(NameSet(null.parameters.begin(), null.parameters.end()), three);
+  EXPECT_TRUE(Contains(null.sentence, "mu, Kp_x and Kp_y cannot be separated"));
   EXPECT_TRUE(Contains(null.sentence, "mu + Kp_x"));
   EXPECT_TRUE(Contains(null.sentence, "mu + Kp_y"));
   ASSERT_EQ(null.identified.size(), 2u);
@@ -73,7 +73,7 @@ TEST(Identifiability, FrictionAndCartGainsTogether) {
     EXPECT_GE(c.upper95, truth) << c.name;
   }
   EXPECT_TRUE(
-      Contains(ReportText({result, {}, {}, {}, {}}), "mu, Kp_x and Kp_y cannot be told apart"));
+      Contains(ReportText({result, {}, {}, {}, {}}), "mu, Kp_x and Kp_y cannot be separated"));
 }
 
 // One friction per axis: only what acts on x is confounded with mu.
@@ -82,7 +82,7 @@ TEST(Identifiability, OneFrictionPerAxis) {
   study.model.friction = FrictionKind::kAnisotropic;
   study.parameters[kMuY] = 100.0;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "", "", ""});
-  const Names two = {"mu", "Kp_x"};
+  const NameSet two = {"mu", "Kp_x"};
   EXPECT_EQ(Unidentifiable(result), two);
   ExpectOthersFinite(result, two);
 }
@@ -92,7 +92,7 @@ TEST(Identifiability, APriorIdentifiesNothing) {
   SyntheticOptions study = NoisyStudy();
   study.model.friction = FrictionKind::kIsotropic;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "mu:100:10", "", ""});
-  EXPECT_EQ(Unidentifiable(result), (Names{"mu", "Kp_x", "Kp_y"}));
+  EXPECT_EQ(Unidentifiable(result), (NameSet{"mu", "Kp_x", "Kp_y"}));
   // The prior holds mu where it says, and the sums stay what the data say.
   EXPECT_NEAR(result.parameters[kMu], 100.0, 1e-3);
   EXPECT_NEAR(result.parameters[kMu] + result.parameters[kKpX], study.parameters[kMu], 3.0);
@@ -103,10 +103,10 @@ TEST(Identifiability, NoEffectIsNamed) {
   study.push_kind = PushKind::kExternal;
   study.strengths = {{"weak", 0.5}, {"strong", 1.0}};
   const FitResult result = FitEdited(study, {});
-  const Names tail = {"tail_gain", "tail_torque", "tail_time"};
+  const NameSet tail = {"tail_gain", "tail_torque", "tail_time"};
   EXPECT_EQ(Unidentifiable(result), tail);
   ExpectOthersFinite(result, tail);
-  Names named;
+  NameSet named;
   for (const NullDirection& null : result.uncertainty.null_directions) {
     ASSERT_EQ(null.parameters.size(), 1u);
     named.insert(null.parameters[0]);
@@ -116,7 +116,7 @@ TEST(Identifiability, NoEffectIsNamed) {
   EXPECT_EQ(named, tail);
   bool warned = false;
   for (const std::string& warning : result.warnings) {
-    warned = warned || warning.find("the push tail does not act") != std::string::npos;
+    warned = warned || warning.find("the push tail has no effect") != std::string::npos;
   }
   EXPECT_TRUE(warned);
 }

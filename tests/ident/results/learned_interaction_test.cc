@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"

@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-SyntheticOptions NoisyStudy(uint64_t seed) {
+SyntheticOptions ProcessNoiseStudy(uint64_t seed) {
   SyntheticOptions study = SmallStudy();
   study.model.process_noise.diagonal = true;
   study.parameters[kSigmaX] = 12.0, study.parameters[kSigmaY] = 9.0;
@@ -49,7 +49,7 @@ FitOptions NoisyRollouts(const SyntheticOptions& study) {
 TEST(InnovationFit, FindsPlantedNoiseAndGains) {
   int covered = 0, free = 0;
   for (uint64_t seed : {1, 2, 3}) {
-    const SyntheticOptions study = NoisyStudy(seed);
+    const SyntheticOptions study = ProcessNoiseStudy(seed);
     const std::vector<PendulumRecording> recordings = MakePendulums(study);
     FitOptions options = ByLikelihood(study, "innovation");
     ASSERT_FALSE(PrepareFit(recordings, &options));
@@ -78,7 +78,7 @@ TEST(InnovationFit, FindsPlantedNoiseAndGains) {
 
 // Of measured states the errors count as noise.
 TEST(TransitionFit, OnExactStatesFindsTheNoise) {
-  SyntheticOptions study = NoisyStudy(4);
+  SyntheticOptions study = ProcessNoiseStudy(4);
   study.joint_noise_m = 0.0;
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   FitOptions options = ByLikelihood(study, "transition");
@@ -92,7 +92,7 @@ TEST(TransitionFit, OnExactStatesFindsTheNoise) {
 }
 
 TEST(TransitionFit, AsPrintedTheNoiseIsFarTooSmall) {
-  const SyntheticOptions study = NoisyStudy(5);
+  const SyntheticOptions study = ProcessNoiseStudy(5);
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   FitOptions options = ByLikelihood(study, "transition_as_printed");
   ASSERT_FALSE(PrepareFit(recordings, &options));
@@ -104,7 +104,7 @@ TEST(TransitionFit, AsPrintedTheNoiseIsFarTooSmall) {
 
 // Whole rollouts are fitted as ever; the noise is what single steps need at their optimum.
 TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
-  const SyntheticOptions study = NoisyStudy(6);
+  const SyntheticOptions study = ProcessNoiseStudy(6);
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   const FitOptions noisy = NoisyRollouts(study);
   FitOptions plain = noisy;
@@ -121,7 +121,7 @@ TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
 
 // Beside gains that are not the noise's own: roughness may be force or errors of measurement.
 TEST(ProcessNoise, IsToldFromErrorsOfMeasurement) {
-  SyntheticOptions study = NoisyStudy(3);
+  SyntheticOptions study = ProcessNoiseStudy(3);
   study.subjects = 6;
   study.noise_at_first_frame = true;
   const FitResult fit = Fit(MakePendulums(study), NoisyRollouts(study));

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
+#include <nlohmann/json.hpp>
+
 #include "ident/results/recording_effect_json.h"
 #include "tests/ident/effect_samples.h"
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "datasets/files/json_file.h"
@@ -72,7 +73,7 @@ FittedModel JudgedModel() {
   model.bootstrap->people_shared = true;
   Diagnostics& d = model.fit.diagnostics;
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
-  d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be told apart"});
+  d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be separated"});
   d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
@@ -167,9 +168,9 @@ TEST(ResultJson, DamageIsNamed) {
     EXPECT_FALSE(read.ok());
     return read.ok() ? std::string() : read.error().ToString();
   };
-  EXPECT_TRUE(Contains(message(Json::array()), "some.json: this is no pushid model"));
-  EXPECT_TRUE(Contains(message({{"recordings", 3}}), "this is no pushid model"));
-  EXPECT_TRUE(Contains(message({{"format", 7}}), "this is no pushid model"));
+  EXPECT_TRUE(Contains(message(Json::array()), "some.json: this is not a pushid model"));
+  EXPECT_TRUE(Contains(message({{"recordings", 3}}), "this is not a pushid model"));
+  EXPECT_TRUE(Contains(message({{"format", 7}}), "this is not a pushid model"));
   Json json = good;
   json["format_version"] = 99;
   EXPECT_TRUE(Contains(message(json), "newer pushid"));

@@ -45,7 +45,7 @@ TEST(WeightedSolve, DataThatContradictTheDemandAreFollowed) {
   EXPECT_NEAR(result.parameters[kMu], study.parameters[kMu], 2.0);
   const bool told =
       std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
-        return warning.find("contradict the demand to settle") != std::string::npos;
+        return warning.find("contradicts the data") != std::string::npos;
       });
   EXPECT_TRUE(told);
 }

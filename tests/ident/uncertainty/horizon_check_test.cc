@@ -62,7 +62,7 @@ TEST(PriorCheck, SaysWhoseIntervalOtherPriorsLeave) {
   EXPECT_FALSE(PriorsLeaveInside(table, 0, uncertainty));
   EXPECT_TRUE(PriorsLeaveInside(table, 1, uncertainty));
   EXPECT_TRUE(Contains(PriorCheckText(table),
-                       "priors decide on what moves by more than twice its error: mu\n"));
+                       "determined by priors, as they move by more than twice their errors: mu\n"));
   table.rows[1].value.clear();
   table.rows[1].failure = "did not converge";
   EXPECT_FALSE(PriorsLeaveInside(table, 1, uncertainty)) << "a refit that failed says nothing";

@@ -65,7 +65,7 @@ void ExpectRelativelyEqual(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, d
   }
 }
 
-double CostAt(const Solved& s, const std::vector<double>& shared) {
+double CostOf(const Solved& s, const std::vector<double>& shared) {
   FitPoint point = s.point;
   point.shared = shared;
   double cost = 0.0;
@@ -85,7 +85,7 @@ TEST(Uncertainty, HessianIsThatOfTheCost) {
     std::vector<double> shared = s->point.shared;
     shared[i] += a * step[i];
     shared[j] += b * step[j];
-    return CostAt(*s, shared);
+    return CostOf(*s, shared);
   };
   Eigen::MatrixXd differences(3, 3);
   for (int i = 0; i < 3; ++i) {

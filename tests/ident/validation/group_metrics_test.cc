@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_recording.h"

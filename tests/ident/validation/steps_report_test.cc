@@ -2,6 +2,7 @@
 #include "ident/validation/steps_report.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "tests/test_support.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 // Three people at 50 frames per second: one steps forward and is cut off in the next step, one
 // steps to the left, one stands.
-std::vector<PendulumRecording> Recordings() {
+std::vector<PendulumRecording> SteppingRecordings() {
   PendulumRecording row, one;
   row.id = "row";
   one.id = "one";
@@ -26,9 +27,9 @@ std::vector<PendulumRecording> Recordings() {
 }
 
 TEST(StepsReport, InWords) {
-  EXPECT_EQ(StepsReport(Recordings(), false),
+  EXPECT_EQ(StepsReport(SteppingRecordings(), false),
             "steps: 2 of 3 people step; medians: first lift-off after 0.5 s, first step 0.35 m\n");
-  const std::string all = StepsReport(Recordings(), true);
+  const std::string all = StepsReport(SteppingRecordings(), true);
   for (const char* part :
        {"row        anna    right 0.4-0.7 s 0.5 m forwards; left from 0.8 s 0.32 m forwards, cut",
         "           ben     none", "one        carl    left 0.6-1 s 0.2 m to the left"}) {
@@ -50,7 +51,7 @@ TEST(StepsReport, NobodySteps) {
 
 TEST(StepsReport, AsJson) {
   nlohmann::ordered_json json = {{"recordings", {{{"id", "row"}}, {{"id", "one"}}}}};
-  AddStepsJson(Recordings(), &json);
+  AddStepsJson(SteppingRecordings(), &json);
   const auto& row = json["recordings"][0]["steps"];
   ASSERT_EQ(row.size(), 2u);
   ASSERT_EQ(row[0].size(), 2u);

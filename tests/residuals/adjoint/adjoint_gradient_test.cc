@@ -41,17 +41,19 @@ std::vector<Learned> EveryLearned() {
   return all;
 }
 
-struct Regime {
+struct NetworkRegime {
   std::string name;
   double lean, push, noise, weight;
   double mlp;  // tolerance of what tanh(W x + C k) - tanh(C k) leaves of the digits of W x
 };
 
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const NetworkRegime& regime) {
+  return out << regime.name;
+}
 
 // Recordings of 23, 40, 31 and 1 + 11 frames, of one, two, three and one person.
-std::vector<PendulumRecording> SomeRecordings(const ModelOptions& options, const Regime& regime,
-                                              Random* random) {
+std::vector<PendulumRecording> SomeRecordings(const ModelOptions& options,
+                                              const NetworkRegime& regime, Random* random) {
   std::vector<PendulumRecording> recordings;
   const int frames[] = {23, 40, 31, 12}, people[] = {1, 2, 3, 1};
   for (int i = 0; i < 4; ++i) {
@@ -70,10 +72,10 @@ std::vector<PendulumRecording> SomeRecordings(const ModelOptions& options, const
   return recordings;
 }
 
-class AdjointTwins : public testing::TestWithParam<Regime> {};
+class AdjointTwins : public testing::TestWithParam<NetworkRegime> {};
 
 TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
-  const Regime& regime = GetParam();
+  const NetworkRegime& regime = GetParam();
   Random random(61);
   for (const Learned& learned : EveryLearned()) {
     for (PushUse use : {PushUse::kAdded, PushUse::kAsRecorded}) {
@@ -118,9 +120,9 @@ TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
 
 // At rest every derivative vanishes in the network; without noise all of it would be zero.
 INSTANTIATE_TEST_SUITE_P(ThreeRegimes, AdjointTwins,
-                         testing::Values(Regime{"at_rest", 0.0, 0.0, 0.01, 0.5, 1e-10},
-                                         Regime{"tiny", 0.0, 1e-6, 0.01, 0.5, 1e-6},
-                                         Regime{"large", 0.1, 100.0, 0.05, 0.8, 1e-10}),
+                         testing::Values(NetworkRegime{"at_rest", 0.0, 0.0, 0.01, 0.5, 1e-10},
+                                         NetworkRegime{"tiny", 0.0, 1e-6, 0.01, 0.5, 1e-6},
+                                         NetworkRegime{"large", 0.1, 100.0, 0.05, 0.8, 1e-10}),
                          [](const auto& test) { return test.param.name; });
 
 // A person falls: the frames before count, for all people of the recording, and others go on.
@@ -218,7 +220,7 @@ struct Brake {
 
 TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   Random random(65);
-  const Regime regime{"", 0.1, 100.0, 0.05, 0.5, 0.0};
+  const NetworkRegime regime{"", 0.1, 100.0, 0.05, 0.5, 0.0};
   ModelOptions options =
       WithNetwork({NetworkKind::kGru, 2}, regime.weight, &random, {RodKind::kLinear, {}});
   options.own_laws = {

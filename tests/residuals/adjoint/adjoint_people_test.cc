@@ -6,21 +6,23 @@
 namespace pushid {
 namespace {
 
-struct Regime {
+struct GroupRegime {
   std::string name;
   double lean, push, noise, weight;
   double falling;  // N m, on one of each group towards the next
   bool touching;   // must some do?
 };
 
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const GroupRegime& regime) {
+  return out << regime.name;
+}
 
-const Regime kQuiet{"quiet", 0.0, 0.0, 0.01, 0.5, 0.0, false};
-const Regime kPushed{"pushed", 0.03, 120.0, 0.02, 0.6, 0.0, true};
-const Regime kFalling{"falling", 0.05, 150.0, 0.05, 0.8, 250.0, true};
+const GroupRegime kQuiet{"quiet", 0.0, 0.0, 0.01, 0.5, 0.0, false};
+const GroupRegime kPushed{"pushed", 0.03, 120.0, 0.02, 0.6, 0.0, true};
+const GroupRegime kFalling{"falling", 0.05, 150.0, 0.05, 0.8, 250.0, true};
 
 // Recordings of 34, 40, 25 and 20 frames, of two, five, four and one person.
-std::vector<PendulumRecording> Groups(const ModelOptions& options, const Regime& regime,
+std::vector<PendulumRecording> Groups(const ModelOptions& options, const GroupRegime& regime,
                                       Random* random) {
   std::vector<PendulumRecording> groups;
   const int frames[] = {34, 40, 25, 20}, people[] = {2, 5, 4, 1};
@@ -88,17 +90,17 @@ std::vector<Model> EveryModel(double weight, Random* random) {
   return models;
 }
 
-std::string Name(const Model& model) {
+std::string ModelName(const Model& model) {
   return DescribeTerms(model.options.interaction) + " " + PairName(model.options.learned->pair);
 }
 
-class AdjointOfPeople : public testing::TestWithParam<Regime> {};
+class AdjointOfPeople : public testing::TestWithParam<GroupRegime> {};
 
 TEST_P(AdjointOfPeople, GradientEqualsForwardSensitivities) {
-  const Regime& regime = GetParam();
+  const GroupRegime& regime = GetParam();
   Random random(81);
   for (const Model& model : EveryModel(regime.weight, &random)) {
-    SCOPED_TRACE(Name(model));
+    SCOPED_TRACE(ModelName(model));
     const std::vector<PendulumRecording> made = Groups(model.options, regime, &random);
     const std::vector<AdjointRecording> recordings = Weighted(made);
     const Gradient expected =
@@ -145,7 +147,7 @@ void ExpectFiniteDifferences(AdjointGradient* adjoint, const Gradient& gradient,
 
 // Of a network too large for sensitivities to be quick, each person with parameters of its own.
 TEST(AdjointOfPeople, GradientEqualsFiniteDifferences) {
-  for (const Regime& regime : {kQuiet, kPushed, kFalling}) {
+  for (const GroupRegime& regime : {kQuiet, kPushed, kFalling}) {
     SCOPED_TRACE(regime.name);
     Random random(82);
     Model model = MakeModel("spring,damping", {}, {}, {{40, 30}}, 0.4, &random);
@@ -224,7 +226,7 @@ TEST(AdjointOfPeople, OrderOfPeopleAndOfRecordingsDoesNotMatter) {
 TEST(AdjointOfPeople, CountsTheFramesBeforeAFall) {
   Random random(85);
   for (const Model& model : EveryModel(0.6, &random)) {
-    SCOPED_TRACE(Name(model));
+    SCOPED_TRACE(ModelName(model));
     std::vector<PendulumRecording> made = Groups(model.options, kPushed, &random);
     made[1].scene.pushes.push_back(
         MakeScenePush(1, 8, PushKind::kExternal, {20, Vector4<double>(0.0, 0.0, 3000.0, 0.0)}));

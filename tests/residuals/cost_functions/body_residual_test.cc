@@ -10,27 +10,27 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 30;
+constexpr int kBodyFrames = 30;
 
-enum class Regime { kStanding, kPushed, kTouching };
+enum class BodyRegime { kStanding, kPushed, kTouching };
 
 // Two people, whose bodies follow the very rollout that the recording holds, or are off by `noise`.
-struct Sample {
+struct BodySample {
   PendulumRecording recording;
   std::shared_ptr<const RolloutProblem> problem;
   std::shared_ptr<BodyData> data = std::make_shared<BodyData>();
   ParameterBlocks truth, blocks;
 
-  Sample(Regime regime, double robust, double noise) {
+  BodySample(BodyRegime regime, double robust, double noise) {
     Random random(61);
     Scene scene = SceneOfPeople(2, 0.05, &random);
-    if (regime == Regime::kTouching) scene.people[1].start.q[0] = 0.3;
+    if (regime == BodyRegime::kTouching) scene.people[1].start.q[0] = 0.3;
     ModelOptions options;
     options.interaction.spring = options.interaction.damping = true;
-    if (regime != Regime::kStanding) {
+    if (regime != BodyRegime::kStanding) {
       scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, 150.0, &random)};
     }
-    recording = RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kFrames);
+    recording = RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kBodyFrames);
     recording.id = "two";
     recording.subject_ids = {"anna", "bert"};
     ResidualSigmas sigmas;
@@ -66,30 +66,32 @@ struct Sample {
 };
 
 double CostAt(const BodyResidual& residual, const ParameterBlocks& blocks) {
-  const Evaluation evaluation = EvaluateCost(residual, blocks, {});
+  const CostEvaluation evaluation = EvaluateCost(residual, blocks, {});
   EXPECT_TRUE(evaluation.ok);
   return 0.5 * evaluation.residuals.squaredNorm();
 }
 
 TEST(BodyResidual, NothingIsLeftAtTheTruth) {
-  for (const Regime regime : {Regime::kStanding, Regime::kPushed, Regime::kTouching}) {
-    const Sample s(regime, 0.5, 0.0);
+  for (const BodyRegime regime :
+       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching}) {
+    const BodySample s(regime, 0.5, 0.0);
     const BodyResidual residual(s.problem, s.data, 2.0);
     EXPECT_EQ(residual.num_rows(), 9 * 2 * 66);
     EXPECT_LT(CostAt(residual, s.truth), 1e-8);
     // Who stands still in their own posture says nothing of gains.
-    if (regime != Regime::kStanding) {
+    if (regime != BodyRegime::kStanding) {
       EXPECT_GT(CostAt(residual, s.blocks), 1e-6);
     }
   }
 }
 
 TEST(BodyResidual, TheGradientIsThatOfFiniteDifferences) {
-  for (const Regime regime : {Regime::kStanding, Regime::kPushed, Regime::kTouching}) {
+  for (const BodyRegime regime :
+       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching}) {
     for (const double robust : {0.0, 0.5}) {
-      const Sample s(regime, robust, 0.05);
+      const BodySample s(regime, robust, 0.05);
       const BodyResidual residual(s.problem, s.data, 2.0);
-      const Evaluation at =
+      const CostEvaluation at =
           EvaluateCost(residual, s.blocks, std::vector<bool>(s.blocks.size(), true));
       ASSERT_TRUE(at.ok);
       for (size_t b = 0; b < s.blocks.size(); ++b) {
@@ -109,7 +111,7 @@ TEST(BodyResidual, TheGradientIsThatOfFiniteDifferences) {
 }
 
 TEST(BodyResidual, PeopleHaveRowsOfTheirOwnAndTheWeightIsOnSquares) {
-  const Sample s(Regime::kTouching, 0.5, 0.05);
+  const BodySample s(BodyRegime::kTouching, 0.5, 0.05);
   const BodyResidual once(s.problem, s.data, 1.0), thrice(s.problem, s.data, 3.0);
   EXPECT_NEAR(CostAt(thrice, s.blocks), 3.0 * CostAt(once, s.blocks), 1e-9);
   std::vector<const double*> pointers;

@@ -8,22 +8,23 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 30;
+constexpr int kCondensedFrames = 30;
 
 // Two people of two subjects, who differ in two parameters.
-struct Sample {
+struct CondensedSample {
   PendulumRecording recording;
   std::shared_ptr<const RolloutProblem> problem;
   ParameterBlocks blocks;
 
-  explicit Sample(double robust) {
+  explicit CondensedSample(double robust) {
     Random random(46);
     Scene scene = SceneOfPeople(2, 0.1, &random);
     scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, 150.0, &random),
                     RandomPush(1, 2, 5, PushKind::kExternal, 100.0, &random)};
     ModelOptions options;
     options.interaction.spring = options.interaction.damping = true;
-    recording = RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kFrames);
+    recording =
+        RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kCondensedFrames);
     AddNoise(0.05, &random, &recording);
     recording.initial_velocity = InitialVelocity::kFree;
     recording.subject_ids = {"anna", "bert"};
@@ -36,7 +37,7 @@ struct Sample {
 };
 
 // All blocks side by side.
-Eigen::MatrixXd SideBySide(const Evaluation& evaluation) {
+Eigen::MatrixXd AllBlocks(const CostEvaluation& evaluation) {
   Eigen::MatrixXd all(evaluation.residuals.size(), 0);
   for (const auto& block : evaluation.jacobians) {
     all.conservativeResize(Eigen::NoChange, all.cols() + block.cols());
@@ -67,26 +68,26 @@ void ExpectSameEquations(const Eigen::MatrixXd& j, const Eigen::VectorXd& r,
 
 TEST(CondensedRollout, HasTheEquationsOfAllRows) {
   for (double robust : {0.0, 0.5}) {
-    const Sample s(robust);
+    const CondensedSample s(robust);
     const std::vector<bool> all(s.blocks.size(), true);
-    const Evaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, all);
+    const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, all);
     ASSERT_TRUE(rows.ok);
     for (const auto& [name, method] : Names(JacobianMethod())) {
       SCOPED_TRACE(name);
       const CondensedRollout cost(s.problem, method);
-      const Evaluation condensed = EvaluateCost(cost, s.blocks, all);
+      const CostEvaluation condensed = EvaluateCost(cost, s.blocks, all);
       ASSERT_TRUE(condensed.ok);
       EXPECT_EQ(condensed.residuals.size(), s.problem->layout.num_acting() + 1);
-      ExpectSameEquations(SideBySide(rows), rows.residuals, SideBySide(condensed),
+      ExpectSameEquations(AllBlocks(rows), rows.residuals, AllBlocks(condensed),
                           condensed.residuals);
     }
   }
 }
 
 TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
-  const Sample s(0.5);
-  const Evaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, {});
-  const Evaluation condensed =
+  const CondensedSample s(0.5);
+  const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, {});
+  const CostEvaluation condensed =
       EvaluateCost(CondensedRollout(s.problem, JacobianMethod::kSensitivities), s.blocks, {});
   ASSERT_TRUE(rows.ok && condensed.ok);
   EXPECT_NEAR(condensed.residuals.norm(), rows.residuals.norm(), 1e-13 * rows.residuals.norm());
@@ -94,10 +95,10 @@ TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
 
 // The rows of each person, taken from all rows; those of the robust loss corrected frame by frame.
 TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
-  const Sample s(0.5);
-  const Evaluation rows =
+  const CondensedSample s(0.5);
+  const CostEvaluation rows =
       EvaluateCost(RolloutResidual(s.problem), s.blocks, std::vector<bool>(s.blocks.size(), true));
-  const Eigen::MatrixXd jacobian = SideBySide(rows);
+  const Eigen::MatrixXd jacobian = AllBlocks(rows);
   std::vector<const double*> blocks;
   for (const auto& block : s.blocks) blocks.push_back(block.data());
   const CondensedRollout cost(s.problem, JacobianMethod::kSensitivities);
@@ -106,10 +107,10 @@ TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
   ASSERT_EQ(people.size(), 2u);
   EXPECT_EQ(cost.num_rows(), rows.residuals.size());
   for (int n = 0; n < 2; ++n) {
-    const Eigen::Index own = (kFrames - 1) * kFrameResiduals;
+    const Eigen::Index own = (kCondensedFrames - 1) * kFrameResiduals;
     Eigen::MatrixXd j(own, jacobian.cols()), corrected(own, jacobian.cols());
     Eigen::VectorXd r(own);
-    for (int t = 0; t + 1 < kFrames; ++t) {
+    for (int t = 0; t + 1 < kCondensedFrames; ++t) {
       const Eigen::Index to = t * kFrameResiduals, from = (2 * t + n) * kFrameResiduals;
       j.middleRows<kFrameResiduals>(to) = jacobian.middleRows<kFrameResiduals>(from);
       r.segment<kFrameResiduals>(to) = rows.residuals.segment<kFrameResiduals>(from);

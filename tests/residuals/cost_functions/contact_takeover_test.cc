@@ -17,7 +17,7 @@ ModelOptions Learned(double size, Random* random) {
 }
 
 // Two who are pushed together.
-PendulumRecording Pushed(const ModelOptions& options, Random* random) {
+PendulumRecording PushedTogether(const ModelOptions& options, Random* random) {
   Scene scene = SceneOfPeople(2, 0.05, random);
   scene.pushes = {RandomPush(0, 0, 8, PushKind::kExternal, 200.0, random)};
   return RecordRollout(scene, options, std::vector(2, RecoveringParameters()), 60);
@@ -27,7 +27,7 @@ PendulumRecording Pushed(const ModelOptions& options, Random* random) {
 TEST(ContactTakeover, IsTheRegressionOnUnitContact) {
   Random random(81);
   const ModelOptions options = Learned(0.5, &random);
-  const PendulumRecording recording = Pushed(options, &random);
+  const PendulumRecording recording = PushedTogether(options, &random);
   ParameterSet<double> p = RecoveringParameters(), spring = p, damping = p;
   spring[kContactStiffness] = damping[kContactDamping] = 1.0;
   spring[kContactDamping] = damping[kContactStiffness] = 0.0;
@@ -63,7 +63,7 @@ TEST(ContactTakeover, IsTheRegressionOnUnitContact) {
 TEST(ContactTakeover, WeightsAreOfFramesNotOfForces) {
   Random random(83);
   const ModelOptions options = Learned(0.5, &random);
-  PendulumRecording recording = Pushed(options, &random);
+  PendulumRecording recording = PushedTogether(options, &random);
   const auto of = [&] {
     return ContactTakeoverResidual({recording}, options, RecoveringParameters(), 1.0)
         .Of(options.learned->weights);
@@ -81,7 +81,7 @@ TEST(ContactTakeover, JacobianAgainstNumericDifferentiation) {
   Random random(82);
   for (double size : {0.0, 1e-6, 0.8}) {
     const ModelOptions options = Learned(size, &random);
-    const PendulumRecording recording = Pushed(options, &random);
+    const PendulumRecording recording = PushedTogether(options, &random);
     const ContactTakeoverResidual residual({recording}, options, RecoveringParameters(), 2.0);
     std::vector<double> weights = options.learned->weights;
     const int count = static_cast<int>(weights.size());

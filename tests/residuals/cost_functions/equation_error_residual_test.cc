@@ -9,7 +9,7 @@ namespace pushid {
 namespace {
 
 constexpr double kFps = 60.0;
-constexpr int kFrames = 40;
+constexpr int kCubicFrames = 40;
 
 // Two people whose coordinates are cubics in time, which the smoothing reproduces exactly, and the
 // pushes that make the model move them so: the truth leaves no error at all.
@@ -24,11 +24,11 @@ PendulumRecording CubicMotion(const ModelOptions& options, const ParameterSet<do
     c = Eigen::Matrix4d::NullaryExpr([&](auto, auto) { return random->Uniform(-0.3, 0.3); });
     c.row(0) = recording.scene.people[n].start.q.transpose();
     recording.subject_ids.push_back("S" + std::to_string(n));
-    recording.states.emplace_back(kFrames);
-    recording.hip.emplace_back(kFrames);
+    recording.states.emplace_back(kCubicFrames);
+    recording.hip.emplace_back(kCubicFrames);
     const SelfForce self(options, recording.scene.people[n].body, c.row(0).transpose(), 1.0 / kFps);
     std::vector<Vector4<double>> force;
-    for (int t = 0; t < kFrames; ++t) {
+    for (int t = 0; t < kCubicFrames; ++t) {
       const auto state_at = [&](double s) {
         return PendulumState<double>{c.transpose() * Vector4<double>(1, s, s * s, s * s * s),
                                      c.transpose() * Vector4<double>(0, 1, 2 * s, 3 * s * s)};
@@ -52,10 +52,10 @@ TEST(EquationError, VanishesAtTheTruthOfAMotionTheSmoothingReproduces) {
     if (options.stance != Stance::kSlide) continue;  // equation error knows no step state
     SCOPED_TRACE(Describe(options));
     const PendulumRecording recording = CubicMotion(options, RecoveringParameters(), &random);
-    const Evaluation evaluation = EvaluateCost(EquationErrorResidual(recording, options, map),
+    const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, options, map),
                                                {SharedBlock(map, RecoveringParameters())}, {});
     ASSERT_TRUE(evaluation.ok);
-    ASSERT_EQ(evaluation.residuals.size(), 4 * 2 * kFrames);
+    ASSERT_EQ(evaluation.residuals.size(), 4 * 2 * kCubicFrames);
     EXPECT_LT(evaluation.residuals.cwiseAbs().maxCoeff(), 1e-8);  // m/s^2
   }
 }
@@ -66,7 +66,7 @@ TEST(EquationError, VanishesForPeopleAtRest) {
   const PendulumRecording recording =
       RecordRollout(scene, {}, std::vector(2, RecoveringParameters()), 30);
   const ParameterMap map = EveryParameterMap({});
-  const Evaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map),
+  const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map),
                                              {SharedBlock(map, RecoveringParameters())}, {});
   EXPECT_LT(evaluation.residuals.cwiseAbs().maxCoeff(), 1e-9);
 }
@@ -84,8 +84,8 @@ TEST(EquationError, OfARolledOutMotionShrinksWithTheStep) {
         MakeScenePush(0, 0, PushKind::kExternal,
                       HalfSinePush(scene.people[0].body, 25.0, 30 * refinement, scene.dt))};
     const PendulumRecording recording =
-        RecordRollout(scene, {}, {RecoveringParameters()}, kFrames * refinement);
-    const Evaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map, 5),
+        RecordRollout(scene, {}, {RecoveringParameters()}, kCubicFrames * refinement);
+    const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map, 5),
                                                {SharedBlock(map, RecoveringParameters())}, {});
     errors.push_back(evaluation.residuals.norm() /
                      std::sqrt(static_cast<double>(evaluation.residuals.size())));
@@ -135,7 +135,7 @@ TEST(EquationError, OneLinearSolveFindsTheGains) {
     map.fitted.push_back({p, Transform::kIdentity, -1});
     start.push_back(0.0);
   }
-  const Evaluation at_start =
+  const CostEvaluation at_start =
       EvaluateCost(EquationErrorResidual(recording, options, map), {start}, {true});
   const Eigen::MatrixXd jacobian = at_start.jacobians[0];
   const Eigen::VectorXd found = jacobian.colPivHouseholderQr().solve(-at_start.residuals);

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-struct Regime {
+struct LaneRegime {
   Posture posture;
   GainScaling scaling;
   FrictionKind friction;
@@ -19,12 +19,12 @@ struct Regime {
   bool free_velocity;
 };
 
-const Regime kRegimes[] = {{Posture::kInitial, GainScaling::kBody, FrictionKind::kIsotropic,
-                            CartDerivative::kNone, PushTail::kExponential, 0.5, false},
-                           {Posture::kUpright, GainScaling::kNone, FrictionKind::kAnisotropic,
-                            CartDerivative::kBackward, PushTail::kNone, 0.0, true},
-                           {Posture::kInitial, GainScaling::kMass, FrictionKind::kAnisotropic,
-                            CartDerivative::kBackward, PushTail::kExponential, 2.0, true}};
+const LaneRegime kRegimes[] = {{Posture::kInitial, GainScaling::kBody, FrictionKind::kIsotropic,
+                                CartDerivative::kNone, PushTail::kExponential, 0.5, false},
+                               {Posture::kUpright, GainScaling::kNone, FrictionKind::kAnisotropic,
+                                CartDerivative::kBackward, PushTail::kNone, 0.0, true},
+                               {Posture::kInitial, GainScaling::kMass, FrictionKind::kAnisotropic,
+                                CartDerivative::kBackward, PushTail::kExponential, 2.0, true}};
 
 // Eleven people of other lengths, steps and pushes each.
 struct Crowd {
@@ -33,7 +33,7 @@ struct Crowd {
   std::vector<ParameterBlocks> blocks;
   std::vector<std::vector<const double*>> at;
 
-  explicit Crowd(const Regime& regime) : recordings(11) {
+  explicit Crowd(const LaneRegime& regime) : recordings(11) {
     Random random(612);
     ModelOptions options;
     options.posture = regime.posture;
@@ -112,7 +112,7 @@ void ExpectSame(const NormalEquations& actual, const NormalEquations& expected) 
 }
 
 TEST(LaneGroup, SumsUpTheRowsOfEveryRecording) {
-  for (const Regime& regime : kRegimes) {
+  for (const LaneRegime& regime : kRegimes) {
     const Crowd crowd(regime);
     for (const PersonLanes* lanes : SupportedPersonLanes()) {
       SCOPED_TRACE(lanes->name);

@@ -7,7 +7,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 12;
+constexpr int kLikelihoodFrames = 12;
 
 ParameterSet<double> NoisyParameters(Random* random, double spread) {
   ParameterSet<double> p = RandomRecoveringParameters(random, spread);
@@ -38,7 +38,7 @@ PendulumRecording Measured(int people, const ModelOptions& options, double push,
   scene.pushes = {RandomPush(0, 0, 3, PushKind::kNet, push, random),
                   RandomPush(people - 1, 2, 5, PushKind::kExternal, push, random)};
   PendulumRecording recording =
-      RecordRollout(scene, options, std::vector(people, RecoveringParameters()), kFrames);
+      RecordRollout(scene, options, std::vector(people, RecoveringParameters()), kLikelihoodFrames);
   AddNoise(noise, random, &recording);
   return recording;
 }
@@ -50,16 +50,18 @@ ModelOptions ModelOf(bool contact, bool full) {
   return options;
 }
 
-struct Regime {
+struct LikelihoodRegime {
   std::string name;
   double push, noise, spread, deviation;
 };
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const LikelihoodRegime& regime) {
+  return out << regime.name;
+}
 
-class LikelihoodTwins : public testing::TestWithParam<Regime> {};
+class LikelihoodTwins : public testing::TestWithParam<LikelihoodRegime> {};
 
 TEST_P(LikelihoodTwins, JetsEqualNumericDifferentiation) {
-  const Regime& regime = GetParam();
+  const LikelihoodRegime& regime = GetParam();
   Random random(7);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
   for (Likelihood likelihood :
@@ -84,14 +86,14 @@ TEST_P(LikelihoodTwins, JetsEqualNumericDifferentiation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ThreeRegimes, LikelihoodTwins,
-                         testing::Values(Regime{"at_rest", 0.0, 0.0, 0.0, 0.0},
-                                         Regime{"tiny", 1e-4, 1e-6, 0.1, 0.01},
-                                         Regime{"large", 120.0, 0.004, 0.3, 0.1}),
+                         testing::Values(LikelihoodRegime{"at_rest", 0.0, 0.0, 0.0, 0.0},
+                                         LikelihoodRegime{"tiny", 1e-4, 1e-6, 0.1, 0.01},
+                                         LikelihoodRegime{"large", 120.0, 0.004, 0.3, 0.1}),
                          [](const auto& test) { return test.param.name; });
 
 // Those that the fit takes against those that are exact.
 TEST_P(LikelihoodTwins, DifferencesOfFiltersEqualJets) {
-  const Regime& regime = GetParam();
+  const LikelihoodRegime& regime = GetParam();
   Random random(12);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
   for (int people : {1, 2}) {
@@ -115,7 +117,7 @@ TEST(LikelihoodResidual, HalfItsSquaresAreTheNegativeLogLikelihood) {
   const ParameterMap map = LikelihoodMap({});
   const ModelOptions options = ModelOf(false, true);
   PendulumRecording recording = Measured(1, options, 80.0, 0.003, &random);
-  recording.weight = {std::vector<double>(kFrames, 1.0)};
+  recording.weight = {std::vector<double>(kLikelihoodFrames, 1.0)};
   recording.weight[0][5] = 0.0;  // a gap
   for (Likelihood likelihood : {Likelihood::kTransition, Likelihood::kInnovation}) {
     const LikelihoodProblem problem =
@@ -132,7 +134,7 @@ TEST(LikelihoodResidual, HalfItsSquaresAreTheNegativeLogLikelihood) {
     EXPECT_NEAR(half - residual.offset(), 0.5 * deviance.value, 1e-8 * std::abs(deviance.value));
     const int gaps = likelihood == Likelihood::kTransition ? 2 : 1;
     constexpr int kUnderNetPush = 3;  // which was made from the motion
-    EXPECT_EQ(deviance.measured, 4 * (kFrames - 1 - gaps - kUnderNetPush));
+    EXPECT_EQ(deviance.measured, 4 * (kLikelihoodFrames - 1 - gaps - kUnderNetPush));
   }
 }
 

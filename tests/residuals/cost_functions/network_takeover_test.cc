@@ -6,7 +6,7 @@
 namespace pushid {
 namespace {
 
-PendulumRecording Pushed(const ModelOptions& options, Random* random) {
+PendulumRecording BothPushed(const ModelOptions& options, Random* random) {
   Scene scene = SceneOfPeople(2, 0.05, random);
   scene.pushes = {RandomPush(0, 0, 6, PushKind::kExternal, 150.0, random),
                   RandomPush(1, 4, 6, PushKind::kExternal, 120.0, random)};
@@ -40,7 +40,7 @@ TEST(NetworkTakeover, NamesTheGainThatANetworkPlays) {
                             Disguise{"damping", 2, 4, {0.0, 0.0, -f / kNetworkRate}}}) {
     SCOPED_TRACE(d.name);
     options.learned = OneGain(d.row, d.column, -0.3);
-    const std::vector<PendulumRecording> recordings = {Pushed(options, &random)};
+    const std::vector<PendulumRecording> recordings = {BothPushed(options, &random)};
     const Takeover t = TakeoverResidual(recordings, options, 1.0).Of(options.learned->weights);
     const Eigen::Vector3d taken(t.mu, t.kp_theta, t.kd_theta);
     EXPECT_LT((taken + 0.3 * d.taken).norm(), 1e-3 * d.taken.norm()) << taken.transpose();
@@ -53,7 +53,7 @@ TEST(NetworkTakeover, FrictionInOneDirection) {
   ModelOptions options;
   options.gain_scaling = GainScaling::kMass;
   options.learned = OneGain(0, 2, -0.2);
-  PendulumRecording recording = Pushed(options, &random);
+  PendulumRecording recording = BothPushed(options, &random);
   for (auto& states : recording.states) {
     for (PendulumState<double>& state : states) state.qd[1] = 0.0;  // no person moves sideways
   }
@@ -70,7 +70,7 @@ TEST(NetworkTakeover, JacobianAgainstNumericDifferentiation) {
     for (double size : {0.0, 1e-8, 1.0}) {
       SCOPED_TRACE(NetworkName(shape) + " " + std::to_string(size));
       ModelOptions options;
-      const PendulumRecording recording = Pushed(options, &random);
+      const PendulumRecording recording = BothPushed(options, &random);
       LearnedTerms network{shape, std::vector<double>(shape.num_weights())};
       for (double& w : network.weights) w = size * random.Uniform(-1.0, 1.0);
       options.learned = std::make_shared<const LearnedTerms>(network);

@@ -19,12 +19,12 @@ ParameterSet<double> SensibleGains() {
 }
 
 double Cost(const RestProblem& problem, const ParameterBlocks& blocks) {
-  const Evaluation evaluation = EvaluateCost(SettlingResidual(problem), blocks, {});
+  const CostEvaluation evaluation = EvaluateCost(SettlingResidual(problem), blocks, {});
   EXPECT_TRUE(evaluation.ok);
   return 0.5 * evaluation.residuals.squaredNorm();
 }
 
-PendulumRecording PushedPair(double push, Random* random) {
+PendulumRecording PairPushedOnce(double push, Random* random) {
   Scene scene = SceneOfPeople(2, 0.08, random);
   scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, push, random),
                   RandomPush(1, 3, 5, PushKind::kExternal, push, random)};
@@ -61,14 +61,14 @@ TEST(Settling, IsZeroForWhoeverSettlesInTime) {
     for (double impulse : {4.0, 25.0}) {
       SCOPED_TRACE(std::to_string(mass) + ", " + std::to_string(impulse));
       const RestProblem problem = SettlingProblem(SettlingScene(mass, impulse), {}, map, {}, 1.0);
-      const Evaluation settled =
+      const CostEvaluation settled =
           EvaluateCost(SettlingResidual(problem), {SharedBlock(map, SensibleGains())}, {true});
       ASSERT_TRUE(settled.ok);
       EXPECT_EQ(settled.residuals.norm(), 0.0);
       EXPECT_EQ(settled.jacobians[0].norm(), 0.0);
       ParameterSet<double> self_propelling = SensibleGains();
       self_propelling[kMu] = -20.0;
-      const Evaluation walking =
+      const CostEvaluation walking =
           EvaluateCost(SettlingResidual(problem), {SharedBlock(map, self_propelling)}, {});
       ASSERT_TRUE(walking.ok);
       EXPECT_GT(walking.residuals.norm(), 0.1);
@@ -78,7 +78,7 @@ TEST(Settling, IsZeroForWhoeverSettlesInTime) {
 
 TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
   const ParameterMap map = EveryParameterMap({});
-  const Evaluation evaluation =
+  const CostEvaluation evaluation =
       EvaluateCost(SettlingResidual(SettlingProblem(SettlingScene(80.0, 0.0), {}, map, {}, 3)),
                    {SharedBlock(map, SensibleGains())}, {true});
   ASSERT_TRUE(evaluation.ok);
@@ -118,7 +118,7 @@ TEST(Settling, FallingReturnsFalse) {
 TEST(Stability, JacobianAgainstNumericDifferentiation) {
   Random random(52);
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta, kTailTime});
-  PendulumRecording recording = PushedPair(120.0, &random);
+  PendulumRecording recording = PairPushedOnce(120.0, &random);
   recording.initial_velocity = InitialVelocity::kFree;
   for (Posture posture : {Posture::kUpright, Posture::kInitial}) {
     for (double factor : {1.0, 1.4}) {
@@ -141,10 +141,10 @@ TEST(Stability, JacobianAgainstNumericDifferentiation) {
 // In the posture they started from, not upright.
 TEST(Stability, IsZeroForPeopleAtRest) {
   Random random(53);
-  const PendulumRecording recording = PushedPair(0.0, &random);
+  const PendulumRecording recording = PairPushedOnce(0.0, &random);
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
-  const Evaluation evaluation = EvaluateCost(
+  const CostEvaluation evaluation = EvaluateCost(
       StabilityResidual(StabilityProblem(recording, 1.4, 40, {}, map, {}, 1.0)), blocks, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_LT(evaluation.residuals.norm(), 1e-12);
@@ -154,13 +154,13 @@ TEST(Stability, IsZeroForPeopleAtRest) {
 // Frames behind the data, of the rollout whose push is multiplied.
 TEST(Stability, LooksAtTheFramesBehindTheData) {
   Random random(54);
-  const PendulumRecording recording = PushedPair(120.0, &random);
+  const PendulumRecording recording = PairPushedOnce(120.0, &random);
   ParameterMap map;
   map.values = SensibleGains();
   map.fitted = {{kMu, Transform::kLog, -1}};
   const ResidualSigmas sigmas;
   const RestProblem problem = StabilityProblem(recording, 1.4, 10, {}, map, sigmas, 2.0);
-  const Evaluation evaluation =
+  const CostEvaluation evaluation =
       EvaluateCost(StabilityResidual(problem), {{std::log(SensibleGains()[kMu])}}, {});
   ASSERT_TRUE(evaluation.ok);
   const Scene scene = ScalePushes(recording.scene, 1.4);

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 40;
+constexpr int kRolloutFrames = 40;
 
 using AutoDiff = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16>;
 
@@ -28,15 +28,15 @@ PendulumRecording PushedPair(const ModelOptions& options, double lean, double pu
                   RandomPush(1, 2, 5, PushKind::kNetWithoutFriction, push, random),
                   RandomPush(0, 14, 6, PushKind::kExternal, 0.7 * push, random),
                   RandomPush(1, 20, 3, PushKind::kNet, 0.5 * push, random),
-                  RandomPush(0, kFrames - 3, 9, PushKind::kExternal, push, random)};
+                  RandomPush(0, kRolloutFrames - 3, 9, PushKind::kExternal, push, random)};
   PendulumRecording recording =
-      RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kFrames);
+      RecordRollout(scene, options, std::vector(2, RecoveringParameters()), kRolloutFrames);
   AddNoise(noise, random, &recording);
   recording.initial_velocity = InitialVelocity::kFree;
   return recording;
 }
 
-struct Regime {
+struct RolloutRegime {
   std::string name;
   double lean, push, velocity, noise;
   double spread;     // of the parameters, relative
@@ -44,13 +44,15 @@ struct Regime {
   double absolute;   // tolerance where a whole column vanishes
 };
 
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const RolloutRegime& regime) {
+  return out << regime.name;
+}
 
-class RolloutTwins : public testing::TestWithParam<Regime> {};
+class RolloutTwins : public testing::TestWithParam<RolloutRegime> {};
 
 // Every parameter fitted at once, some of them by subject, with free initial velocities.
 TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
-  const Regime& regime = GetParam();
+  const RolloutRegime& regime = GetParam();
   Random random(41);
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta, kKdPhi, kAx, kTailTorque, kTailTime});
   for (const ModelOptions& options : EveryModelOptions()) {
@@ -70,11 +72,12 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ThreeRegimes, RolloutTwins,
-                         testing::Values(Regime{"at_rest", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-14},
-                                         Regime{"tiny", 0.0, 1e-6, 1e-8, 1e-8, 0.3, 0.1, 1e-18},
-                                         Regime{"large", 0.1, 150.0, 0.3, 0.05, 0.4, 0.1, 1e-13}),
-                         [](const auto& test) { return test.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    ThreeRegimes, RolloutTwins,
+    testing::Values(RolloutRegime{"at_rest", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-14},
+                    RolloutRegime{"tiny", 0.0, 1e-6, 1e-8, 1e-8, 0.3, 0.1, 1e-18},
+                    RolloutRegime{"large", 0.1, 150.0, 0.3, 0.05, 0.4, 0.1, 1e-13}),
+    [](const auto& test) { return test.param.name; });
 
 // The same subject twice: one block of deviations moves both people.
 TEST(PoolingUnits, AreSubjectsSettingsOrConditions) {
@@ -128,7 +131,7 @@ TEST(RolloutResidual, VanishesAtTheTruth) {
   recording.initial_velocity = InitialVelocity::kZero;
   const ParameterMap map = EveryParameterMap({});
   const auto problem = MakeRolloutProblem(recording, {}, map, {}, 1.0, 0);
-  const Evaluation at_truth = EvaluateCost(RolloutResidual(problem), TruthBlocks(map), {true});
+  const CostEvaluation at_truth = EvaluateCost(RolloutResidual(problem), TruthBlocks(map), {true});
   ASSERT_TRUE(at_truth.ok);
   EXPECT_LT(at_truth.residuals.cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GT(at_truth.jacobians[0].cwiseAbs().maxCoeff(), 0.1);
@@ -143,17 +146,17 @@ TEST(RolloutResidual, ShorterHorizonIsTheBeginningOfTheWhole) {
     const auto problem = MakeRolloutProblem(recording, {}, map, {}, weight, horizon);
     return EvaluateCost(RolloutResidual(problem), TruthBlocks(map), {true});
   };
-  const Evaluation whole = evaluate(0, 1.0);
-  EXPECT_EQ(whole.residuals.size(), (kFrames - 1) * 2 * kFrameResiduals);
-  for (int horizon : {2, 8, 16, kFrames}) {
-    const Evaluation part = evaluate(horizon, 1.0);
+  const CostEvaluation whole = evaluate(0, 1.0);
+  EXPECT_EQ(whole.residuals.size(), (kRolloutFrames - 1) * 2 * kFrameResiduals);
+  for (int horizon : {2, 8, 16, kRolloutFrames}) {
+    const CostEvaluation part = evaluate(horizon, 1.0);
     const int rows = (horizon - 1) * 2 * kFrameResiduals;
     ASSERT_EQ(part.residuals.size(), rows);
     EXPECT_EQ(part.residuals, whole.residuals.head(rows));
     EXPECT_EQ(part.jacobians[0], whole.jacobians[0].topRows(rows));
   }
   EXPECT_EQ(evaluate(1000, 1.0).residuals, whole.residuals);
-  const Evaluation heavy = evaluate(0, 2.0);
+  const CostEvaluation heavy = evaluate(0, 2.0);
   EXPECT_EQ(heavy.residuals, 2.0 * whole.residuals);
   EXPECT_EQ(heavy.jacobians[0], 2.0 * whole.jacobians[0]);
 }
@@ -226,7 +229,7 @@ TEST(RolloutResidual, FramesThatWereNotSeenDoNotCount) {
     return residuals;
   };
   const std::vector<double> full = evaluate(recording);
-  recording.weight = {std::vector<double>(kFrames, 1.0), {}};
+  recording.weight = {std::vector<double>(kRolloutFrames, 1.0), {}};
   for (int t = 10; t < 15; ++t) {
     recording.weight[0][t] = 0.0;
     recording.hip[0][t].setConstant(7.0);

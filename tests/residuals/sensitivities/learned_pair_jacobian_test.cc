@@ -9,18 +9,9 @@
 namespace pushid {
 namespace {
 
-constexpr int kStates = 16, kWeights = 11 * 3 + 4 * 2 + 3 * 4;
-constexpr int kColumns = kStates + kNumPairParameters + kWeights;
-using Jet = ceres::Jet<double, kColumns>;
-
-PendulumState<Jet> JetState(const PendulumState<double>& state, int first) {
-  PendulumState<Jet> jets;
-  for (int i = 0; i < 4; ++i) {
-    jets.q[i] = Jet(state.q[i], first + i);
-    jets.qd[i] = Jet(state.qd[i], first + 4 + i);
-  }
-  return jets;
-}
+constexpr int kWeights = 11 * 3 + 4 * 2 + 3 * 4;
+constexpr int kLearnedColumns = kPairStates + kNumPairParameters + kWeights;
+using LearnedJet = ceres::Jet<double, kLearnedColumns>;
 
 struct Motion {
   std::string name;
@@ -49,20 +40,20 @@ TEST_P(LearnedPairForce, DerivativesByHandEqualJets) {
     j.q[1] = n.q[1] + 0.01;
     j.q[0] = n.q[0] + std::min(p[kContactDistance], 0.62) - motion.load;
     std::vector<double> weights(kWeights);
-    std::vector<Jet> jet_weights(kWeights);
+    std::vector<LearnedJet> jet_weights(kWeights);
     for (int i = 0; i < kWeights; ++i) {
       weights[i] = random.Uniform(-motion.weight, motion.weight);
-      jet_weights[i] = Jet(weights[i], kStates + kNumPairParameters + i);
+      jet_weights[i] = LearnedJet(weights[i], kPairStates + kNumPairParameters + i);
     }
-    ParameterSet<Jet> parameters;
+    ParameterSet<LearnedJet> parameters;
     for (int i = 0; i < kNumParameters; ++i) {
       const int column = i - kFirstPairParameter;
       const bool shared = column >= 0 && column < kNumPairParameters;
-      parameters[i] = shared ? Jet(p[i], kStates + column) : Jet(p[i]);
+      parameters[i] = shared ? LearnedJet(p[i], kPairStates + column) : LearnedJet(p[i]);
     }
-    PairForce<Jet> force;
-    AddLearnedPair(shape, jet_weights.data(), pair, parameters, JetState(n, 0), JetState(j, 8),
-                   &force);
+    PairForce<LearnedJet> force;
+    AddLearnedPair(shape, jet_weights.data(), pair, parameters, JetState<LearnedJet>(n, 0),
+                   JetState<LearnedJet>(j, 8), &force);
     if (!force.acts) continue;  // their leans part them
     ++loaded;
     PairJacobian jacobian{};
@@ -71,8 +62,8 @@ TEST_P(LearnedPairForce, DerivativesByHandEqualJets) {
     PairByWeight by_weight;
     AddLearnedPairJacobian(shape, weights.data(), pair, p, n, j, &jacobian, &by_weight);
     for (int row = 0; row < 8; ++row) {
-      const Jet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
-      Eigen::Matrix<double, 1, kColumns> actual;
+      const LearnedJet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
+      Eigen::Matrix<double, 1, kLearnedColumns> actual;
       actual << jacobian.by_states.row(row), jacobian.by_parameter.row(row), by_weight.row(row);
       const double scale = std::max(1.0, expected.v.cwiseAbs().maxCoeff());
       EXPECT_LT((actual - expected.v.transpose()).cwiseAbs().maxCoeff(), 1e-11 * scale) << row;

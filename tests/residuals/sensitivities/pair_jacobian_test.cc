@@ -9,50 +9,41 @@
 namespace pushid {
 namespace {
 
-constexpr int kStates = 16;
-constexpr int kColumns = kStates + kNumPairParameters;
-using Jet = ceres::Jet<double, kColumns>;
+constexpr int kPairColumns = kPairStates + kNumPairParameters;
+using PairJet = ceres::Jet<double, kPairColumns>;
 
-struct Regime {
+struct PairMotion {
   std::string name;
   double load;   // m of compression along x, about
   double lean;   // rad
   double speed;  // m/s and rad/s
 };
 
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const PairMotion& regime) { return out << regime.name; }
 
-PendulumState<Jet> JetState(const PendulumState<double>& state, int first) {
-  PendulumState<Jet> jets;
-  for (int i = 0; i < 4; ++i) {
-    jets.q[i] = Jet(state.q[i], first + i);
-    jets.qd[i] = Jet(state.qd[i], first + 4 + i);
-  }
-  return jets;
-}
-
-PairForce<Jet> ForceOfJets(const InteractionTerms& terms, const Pair& pair,
-                           const ParameterSet<double>& p, const PendulumState<double>& n,
-                           const PendulumState<double>& j) {
-  ParameterSet<Jet> parameters;
+PairForce<PairJet> ForceOfJets(const InteractionTerms& terms, const Pair& pair,
+                               const ParameterSet<double>& p, const PendulumState<double>& n,
+                               const PendulumState<double>& j) {
+  ParameterSet<PairJet> parameters;
   for (int i = 0; i < kNumParameters; ++i) {
     const int column = i - kFirstPairParameter;
     const bool shared = column >= 0 && column < kNumPairParameters;
-    parameters[i] = shared ? Jet(p[i], kStates + column) : Jet(p[i]);
+    parameters[i] = shared ? PairJet(p[i], kPairStates + column) : PairJet(p[i]);
   }
-  return InteractionBetween(terms, nullptr, pair, parameters, JetState(n, 0), JetState(j, 8));
+  return InteractionBetween(terms, nullptr, pair, parameters, JetState<PairJet>(n, 0),
+                            JetState<PairJet>(j, 8));
 }
 
 void ExpectEqualJets(const InteractionTerms& terms, const Pair& pair, const ParameterSet<double>& p,
                      const PendulumState<double>& n, const PendulumState<double>& j, bool* acts) {
-  const PairForce<Jet> force = ForceOfJets(terms, pair, p, n, j);
+  const PairForce<PairJet> force = ForceOfJets(terms, pair, p, n, j);
   const PairJacobian jacobian = ComputePairJacobian(terms, nullptr, pair, p, n, j);
   for (int row = 0; row < 8; ++row) {
-    const Jet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
+    const PairJet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
     const double scale = std::max(1.0, expected.v.cwiseAbs().maxCoeff());
-    for (int column = 0; column < kColumns; ++column) {
-      const double value = column < kStates ? jacobian.by_states(row, column)
-                                            : jacobian.by_parameter(row, column - kStates);
+    for (int column = 0; column < kPairColumns; ++column) {
+      const double value = column < kPairStates ? jacobian.by_states(row, column)
+                                                : jacobian.by_parameter(row, column - kPairStates);
       EXPECT_NEAR(value, expected.v[column], 1e-11 * scale)
           << DescribeTerms(terms) << ", row " << row << ", column " << column;
     }
@@ -60,10 +51,10 @@ void ExpectEqualJets(const InteractionTerms& terms, const Pair& pair, const Para
   *acts = *acts || force.acts;
 }
 
-class PairJacobians : public testing::TestWithParam<Regime> {};
+class PairJacobians : public testing::TestWithParam<PairMotion> {};
 
 TEST_P(PairJacobians, EqualJetsForEveryTerm) {
-  const Regime& regime = GetParam();
+  const PairMotion& regime = GetParam();
   Random random(5);
   for (const InteractionTerms& terms : SomeInteractions()) {
     bool acts = false;
@@ -89,9 +80,9 @@ TEST_P(PairJacobians, EqualJetsForEveryTerm) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Regimes, PairJacobians,
-                         testing::Values(Regime{"just_touching", 0.03, 1e-3, 1e-3},
-                                         Regime{"in_motion", 0.1, 0.1, 0.5},
-                                         Regime{"far_from_rest", 0.2, 0.6, 3.0}),
+                         testing::Values(PairMotion{"just_touching", 0.03, 1e-3, 1e-3},
+                                         PairMotion{"in_motion", 0.1, 0.1, 0.5},
+                                         PairMotion{"far_from_rest", 0.2, 0.6, 3.0}),
                          [](const auto& regime) { return regime.param.name; });
 
 }  // namespace

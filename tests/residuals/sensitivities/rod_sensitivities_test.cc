@@ -24,7 +24,7 @@ std::vector<Learned> EveryLearned() {
           {mlp, {NetworkKind::kLstm, 2, 3, true}}};
 }
 
-std::string NameOf(const Learned& learned) {
+std::string LawName(const Learned& learned) {
   return "rod " + RodName(learned.rod) + ", self force " + NetworkName(learned.self) +
          (learned.self.rod_input ? " that sees it" : "");
 }
@@ -42,7 +42,7 @@ TEST_P(RodTwins, DerivativesByHandEqualJets) {
   for (const Learned& learned : EveryLearned()) {
     for (PushUse use : {PushUse::kAdded, PushUse::kAsRecorded}) {
       for (CartDerivative derivative : {CartDerivative::kNone, CartDerivative::kBackward}) {
-        SCOPED_TRACE(NameOf(learned));
+        SCOPED_TRACE(LawName(learned));
         ModelOptions options = With(learned, regime.weight, &random);
         options.push = use;
         options.cart_derivative = derivative;
@@ -86,7 +86,7 @@ TEST(RodSensitivities, PathIsTheRollouts) {
         EXPECT_EQ(sensitivities.Rod(t, n).size(), 8);
       }
     }
-    EXPECT_NE(path.At(kPairFrames - 1, 0).rod, 0.0) << NameOf(learned);
+    EXPECT_NE(path.At(kPairFrames - 1, 0).rod, 0.0) << LawName(learned);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(RodSensitivities, FixedWeightsAreTheModels) {
 TEST(RodSensitivities, RestResiduals) {
   Random random(84);
   for (const Learned& learned : EveryLearned()) {
-    SCOPED_TRACE(NameOf(learned));
+    SCOPED_TRACE(LawName(learned));
     const ModelOptions options = With(learned, 0.4, &random);
     ParameterMap map = EveryParameterMap({});
     map.num_weights = options.learned->num_weights();

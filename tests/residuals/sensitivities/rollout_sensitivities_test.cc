@@ -9,14 +9,14 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 45;
+constexpr int kRolloutFrames = 45;
 constexpr int kPeople = 2;
 // Natural parameters and initial velocities of both people.
-constexpr int kColumns = kPeople * (kNumParameters + 4);
-using Jet = ceres::Jet<double, kColumns>;
+constexpr int kRolloutColumns = kPeople * (kNumParameters + 4);
+using RolloutJet = ceres::Jet<double, kRolloutColumns>;
 
 // How far from rest a rollout is driven.
-struct Regime {
+struct RolloutRegime {
   std::string name;
   double lean;      // rad, at frame 0
   double push;      // N
@@ -25,23 +25,25 @@ struct Regime {
   double absolute;  // tolerance where a whole column vanishes
 };
 
-std::ostream& operator<<(std::ostream& out, const Regime& regime) { return out << regime.name; }
+std::ostream& operator<<(std::ostream& out, const RolloutRegime& regime) {
+  return out << regime.name;
+}
 
 // Pushes of every kind, two of them on one person, one cut off by the end.
-Scene PushedScene(const Regime& regime, Random* random) {
+Scene PushedScene(const RolloutRegime& regime, Random* random) {
   Scene scene = SceneOfPeople(kPeople, regime.lean, random);
   scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, regime.push, random),
                   RandomPush(1, 2, 5, PushKind::kNetWithoutFriction, regime.push, random),
                   RandomPush(0, 14, 6, PushKind::kExternal, 0.7 * regime.push, random),
                   RandomPush(1, 20, 3, PushKind::kNet, 0.5 * regime.push, random),
-                  RandomPush(0, kFrames - 3, 9, PushKind::kExternal, regime.push, random)};
+                  RandomPush(0, kRolloutFrames - 3, 9, PushKind::kExternal, regime.push, random)};
   return scene;
 }
 
 // Every natural parameter and velocity of every person is a column of its own.
-SensitivityInputs InputsOfEverything(const Regime& regime, Random* random) {
+SensitivityInputs InputsOfEverything(const RolloutRegime& regime, Random* random) {
   SensitivityInputs inputs;
-  inputs.num_columns = kColumns;
+  inputs.num_columns = kRolloutColumns;
   inputs.velocity_column = kPeople * kNumParameters;
   for (int n = 0; n < kPeople; ++n) {
     inputs.parameters.push_back(RandomRecoveringParameters(random, regime.spread));
@@ -57,27 +59,28 @@ SensitivityInputs InputsOfEverything(const Regime& regime, Random* random) {
   return inputs;
 }
 
-RolloutPath<Jet> RollJets(const Scene& scene, const ModelOptions& options,
-                          const SensitivityInputs& inputs) {
-  std::vector<ParameterSet<Jet>> parameters(kPeople);
-  std::vector<Vector4<Jet>> velocities(kPeople);
+RolloutPath<RolloutJet> RollJets(const Scene& scene, const ModelOptions& options,
+                                 const SensitivityInputs& inputs) {
+  std::vector<ParameterSet<RolloutJet>> parameters(kPeople);
+  std::vector<Vector4<RolloutJet>> velocities(kPeople);
   for (int n = 0; n < kPeople; ++n) {
     for (int i = 0; i < kNumParameters; ++i) {
-      parameters[n][i] = Jet(inputs.parameters[n][i], n * kNumParameters + i);
+      parameters[n][i] = RolloutJet(inputs.parameters[n][i], n * kNumParameters + i);
     }
     for (int i = 0; i < 4; ++i) {
-      velocities[n][i] = Jet(inputs.initial_velocity[n][i], inputs.velocity_column + 4 * n + i);
+      velocities[n][i] =
+          RolloutJet(inputs.initial_velocity[n][i], inputs.velocity_column + 4 * n + i);
     }
   }
-  RolloutPath<Jet> path;
-  EXPECT_TRUE(Rollout(scene, options, parameters, velocities, kFrames, &path).ok);
+  RolloutPath<RolloutJet> path;
+  EXPECT_TRUE(Rollout(scene, options, parameters, velocities, kRolloutFrames, &path).ok);
   return path;
 }
 
-class Sensitivities : public testing::TestWithParam<Regime> {};
+class Sensitivities : public testing::TestWithParam<RolloutRegime> {};
 
 TEST_P(Sensitivities, EqualJetsForEveryModel) {
-  const Regime& regime = GetParam();
+  const RolloutRegime& regime = GetParam();
   Random random(31);
   for (const ModelOptions& options : EveryModelOptions()) {
     SCOPED_TRACE(Describe(options));
@@ -86,18 +89,18 @@ TEST_P(Sensitivities, EqualJetsForEveryModel) {
     RolloutPath<double> path;
     RolloutSensitivities sensitivities;
     ASSERT_TRUE(
-        RolloutWithSensitivities(scene, options, inputs, kFrames, &path, &sensitivities).ok);
-    const RolloutPath<Jet> jets = RollJets(scene, options, inputs);
+        RolloutWithSensitivities(scene, options, inputs, kRolloutFrames, &path, &sensitivities).ok);
+    const RolloutPath<RolloutJet> jets = RollJets(scene, options, inputs);
     int wrong = 0;
-    for (int t = 0; t < kFrames; ++t) {
+    for (int t = 0; t < kRolloutFrames; ++t) {
       for (int n = 0; n < kPeople; ++n) {
-        Eigen::Matrix<double, 8, kColumns> expected;
+        Eigen::Matrix<double, 8, kRolloutColumns> expected;
         for (int i = 0; i < 4; ++i) {
           expected.row(i) = jets.At(t, n).q[i].v.transpose();
           expected.row(4 + i) = jets.At(t, n).qd[i].v.transpose();
         }
         const auto actual = sensitivities.At(t, n);
-        for (int column = 0; column < kColumns; ++column) {
+        for (int column = 0; column < kRolloutColumns; ++column) {
           // Ankles hold by torques that nearly cancel: what rounding leaves of them.
           const double rounding = options.stance == Stance::kThreshold ? 1e-18 : 0.0;
           const double allowed =
@@ -117,7 +120,7 @@ TEST_P(Sensitivities, EqualJetsForEveryModel) {
 }
 
 TEST_P(Sensitivities, PathIsThatOfThePlainRolloutToTheLastBit) {
-  const Regime& regime = GetParam();
+  const RolloutRegime& regime = GetParam();
   Random random(32);
   for (const ModelOptions& options : EveryModelOptions()) {
     SCOPED_TRACE(Describe(options));
@@ -126,10 +129,11 @@ TEST_P(Sensitivities, PathIsThatOfThePlainRolloutToTheLastBit) {
     RolloutPath<double> path, plain;
     RolloutSensitivities sensitivities;
     ASSERT_TRUE(
-        RolloutWithSensitivities(scene, options, inputs, kFrames, &path, &sensitivities).ok);
+        RolloutWithSensitivities(scene, options, inputs, kRolloutFrames, &path, &sensitivities).ok);
     ASSERT_TRUE(
-        Rollout(scene, options, inputs.parameters, inputs.initial_velocity, kFrames, &plain).ok);
-    for (int t = 0; t < kFrames; ++t) {
+        Rollout(scene, options, inputs.parameters, inputs.initial_velocity, kRolloutFrames, &plain)
+            .ok);
+    for (int t = 0; t < kRolloutFrames; ++t) {
       for (int n = 0; n < kPeople; ++n) {
         ASSERT_EQ(path.At(t, n).q, plain.At(t, n).q) << "frame " << t << ", person " << n;
         ASSERT_EQ(path.At(t, n).qd, plain.At(t, n).qd) << "frame " << t << ", person " << n;
@@ -139,9 +143,9 @@ TEST_P(Sensitivities, PathIsThatOfThePlainRolloutToTheLastBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ThreeRegimes, Sensitivities,
-                         testing::Values(Regime{"at_rest", 0.0, 0.0, 0.0, 0.0, 1e-16},
-                                         Regime{"tiny", 0.0, 1e-6, 1e-8, 0.3, 1e-20},
-                                         Regime{"large", 0.1, 150.0, 0.3, 0.4, 1e-14}),
+                         testing::Values(RolloutRegime{"at_rest", 0.0, 0.0, 0.0, 0.0, 1e-16},
+                                         RolloutRegime{"tiny", 0.0, 1e-6, 1e-8, 0.3, 1e-20},
+                                         RolloutRegime{"large", 0.1, 150.0, 0.3, 0.4, 1e-14}),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Sensitivities, FirstFrameKnowsTheInitialVelocityOnly) {
@@ -152,7 +156,8 @@ TEST(Sensitivities, FirstFrameKnowsTheInitialVelocityOnly) {
   RolloutSensitivities sensitivities;
   ASSERT_TRUE(RolloutWithSensitivities(scene, {}, inputs, 2, &path, &sensitivities).ok);
   for (int n = 0; n < kPeople; ++n) {
-    Eigen::Matrix<double, 8, kColumns> expected = Eigen::Matrix<double, 8, kColumns>::Zero();
+    Eigen::Matrix<double, 8, kRolloutColumns> expected =
+        Eigen::Matrix<double, 8, kRolloutColumns>::Zero();
     expected.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
     EXPECT_EQ(sensitivities.At(0, n), expected);
     // A person's parameters move no other person.

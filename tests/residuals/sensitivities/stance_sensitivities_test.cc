@@ -10,7 +10,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 150;
+constexpr int kStanceFrames = 150;
 
 using AutoDiff = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16>;
 
@@ -54,7 +54,8 @@ TEST(StanceSensitivities, EqualJetsThroughTheSwitch) {
     for (double direction : {0.0, M_PI, 0.5 * M_PI, -0.7}) {
       const Scene scene = PushedAtTheHip(impulse, direction, &random);
       const ModelOptions options = Threshold();
-      PendulumRecording recording = RecordRollout(scene, options, {SteppingParameters()}, kFrames);
+      PendulumRecording recording =
+          RecordRollout(scene, options, {SteppingParameters()}, kStanceFrames);
       double most = 0.0;
       for (const PendulumState<double>& state : recording.states[0]) {
         most = std::max(most, state.step);

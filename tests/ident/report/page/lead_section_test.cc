@@ -32,11 +32,12 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   const ReportSection section = LeadSection(model, {});
   ASSERT_EQ(section.paragraphs.size(), 3u);
   EXPECT_TRUE(Contains(section.paragraphs[0],
-                       "What is known: these recordings decide mu = 31.2 N s/m (20 to 42)"));
+                       "What is known: these recordings identify mu = 31.2 N s/m (20 to 42)"));
   EXPECT_TRUE(Contains(section.paragraphs[0], "the fitted person settles within 2 s"));
-  EXPECT_EQ(section.paragraphs[1],
-            "What is not: decided more by what was put in than by the recordings: a_x = -10 N s/m; "
-            "with wide intervals: a_y = -9 N s/m; with 4 people every interval is a rough guess.");
+  EXPECT_EQ(
+      section.paragraphs[1],
+      "What is not known: determined more by priors or constraints than by the recordings: a_x = "
+      "-10 N s/m; with wide intervals: a_y = -9 N s/m; with 4 people all intervals are rough.");
   EXPECT_EQ(section.paragraphs[2], "What to do next: Record more people.");
 }
 
@@ -49,11 +50,10 @@ TEST(LeadSection, SaysHowThePushTravels) {
   travels.figures[kSlownessPredicted] = {0.25, 0.0, 9.0};
   const ReportSection section = LeadSection(FittedModel(), travels);
   ASSERT_EQ(section.paragraphs.size(), 4u);
-  EXPECT_EQ(
-      section.paragraphs[2],
-      "How the push travels, on the recordings that were fitted: in 3 recordings the onset of "
-      "motion went through the people at 2 +- 0.4 m/s (predicted: 4); of 9 who moved the model "
-      "misses 2.");
+  EXPECT_EQ(section.paragraphs[2],
+            "How the push travels in the fitted recordings: in 3 recordings the onset of motion "
+            "propagated "
+            "at 2 +- 0.4 m/s (predicted: 4); the model misses 2 of the 9 people who moved.");
 }
 
 TEST(LeadSection, ManyNamesAreCounted) {
@@ -63,7 +63,7 @@ TEST(LeadSection, ManyNamesAreCounted) {
   }
   EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[1],
                        "a = 1 N s/m, b = 1 N s/m, c = 1 N s/m, d = 1 N s/m and 2 more"));
-  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[0], "no parameter is decided"));
+  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[0], "identify no parameter"));
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
 // ident: sampled groups against what they did.
-#include "ident/generators/group_spread.h"
+#include "ident/forecasts/group_spread.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 
@@ -42,7 +43,7 @@ std::string SpreadText(const GroupSpread& spread) {
   const double ideal = (spread.samples - 1.0) / (spread.samples + 1.0);
   return "the recorded hip lies among " + std::to_string(spread.samples) + " sampled futures in " +
          Rounded(100.0 * spread.Inside(), 3) + " % of frames (" + Rounded(100.0 * ideal, 3) +
-         " % if they spread as people do); they are " + Rounded(spread.Width(), 3) + " m wide\n";
+         " % if their spread is correct); they are " + Rounded(spread.Width(), 3) + " m wide\n";
 }
 
 }  // namespace pushid

@@ -3,8 +3,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "datasets/formats/length_unit.h"
 #include "ident/figures/moving_page.h"
-#include "ident/generators/forecast_scene.h"
+#include "ident/forecasts/forecast_scene.h"
 
 namespace pushid {
 namespace {
@@ -42,7 +43,7 @@ nlohmann::json Frames(const Trajectories& motion) {
   for (Eigen::Index t = 0; t < motion.cols(); ++t) {
     nlohmann::json numbers = nlohmann::json::array();
     for (Eigen::Index i = 0; i < motion.rows(); ++i) {
-      numbers.push_back(std::lround(1000.0f * motion(i, t)));
+      numbers.push_back(std::lround(kMillimetres * motion(i, t)));
     }
     frames.push_back(std::move(numbers));
   }
@@ -76,7 +77,7 @@ std::string ForecastPageHtml(const ForecastScene& scene) {
                          {"fixed", nlohmann::json::array()},
                          {"futures", nlohmann::json::array()}};
   for (Eigen::Index i = 0; i < scene.layout.fixed.cols(); ++i) {
-    const Eigen::Vector3f place = 1000.0f * scene.layout.fixed.col(i);
+    const Eigen::Vector3f place = kMillimetres * scene.layout.fixed.col(i);
     data["fixed"].push_back(
         {std::lround(place.x()), std::lround(place.y()), std::lround(place.z())});
   }

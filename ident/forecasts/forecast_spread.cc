@@ -1,16 +1,16 @@
 // ident: scores of sampled futures.
-#include "ident/generators/forecast_spread.h"
+#include "ident/forecasts/forecast_spread.h"
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/length_unit.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
 namespace {
-
-constexpr double kMillimetres = 1e3;
 
 struct SpreadRow {
   const char* key;

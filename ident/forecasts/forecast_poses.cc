@@ -4,14 +4,14 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "datasets/formats/length_unit.h"
 #include "ident/bodies/body_files.h"
-#include "ident/generators/forecast_scene.h"
+#include "ident/forecasts/forecast_scene.h"
 
 namespace pushid {
 namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
-constexpr float kMillimetres = 1e3f;
 
 // Particles in the order of a BVH file, every one followed by what hangs on it.
 void AddBelow(const ParticleLayout& layout, int parent, std::vector<int>* order) {

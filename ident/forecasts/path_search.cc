@@ -1,5 +1,5 @@
 // ident: a path to a pose.
-#include "ident/generators/path_search.h"
+#include "ident/forecasts/path_search.h"
 
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
@@ -107,7 +107,7 @@ Result<MinimizedPath> PathToPose(const MotionGenerator& generator, const Observe
   Eigen::VectorXd noise = Eigen::VectorXd::Zero(size);
   const std::vector<SampledFuture> undriven = driven(noise);
   if (undriven.empty())
-    return Error{"generators of this kind have no transitions to weigh paths by"};
+    return Error{"generators of this kind have no transition probabilities to weight paths by"};
   ceres::Problem problem;
   problem.AddResidualBlock(new NoiseAction(generator, person, frames, target), nullptr,
                            noise.data());

@@ -1,9 +1,9 @@
 // Long forecasts by the second, and groups among their sampled futures.
-#include "ident/generators/long_forecast.h"
+#include "ident/forecasts/long_forecast.h"
 
 #include <gtest/gtest.h>
 
-#include "ident/generators/group_spread.h"
+#include "ident/forecasts/group_spread.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {
@@ -79,7 +79,7 @@ TEST(GroupSpreadTest, InsideAndWidthByHand) {
   EXPECT_EQ(spread.Inside(), 0.5);
   EXPECT_NEAR(spread.Width(), 0.3, 1e-6);
   EXPECT_EQ(ToJson(spread)["hip_x_inside"], 0.5);
-  EXPECT_NE(SpreadText(spread).find("33.3 % if they spread"), std::string::npos);
+  EXPECT_NE(SpreadText(spread).find("33.3 % if their spread"), std::string::npos);
 }
 
 }  // namespace

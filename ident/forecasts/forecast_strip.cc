@@ -4,7 +4,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/generators/forecast_scene.h"
+#include "ident/forecasts/forecast_scene.h"
 
 namespace pushid {
 namespace {

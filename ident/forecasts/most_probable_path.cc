@@ -1,5 +1,5 @@
 // ident: nodes, their action, and the solver.
-#include "ident/prediction/most_probable_path.h"
+#include "ident/forecasts/most_probable_path.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 #include <ceres/problem.h>
@@ -102,7 +102,7 @@ Vector4<double> Between(const PathEnd& from, const PathEnd& to, double share, do
          s * s * s * (leaving + arriving - 2.0 * apart);
 }
 
-void Evaluate(PathProblem* problem, const Nodes& nodes, ProbablePath* path) {
+void EvaluatePath(PathProblem* problem, const Nodes& nodes, ProbablePath* path) {
   const Scene& scene = *problem->scene;
   const int people = scene.num_people(), frames = static_cast<int>(nodes.size());
   path->states = RolloutPath<double>(frames, people);
@@ -143,7 +143,7 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
   if (MaybeError error = CheckNoise(model)) return *error;
   if (MaybeError error = CheckEnd("from", from)) return *error;
   if (MaybeError error = CheckEnd("to", to)) return *error;
-  if (num_frames < 6) return Error{"--frames must be at least 6: two are held at either end"};
+  if (num_frames < 6) return Error{"--frames must be at least 6: two are fixed at each end"};
   Scene scene;
   scene.dt = 1.0 / fps;
   scene.people.push_back({body, {}});
@@ -166,7 +166,7 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
   if (to.rates_held) hold(num_frames - 2, to.state.q - scene.dt * to.state.qd);
   ProbablePath path;
   if (MaybeError error = problem.Solve(&path)) return *error;
-  Evaluate(&problem, nodes, &path);
+  EvaluatePath(&problem, nodes, &path);
   return path;
 }
 
@@ -205,7 +205,7 @@ Result<ProbablePath> SmoothPath(const IdentifiedModel& model, const PendulumReco
   ceres::Problem::EvaluateOptions measured;
   measured.residual_blocks = problem.measurements;
   problem.problem.Evaluate(measured, &path.measurement_cost, nullptr, nullptr, nullptr);
-  Evaluate(&problem, nodes, &path);
+  EvaluatePath(&problem, nodes, &path);
   return path;
 }
 

@@ -1,5 +1,5 @@
 // Forecasts as files and pictures.
-#include "ident/generators/forecast_scene.h"
+#include "ident/forecasts/forecast_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-ForecastScene Scene() {
+ForecastScene SwayingScene() {
   ForecastScene scene;
   scene.title = "sway <1>";
   scene.layout = FourParticles();
@@ -26,7 +26,7 @@ ForecastScene Scene() {
 class ForecastSceneTest : public TempDirTest {};
 
 TEST_F(ForecastSceneTest, ABvhHoldsThePositionsExactly) {
-  const ForecastScene scene = Scene();
+  const ForecastScene scene = SwayingScene();
   const auto files = WritePoses(Path("m.bvh"), scene);
   ASSERT_TRUE(files.ok()) << files.error().ToString();
   ASSERT_EQ(files.value().size(), 3u);
@@ -58,7 +58,7 @@ TEST_F(ForecastSceneTest, WithoutFixedPointsTheFirstParticleIsTheRoot) {
 
 // The forecast and its two futures, each behind the observed frames, side by side in one file.
 TEST_F(ForecastSceneTest, AGltfHoldsAllFuturesInOneScene) {
-  const ForecastScene scene = Scene();
+  const ForecastScene scene = SwayingScene();
   const GltfScene gltf = ToGltf(scene);
   ASSERT_EQ(gltf.people.size(), 3u);
   EXPECT_EQ(gltf.people[2].name, "future 2");
@@ -84,20 +84,20 @@ TEST_F(ForecastSceneTest, AGltfHoldsAllFuturesInOneScene) {
 }
 
 TEST_F(ForecastSceneTest, ACsvHasARowPerSourceFrameAndJoint) {
-  ASSERT_TRUE(WritePoses(Path("m.csv"), Scene()).ok());
+  ASSERT_TRUE(WritePoses(Path("m.csv"), SwayingScene()).ok());
   const std::string text = ReadText(Path("m.csv"));
   EXPECT_EQ(text.find("frame,time_s,source,future,joint,x_m,y_m,z_m\n0,0,observed,0,spine,"), 0u);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1 + 4 * (12 + 6 + 6 + 2 * 6));
   EXPECT_TRUE(Contains(text, "\n17,0.68,future,2,right,"));
-  EXPECT_FALSE(WritePoses(Path("m.txt"), Scene()).ok());
+  EXPECT_FALSE(WritePoses(Path("m.txt"), SwayingScene()).ok());
 }
 
 TEST_F(ForecastSceneTest, PicturesShowTheFan) {
-  const std::string strip = ForecastStripSvg(Scene(), 4);
+  const std::string strip = ForecastStripSvg(SwayingScene(), 4);
   EXPECT_TRUE(Contains(strip, "sway &lt;1&gt;"));
   EXPECT_TRUE(Contains(strip, "opacity:0.35"));
   EXPECT_TRUE(Contains(strip, "0.24 s"));
-  const std::string page = ForecastPageHtml(Scene());
+  const std::string page = ForecastPageHtml(SwayingScene());
   EXPECT_TRUE(Contains(page, "<title>sway &lt;1&gt;</title>"));
   EXPECT_TRUE(Contains(page, "\"observed\":12"));
   EXPECT_EQ(page.find("http"), std::string::npos) << "the page needs no network";

@@ -9,7 +9,7 @@
 //                 what is among them and judges nothing
 #pragma once
 
-#include "ident/generators/forecast_errors.h"
+#include "ident/forecasts/forecast_errors.h"
 #include "models/generators/motion_generator.h"
 
 namespace pushid {

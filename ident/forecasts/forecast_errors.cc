@@ -1,7 +1,10 @@
 // ident: errors of forecasts, their files and tables.
-#include "ident/generators/forecast_errors.h"
+#include "ident/forecasts/forecast_errors.h"
+
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/length_unit.h"
 #include "ident/figures/metric.h"
 #include "ident/figures/text_table.h"
 
@@ -9,9 +12,8 @@ namespace pushid {
 namespace {
 
 constexpr Metric kMpjpeMm = {"MPJPE", "mm"};
-constexpr double kMillimetres = 1e3;
 
-nlohmann::ordered_json ToJson(const HorizonErrors& errors) {
+nlohmann::ordered_json HorizonsJson(const HorizonErrors& errors) {
   nlohmann::ordered_json json;
   for (size_t k = 0; k < kHorizonFrames.size(); ++k) {
     json[std::to_string(HorizonMs(kHorizonFrames[k]))] = kMillimetres * errors[k];
@@ -53,7 +55,7 @@ std::vector<Trajectories> ZeroVelocity(const std::vector<ForecastWindow>& window
 nlohmann::ordered_json ToJson(const ForecastErrors& errors) {
   const auto of = [](const ActionErrors& action) {
     return nlohmann::ordered_json{{"windows", action.windows},
-                                  {kMpjpeMm.Key(), ToJson(action.mpjpe)}};
+                                  {kMpjpeMm.Key(), HorizonsJson(action.mpjpe)}};
   };
   nlohmann::ordered_json json;
   json["mean"] = of(errors.mean);

@@ -1,5 +1,5 @@
 // Most probable paths of people, and recordings smoothed.
-#include "ident/prediction/most_probable_path.h"
+#include "ident/forecasts/most_probable_path.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ IdentifiedModel NoisyModel() {
   return model;
 }
 
-PathEnd At(const std::string& text) { return ParsePathEnd("--to", text, true).value(); }
+PathEnd EndAt(const std::string& text) { return ParsePathEnd("--to", text, true).value(); }
 
 // Where the model itself goes costs next to nothing; further away costs more and more.
 TEST(PathBetween, WhereTheModelGoesIsMostProbable) {
@@ -29,7 +29,7 @@ TEST(PathBetween, WhereTheModelGoesIsMostProbable) {
   Scene scene;
   scene.people.push_back({body, {}});
   constexpr int kFrames = 60;
-  const PathEnd from = At("xd=0.4,theta=0.03");
+  const PathEnd from = EndAt("xd=0.4,theta=0.03");
   scene.people[0].start = from.state;
   RolloutPath<double> path;
   ModelOptions upright = model.options;
@@ -65,8 +65,8 @@ TEST(PathBetween, AVelocityThatIsNotNamedIsFree) {
   ASSERT_TRUE(free.ok() && held.ok());
   EXPECT_FALSE(free.value().rates_held);
   EXPECT_TRUE(held.value().rates_held);
-  const auto one = PathBetween(model, body, 60.0, At(""), free.value(), 40);
-  const auto other = PathBetween(model, body, 60.0, At(""), held.value(), 40);
+  const auto one = PathBetween(model, body, 60.0, EndAt(""), free.value(), 40);
+  const auto other = PathBetween(model, body, 60.0, EndAt(""), held.value(), 40);
   ASSERT_TRUE(one.ok() && other.ok());
   EXPECT_LT(one.value().action(), other.value().action());
 }
@@ -115,21 +115,21 @@ TEST(PathBetween, BadEndsAndModels) {
   const Body body{80.0, 0.95, 0.0};
   const auto says = [&](const IdentifiedModel& m, const PathEnd& to, int frames,
                         const std::string& what) {
-    const auto path = PathBetween(m, body, 60.0, At(""), to, frames);
+    const auto path = PathBetween(m, body, 60.0, EndAt(""), to, frames);
     ASSERT_FALSE(path.ok()) << what;
     EXPECT_NE(path.error().ToString().find(what), std::string::npos) << path.error().ToString();
   };
-  says(model, At("theta=1.5"), 30, "theta");
-  says(model, At("x=0.1"), 4, "--frames");
+  says(model, EndAt("theta=1.5"), 30, "theta");
+  says(model, EndAt("x=0.1"), 4, "--frames");
   IdentifiedModel other = model;
   other.options.process_noise = {};
-  says(other, At("x=0.1"), 30, "no process noise");
+  says(other, EndAt("x=0.1"), 30, "no process noise");
   other = model;
   other.options.process_noise.speed = true;
-  says(other, At("x=0.1"), 30, "speed");
+  says(other, EndAt("x=0.1"), 30, "speed");
   other = model;
   other.parameters[kSigmaY] = 0.0;
-  says(other, At("x=0.1"), 30, "sigma_y");
+  says(other, EndAt("x=0.1"), 30, "sigma_y");
   EXPECT_FALSE(ParsePathEnd("--to", "z=1", false).ok());
 }
 

@@ -1,9 +1,10 @@
 // Scores of sampled futures: quantiles by hand, scores of normal samples, the search of a path.
-#include "ident/generators/forecast_spread.h"
+#include "ident/forecasts/forecast_spread.h"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-#include "ident/generators/path_search.h"
+#include "ident/forecasts/path_search.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 

@@ -1,5 +1,7 @@
 // Errors of forecasts: by hand, and the check values of the published clips.
-#include "ident/generators/forecast_errors.h"
+#include "ident/forecasts/forecast_errors.h"
+
+#include <nlohmann/json.hpp>
 
 #include "models/generators/ridge_forecast.h"
 #include "tests/mocap_support.h"

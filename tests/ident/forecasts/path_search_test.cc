@@ -1,5 +1,5 @@
 // The most probable path to a pose, against its closed form.
-#include "ident/generators/path_search.h"
+#include "ident/forecasts/path_search.h"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST(PathToPose, NeedsTransitions) {
   const auto path =
       PathToPose(Statue(), {SwayingMotion(25, 0.0f)}, kFrames, Eigen::VectorXf::Zero(12));
   ASSERT_FALSE(path.ok());
-  EXPECT_NE(path.error().message.find("no transitions"), std::string::npos);
+  EXPECT_NE(path.error().message.find("no transition probabilities"), std::string::npos);
 }
 
 }  // namespace

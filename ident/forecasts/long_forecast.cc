@@ -1,9 +1,10 @@
 // ident: long forecasts, second by second.
-#include "ident/generators/long_forecast.h"
+#include "ident/forecasts/long_forecast.h"
 
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"

@@ -1,0 +1,35 @@
+# Compiles the sources of a target in batches, each of one subfolder: what a source of this project costs is mostly its
+# headers, which a batch reads and instantiates once. So within a subfolder no two sources may give one name to different
+# things, not even in anonymous namespaces.
+#   pushid_batches(TARGET [COMMON])
+# With COMMON the sources of all subfolders are batched together. SKIP_UNITY_BUILD_INCLUSION leaves a source alone.
+set(PUSHID_BATCH 12 CACHE STRING "Sources compiled together at most; 1 compiles each alone")
+function(pushid_batches target)
+  get_target_property(sources ${target} SOURCES)
+  set(folders)
+  foreach(source ${sources})
+    get_filename_component(folder ${source} ABSOLUTE)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    get_filename_component(folder ${folder} DIRECTORY)
+    if("COMMON" IN_LIST ARGN)
+      set(folder common)
+    endif()
+    string(MAKE_C_IDENTIFIER "${folder}" folder)
+    list(APPEND folders ${folder})
+    list(APPEND sources_of_${folder} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES folders)
+  foreach(folder ${folders})
+    list(LENGTH sources_of_${folder} count)
+    math(EXPR batches "(${count} + ${PUSHID_BATCH} - 1) / ${PUSHID_BATCH}")
+    set(index 0)
+    foreach(source ${sources_of_${folder}})
+      math(EXPR batch "${index} * ${batches} / ${count}")  # of equal size
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${batch})
+      math(EXPR index "${index} + 1")
+    endforeach()
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # A source in a batch is to GCC a header, whose classes should hold nothing of an anonymous namespace.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endfunction()

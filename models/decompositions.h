@@ -1,0 +1,49 @@
+// models: decompositions of dense matrices, compiled in one place. Eigen's templates of them take
+// the compiler seconds in every source that uses one.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pushid {
+
+// Of a symmetric matrix, of which the lower triangle is read; values ascend.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;  // a column each
+
+  Eigen::MatrixXd InverseSqrt() const;  // A^-1/2
+};
+SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& a);
+
+// The largest absolute eigenvalue of any square matrix.
+double SpectralRadius(const Eigen::MatrixXd& a);
+
+// A^-1 b of a symmetric semi-definite A, by LDLT.
+Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+// Whether A is positive definite, beyond what rounding may hide.
+bool IsPositiveDefinite(const Eigen::MatrixXd& a);
+
+// A^-1 b of any regular A, by LU.
+Eigen::MatrixXd SolveGeneral(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::MatrixXd Inverse(const Eigen::MatrixXd& a);
+
+// The shortest x with the least |A x - b|, by a complete orthogonal decomposition.
+Eigen::MatrixXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+Eigen::VectorXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& a);
+
+// By an LU decomposition with full pivoting: pivots below `threshold` of the largest are zero.
+int Rank(const Eigen::MatrixXd& a, double threshold);
+
+// R of A = Q R, for at least as many rows as columns.
+Eigen::MatrixXd Triangle(const Eigen::MatrixXd& a);
+
+// Singular values, which descend, and the right singular vectors, a column each.
+struct RightSingular {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+RightSingular DecomposeRight(const Eigen::MatrixXd& a);
+
+}  // namespace pushid
