@@ -33,11 +33,11 @@ say "Identifying friction, balance gains and the push tail from the four people'
 # With default flags: the priors know nothing of this truth.
 "$bin/pushid-fit" --recordings="$out/recordings/manifest.json" --setting=single \
   --model_out="$out/model.json" >"$out/report.txt"
-"$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json"
+"$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json" | tee "$out/identified.txt"
 
 say "Predicting the held-out pushes: mean and last error of the hip, beside two simple guesses"
 "$bin/pushid-evaluate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
-  --per_recording=false --json_out="$out/scores.json"
+  --per_recording=false --json_out="$out/scores.json" | tee "$out/errors.txt"
 
 say "One of them as a trajectory"
 "$bin/pushid-predict" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
@@ -55,10 +55,17 @@ say "Done. In $PWD/$out:"
 echo "  recordings/      BVH, push CSV and manifest.json: the format for your own recordings"
 echo "  held-out/        the recordings that were predicted"
 echo "  model.json       the identified model"
-echo "  report.txt       the whole report: status, errors, what the data cannot tell apart"
+echo "  report.txt       the report as text: status, errors, what the data cannot tell apart"
+echo "  report.html      the report as a page with pictures; it needs no network"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
-echo "  report.html      the report with pictures; open it in a browser, it needs no network"
 echo "  motion.html      recorded and predicted person, moving; poses.svg shows them on paper"
 printf '\nYour own recordings (README.md, Your own recordings):\n'
 echo "  $PWD/$bin/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
+
+say "Result"
+grep -E '^(parameter|mu|Kp_theta) |intervals cover' "$out/identified.txt"
+awk -F '   *' '/^mean over recordings/ {
+  for (i = 3; i <= 5; ++i) sub(/ .*/, "", $i)
+  print "mean error of the hip on held-out pushes: " $3 " m (static " $4 ", constant velocity " $5 ")"
+}' "$out/errors.txt"

@@ -23,6 +23,11 @@ Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& 
   return a.ldlt().solve(b);
 }
 
+Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> SolveSymmetricTransposed(
+    const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.ldlt().solve(b.transpose());
+}
+
 bool IsPositiveDefinite(const Eigen::MatrixXd& a) {
   const Eigen::LDLT<Eigen::MatrixXd> factor(a);
   return factor.isPositive() && factor.rcond() > 1e-12;

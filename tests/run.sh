@@ -14,5 +14,6 @@ generator=()
 if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
 cmake --preset release "${generator[@]}"
 cmake --build --preset tests --parallel "$(nproc)"
+if [ -f build/release/.ninja_log ]; then python3 tests/studies/build.py log; fi
 if [ "${PUSHID_FUZZ_SECONDS:-0}" -gt 0 ]; then bash tests/fuzz/run.sh "$PUSHID_FUZZ_SECONDS"; fi
 ctest --preset release --parallel "$(nproc)"

@@ -83,7 +83,7 @@ void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Cova
                   Information(score, rows(FitProblem::kNetworkCluster));
   const Eigen::MatrixXd sum =
       back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
-  c->inverse_of_parts = back * SolveSymmetric(sum, Eigen::MatrixXd(back.transpose()));
+  c->inverse_of_parts = back * SolveSymmetricTransposed(sum, back);
   c->prior_gradient = Gradient(score, prior);
   c->settling_gradient = Gradient(score, settling);
 }
@@ -181,7 +181,7 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
     c.full_hessian = IsPositiveDefinite(full);
     if (c.full_hessian) hessian = full;
   }
-  c.inverse_hessian = back * SolveSymmetric(hessian, Eigen::MatrixXd(back.transpose()));
+  c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
   AddClustered(score, clustering, back, hessian, &c);
   if (score.clusters.size() < 2) return c;
   c.recordings = score.clusters;

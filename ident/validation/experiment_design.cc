@@ -153,7 +153,7 @@ Eigen::MatrixXd WithSpread(const Eigen::MatrixXd& information, const Eigen::Matr
   const Eigen::MatrixXd mixed = information * spread;
   const Eigen::MatrixXd inner =
       Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
-  return information - mixed * SolveSymmetric(inner, Eigen::MatrixXd(mixed.transpose()));
+  return information - mixed * SolveSymmetricTransposed(inner, mixed);
 }
 
 bool Falls(const PendulumRecording& candidate) {

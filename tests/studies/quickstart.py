@@ -1,6 +1,6 @@
 """What apps/quickstart.sh prints, from the command itself, and whether its first seed was a lucky one.
 
-transcript  README.md; it builds the programs in build/quickstart first, minutes the first time
+transcript  README.md; it builds the programs first, minutes the first time
 seeds       ident/README.md; the same recordings and fit with 30 seeds; half a minute
 
 No recordings are needed.
@@ -17,11 +17,7 @@ SEEDS = 30
 def transcript():
     done = subprocess.run(["bash", os.path.join(studies.SOURCE, "apps/quickstart.sh")], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, text=True, check=True)
-    parts = ["== " + part.rstrip() for part in done.stdout.split("\n== ")]
-    asked = [p for p in parts if p.startswith(("== Identifying", "== Predicting"))]
-    # Of the errors the mean over recordings; the rest is by strength and person.
-    asked[-1] = "\n".join(asked[-1].splitlines()[:3])
-    return "```\n" + "\n\n".join(asked) + "\n```"
+    return "```\n== " + done.stdout.split("\n== ")[-1].rstrip() + "\n```"
 
 
 def program(name, *arguments):
