@@ -35,7 +35,7 @@ int Run() {
     if (MaybeError error = WriteFileAtomically(flags.svg_out, InspectionSvg(found.value()))) {
       return Fail(*error);
     }
-    std::printf("  drawn in        %s\n", flags.svg_out.c_str());
+    std::printf("  picture         %s\n", flags.svg_out.c_str());
   }
   return outcome;
 }

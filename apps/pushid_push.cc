@@ -117,8 +117,8 @@ void PrintPush(const RecordingsPush& of, double dt) {
 
 void PrintEntry(const RecordingsPush& of) {
   std::printf(
-      "put into the recording's entry of the manifest, instead of any push_csv (--into_manifest "
-      "does this):\n");
+      "to use it, add these lines to the recording's entry of the manifest, in place of any "
+      "push_csv (--into_manifest does this):\n");
   std::printf("  \"push_kind\": \"%s\",\n", Name(of.made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
               of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),

@@ -15,7 +15,7 @@ say() { printf '\n== %s\n' "$*"; }
 say "Packages"
 install_packages "${build_packages[@]}"
 skip_unusable_ccache
-echo "nothing is missing"
+echo "all packages are installed"
 
 say "Building the programs into $bin (some minutes the first time)"
 generator=()
@@ -23,7 +23,7 @@ if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then ge
 cmake --preset release "${generator[@]}" >/dev/null
 cmake --build --preset quickstart --parallel "$(nproc)"
 
-say "Making recordings of four synthetic people with known parameters, joints noisy by 2 mm"
+say "Making recordings of four synthetic people with known parameters, with 2 mm of noise on the joints"
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite
 
 say "Making recordings of two other people, held out: the same parameters, other bodies and pushes"
@@ -35,15 +35,15 @@ say "Identifying friction, balance gains and the push tail from the four people'
   --model_out="$out/model.json" >"$out/report.txt"
 "$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json" | tee "$out/identified.txt"
 
-say "Predicting the held-out pushes: mean and last error of the hip, beside two simple guesses"
+say "Predicting the held-out pushes: mean and last error of the hip, compared with two baselines"
 "$bin/pushid-evaluate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --per_recording=false --json_out="$out/scores.json" | tee "$out/errors.txt"
 
-say "One of them as a trajectory"
+say "Writing one of the predictions as a trajectory"
 "$bin/pushid-predict" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --id=S01_00_weak --out="$out/trajectory.csv"
 
-say "The report as a page, and the same push as a moving figure"
+say "Writing the report as a page, and the same prediction as an animation"
 "$bin/pushid-report" --model="$out/model.json" --recordings="$out/recordings/manifest.json" \
   --html_out="$out/report.html" 2>/dev/null
 "$bin/pushid-animate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
@@ -55,11 +55,11 @@ say "Done. In $PWD/$out:"
 echo "  recordings/      BVH, push CSV and manifest.json: the format for your own recordings"
 echo "  held-out/        the recordings that were predicted"
 echo "  model.json       the identified model"
-echo "  report.txt       the report as text: status, errors, what the data cannot tell apart"
+echo "  report.txt       the report as text: status, errors, parameters that the data cannot separate"
 echo "  report.html      the report as a page with pictures; it needs no network"
 echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
-echo "  motion.html      recorded and predicted person, moving; poses.svg shows them on paper"
+echo "  motion.html      animation of the recorded and the predicted person; poses.svg is a strip of their poses"
 printf '\nYour own recordings (README.md, Your own recordings):\n'
 echo "  $PWD/$bin/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
 

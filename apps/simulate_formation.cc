@@ -167,7 +167,7 @@ MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (HoldsForRecording(model->pool_by)) {
     for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
   }
-  return Error{"--as_setting names '" + setting + "'; " + model->source + " knows " +
+  return Error{"--as_setting names '" + setting + "'; " + model->source + " has " +
                (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 

@@ -1,3 +1,4 @@
+// models: decompositions of dense matrices, by Eigen.
 #include "models/decompositions.h"
 
 #include <Eigen/Dense>

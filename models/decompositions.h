@@ -21,7 +21,8 @@ double SpectralRadius(const Eigen::MatrixXd& a);
 // A^-1 b of a symmetric semi-definite A, by LDLT.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
-// A^-1 B'.
+// A^-1 B', row-major as Eigen's own solve of a transpose: products with it depend on that in the
+// last bit.
 Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> SolveSymmetricTransposed(
     const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 // Whether A is positive definite, beyond what rounding may hide.

@@ -39,7 +39,7 @@ struct CostEvaluation {
 
 // wanted: which blocks' Jacobians to ask for; empty means none at all (a null pointer).
 inline CostEvaluation EvaluateCost(const ceres::CostFunction& cost, const ParameterBlocks& blocks,
-                               const std::vector<bool>& wanted) {
+                                   const std::vector<bool>& wanted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CostEvaluation result;
   result.residuals = Eigen::VectorXd::Constant(cost.num_residuals(), nan);
@@ -49,7 +49,8 @@ inline CostEvaluation EvaluateCost(const ceres::CostFunction& cost, const Parame
   for (size_t b = 0; b < blocks.size(); ++b) {
     const Eigen::Index columns = cost.parameter_block_sizes()[b];
     parameters.push_back(blocks[b].data());
-    result.jacobians.push_back(CostEvaluation::RowMajor::Constant(cost.num_residuals(), columns, nan));
+    result.jacobians.push_back(
+        CostEvaluation::RowMajor::Constant(cost.num_residuals(), columns, nan));
     pointers.push_back(!wanted.empty() && wanted[b] ? result.jacobians[b].data() : nullptr);
   }
   result.ok = cost.Evaluate(parameters.data(), result.residuals.data(),

@@ -32,8 +32,8 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"residuals", {"kernels", "", "sensitivities", "lockstep", "cost_functions", "adjoint"}},
     {"ident",
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
-      "prediction", "validation", "push", "bodies", "generators", "forecasts", "training", "formations",
-      "report", "report/page", ""}},
+      "prediction", "validation", "push", "bodies", "generators", "forecasts", "training",
+      "formations", "report", "report/page", ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 

@@ -21,7 +21,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/text_ends.h"
 
-DEFINE_bool(quiet, false, "no progress on stderr");
+DEFINE_bool(quiet, false, "suppress progress on stderr");
 
 namespace pushid {
 namespace {

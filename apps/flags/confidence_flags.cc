@@ -22,7 +22,7 @@ DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
               "--profile alone): every free parameter");
 DEFINE_int32(bootstrap, 0,
-             "number of refits to resampled people or recordings; 199 is a good number");
+             "number of refits to resampled people or recordings; 199 is usually enough");
 DEFINE_string(bootstrap_by, NameOf(pushid::BootstrapOptions{}.by),
               "unit drawn by a bootstrap (and --resample): subject (all recordings of a person), "
               "recording, or auto (as --cluster, but recordings where people share them)");

@@ -10,16 +10,16 @@
 DEFINE_string(folder, "", "the folder of the recordings, searched with its subfolders");
 DEFINE_string(pattern, "",
               "paths of the motion files in the folder, as in {setting}/{subject}_{take}.c3d; "
-              "{setting}, {subject}, {magnitude}, {condition} and {person} have a meaning, any "
+              "{setting}, {subject}, {magnitude}, {condition} and {person} fill the manifest, any "
               "other {name} only tells recordings apart, * matches anything");
-DEFINE_string(push_pattern, "", "paths of the push CSV files, with names of --pattern");
+DEFINE_string(push_pattern, "", "paths of the push CSV files, with {names} from --pattern");
 DEFINE_string(masses, "",
               "masses of the subjects: a CSV file id,mass_kg, or participants.tsv of Motion-BIDS");
 DEFINE_double(mass_kg, pushid::ManifestOptions{}.mass_kg,
               "mass of everybody not listed in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
 DEFINE_int32(pushed_person, pushid::ManifestOptions{}.pushed_person,
-             "who is pushed in recordings of several people, from 0");
+             "index of the pushed person in recordings of several people, from 0");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
               "setting, if the pattern does not give it");
 DEFINE_string(magnitude, pushid::ManifestOptions{}.magnitude,

@@ -7,8 +7,8 @@
 #include "ident/prediction/evaluation.h"
 
 DEFINE_int32(observed, 0,
-             "number of observed frames before the predicted ones, including frame 0; 1 is the "
-             "default: only the first frame");
+             "number of observed frames before the predicted ones, including frame 0; without this "
+             "flag, only frame 0");
 
 namespace pushid {
 

@@ -17,7 +17,7 @@ DEFINE_string(to, "",
               "are fixed. With several ends, separated by semicolons, the most probable one is "
               "reported. Not for models whose noise grows with speed");
 DEFINE_int32(frames, pushid::PathFlags{}.frames, "frames of the path, both ends included");
-DEFINE_double(fps, pushid::PathFlags{}.fps, "frames a second");
+DEFINE_double(fps, pushid::PathFlags{}.fps, "frames per second");
 DEFINE_double(mass, pushid::kReferenceMass, "the person's mass, kg");
 DEFINE_double(rod, pushid::kReferenceRod, "the person's rod (ankles to hip), m");
 DEFINE_string(id, "",

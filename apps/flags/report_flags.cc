@@ -7,7 +7,7 @@
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
-DEFINE_string(html_out, "", "write the whole report here: one page that opens from disk");
+DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
 DEFINE_bool(text, pushid::ReportFlags{}.text, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, pushid::ReportFlags{}.num_threads, "threads");
 DEFINE_string(csv_dir, "", "write the numbers behind every plot into this folder (CSV)");

@@ -35,7 +35,7 @@ DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
               "one file, otherwise 0");
 DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
-              "force sensor: forces up to this one, N, count as no push");
+              "force sensor: forces up to this value, N, do not count as a push");
 DEFINE_bool(estimate_offset, pushid::SensorFlags{}.estimate_offset,
             "force sensors: estimate the offset of their clocks from the motion's");
 DEFINE_double(max_offset_s, pushid::SensorFlags{}.max_offset_s,

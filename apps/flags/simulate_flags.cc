@@ -15,7 +15,7 @@ DEFINE_int32(people, pushid::SyntheticOptions{}.subjects,
 DEFINE_int32(recordings_per_person, pushid::SyntheticOptions{}.recordings_per_subject,
              "pushes per person: weak, medium and strong in turn");
 DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recording");
-DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames a second");
+DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
 DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
@@ -30,7 +30,8 @@ DEFINE_string(
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
               "variation of all parameters between recordings (standard deviation of the "
               "logarithm; 0.1 is about 10 %)");
-DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread, "the same between people");
+DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
+              "variation of all parameters between people, as in --recording_spread");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace pushid {

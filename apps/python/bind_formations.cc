@@ -2,10 +2,10 @@
 #include <map>
 
 #include "apps/python/predicted.h"
+#include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_bands.h"
 #include "ident/formations/wave_speed.h"
-#include "ident/forecasts/most_probable_path.h"
 #include "models/formation.h"
 
 namespace pushid {

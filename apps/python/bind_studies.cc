@@ -1,9 +1,8 @@
 // apps: what more is asked of a fit in Python: profiles, bootstrap, refits under other priors,
 // pushes and horizons, and which recording to make next.
-#include "apps/python/model.h"
-
 #include <nlohmann/json.hpp>
 
+#include "apps/python/model.h"
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
 #include "ident/report/design_text.h"

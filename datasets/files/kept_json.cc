@@ -1,3 +1,4 @@
+// datasets: a JSON object behind a pointer.
 #include "datasets/files/kept_json.h"
 
 #include <nlohmann/json.hpp>

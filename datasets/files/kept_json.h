@@ -7,7 +7,7 @@
 namespace pushid {
 
 // A value like nlohmann::ordered_json itself, {} at first, whose holder need not include all of
-// nlohmann/json.hpp.
+// nlohmann/json.hpp. One that was moved from can only be assigned to.
 class KeptJson {
  public:
   KeptJson();

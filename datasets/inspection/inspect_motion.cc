@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/axes.h"
@@ -201,7 +200,7 @@ class MotionInspector {
       found_.Warn(up_ + " is up in the file: set \"up\" and \"forward\" in the manifest");
     }
     if (!motion_.up.empty() && motion_.up != "+" + up_ && motion_.up != up_) {
-      found_.Warn("the file calls " + motion_.up + " up, the person stands along " + up_);
+      found_.Warn("the file declares " + motion_.up + " as up, but the person stands along " + up_);
     }
     const double lean = std::acos(std::fmin(1.0, rod.cwiseAbs().maxCoeff() / rod.norm()));
     if (lean > 0.35) {

@@ -7,7 +7,9 @@
 
 namespace pushid {
 
+namespace {
 using Track = std::vector<Eigen::Vector3d>;
+}  // namespace
 
 Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen) {
   Track mean(motion.num_frames(), Eigen::Vector3d::Zero());

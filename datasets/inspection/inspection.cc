@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/list_of_names.h"
@@ -144,7 +143,7 @@ MaybeError LookAtPush(Inspection* found) {
   found->format = "push CSV";
   double peak = 0.0;
   for (const Eigen::Vector4d& row : force.value()) peak = std::max(peak, row.head<2>().norm());
-  found->Fact("rows", std::to_string(force.value().size()) + ", one a frame of its recording");
+  found->Fact("rows", std::to_string(force.value().size()) + ", one per frame of its recording");
   found->Fact("peak", Rounded(peak, 3) + " N");
   return std::nullopt;
 }

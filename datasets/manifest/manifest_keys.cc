@@ -1,6 +1,8 @@
 // datasets: keys near to known ones.
 #include "datasets/manifest/manifest_keys.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/files/meant_name.h"
 #include "datasets/files/number_text.h"
 

@@ -1,6 +1,8 @@
 // ident: peers as files, and their scores.
 #include "ident/bodies/peer_files.h"
 
+#include <nlohmann/json.hpp>
+
 #include "ident/bodies/kind_makers.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_features.h"

@@ -1,6 +1,8 @@
 // ident: restorations written and read.
 #include "ident/bodies/restoration_files.h"
 
+#include <nlohmann/json.hpp>
+
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/bodies/kind_makers.h"

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "datasets/files/number_text.h"
+
 namespace pushid {
 
 TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
@@ -32,6 +34,10 @@ std::string TextTable::ToString() const {
 
 std::string WithUnit(const std::string& name, const std::string& unit) {
   return name + (unit == "1" ? "" : ", " + unit);
+}
+
+std::string WithError(double value, double error) {
+  return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
 }
 
 }  // namespace pushid

@@ -27,6 +27,9 @@ class TextTable {
 // For `left`: every column is words.
 inline std::vector<bool> AllWords(size_t columns) { return std::vector<bool>(columns, true); }
 
+// "3.2 +- 0.3"; without the error where that is not known.
+std::string WithError(double value, double error);
+
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
 

@@ -46,8 +46,8 @@ struct GeneratorSettings {
   bool pendulum = false;                  // whether it must be told where physics have the hips
   std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
-  std::optional<ForecastChoice> choice;                                // none: nothing was compared
-  KeptJson training{};  // provenance
+  std::optional<ForecastChoice> choice;  // none: nothing was compared
+  KeptJson training{};                   // provenance
 };
 
 // The networks of a generator of particles, and of one of diffusion.

@@ -8,7 +8,9 @@
 
 namespace pushid {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 Json TableJson(const ParameterTable& table) {
   Json rows = Json::array();

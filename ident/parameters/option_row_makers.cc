@@ -7,10 +7,10 @@
 
 namespace pushid {
 
+namespace {
+
 using Json = nlohmann::ordered_json;
 using Row = FitOptionRow;
-
-namespace {
 
 // Written so that NaN and infinity lie outside.
 std::string RangeViolation(const OptionRange& range, double value) {

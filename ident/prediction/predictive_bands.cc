@@ -20,8 +20,7 @@ std::vector<ParameterSet<double>> FromCovariance(const FitResult& result,
   const Uncertainty& u = result.uncertainty;
   // Null directions make it semi-definite: roots by eigenvalues.
   const SymmetricEigen roots = DecomposeSymmetric(u.covariance.topLeftCorner(size, size));
-  const Eigen::MatrixXd root =
-      roots.vectors * roots.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::MatrixXd root = roots.vectors * roots.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   const int freedom = std::max(1, u.freedom);
   Random random(options.seed);
   std::vector<ParameterSet<double>> sets;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "models/decompositions.h"
 
@@ -46,7 +47,8 @@ DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point
   p.hessian = hessian.topLeftCorner(deviations, deviations) -
               cross.transpose() * SolveSymmetric(nuisance, cross) -
               Eigen::MatrixXd(pooling_precision.asDiagonal());
-  p.gradient = gradient.head(deviations) - cross.transpose() * SolveSymmetric(nuisance, Eigen::VectorXd(gradient.tail(rest))) -
+  p.gradient = gradient.head(deviations) -
+               cross.transpose() * SolveSymmetric(nuisance, Eigen::VectorXd(gradient.tail(rest))) -
                pooling_precision.cwiseProduct(p.at);
   return p;
 }
@@ -77,9 +79,8 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point,
   for (int step = 0; step < kMaxSteps && change > kSmallChange; ++step) {
     const Eigen::VectorXd prior = precision();
     const Eigen::MatrixXd hessian = p.hessian + Eigen::MatrixXd(prior.asDiagonal());
-    const Eigen::MatrixXd covariance =
-        SolveSymmetric(
-            hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows())));
+    const Eigen::MatrixXd covariance = SolveSymmetric(
+        hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(hessian.rows(), hessian.rows())));
     const Eigen::VectorXd mean = p.at - covariance * (p.gradient + prior.cwiseProduct(p.at));
     const Eigen::VectorXd last = sigma;
     for (Eigen::Index k = 0; k < parameters; ++k) {

@@ -14,9 +14,11 @@
 #pragma once
 
 #include "ident/parameters/parameter_table.h"
-#include "ident/problem/fit_problem.h"
+#include "ident/problem/fit_point.h"
 
 namespace pushid {
+
+class FitProblem;
 
 // Bounds of s, in ParameterSpec::pooling_sigma's units: 1 % and a factor of twenty.
 inline constexpr double kLeastPoolingSigma = 0.01, kLargestPoolingSigma = 3.0;

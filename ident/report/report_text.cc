@@ -14,7 +14,6 @@
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/starts_text.h"
-#include "ident/solver/large_network_stage.h"
 #include "ident/validation/step_score_report.h"
 
 namespace pushid {

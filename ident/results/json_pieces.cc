@@ -10,7 +10,9 @@
 
 namespace pushid {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 Json NumberJson(double value) {
   if (std::isfinite(value)) return value;

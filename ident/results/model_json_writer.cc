@@ -1,8 +1,7 @@
 // ident: a fitted model to JSON. model_json_reader.cc is the inverse.
-#include "ident/parameters/fit_options_json.h"
-
 #include <nlohmann/json.hpp>
 
+#include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_names.h"

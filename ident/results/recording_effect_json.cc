@@ -8,7 +8,9 @@
 
 namespace pushid {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 Json ToJson(const RecordingEffect& effect) {
   Json json = {{"spread", NumberJson(effect.spread)},

@@ -8,7 +8,9 @@
 
 namespace pushid {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 Json ToJson(const StepProbability& p) {
   Json covariance = Json::array();

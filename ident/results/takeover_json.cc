@@ -7,7 +7,9 @@
 
 namespace pushid {
 
+namespace {
 using Json = nlohmann::ordered_json;
+}  // namespace
 
 Json ToJson(const Takeover& t) {
   return {{"mu_N_s_m", NumberJson(t.mu)},

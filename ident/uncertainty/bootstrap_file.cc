@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/content_hash.h"

@@ -275,8 +275,8 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
   const SymmetricEigen eigen = DecomposeSymmetric(all);
   const Eigen::ArrayXd values = eigen.values;
   const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
-  const Eigen::MatrixXd base = eigen.vectors.rightCols(rank) *
-                               values.tail(rank).sqrt().inverse().matrix().asDiagonal();
+  const Eigen::MatrixXd base =
+      eigen.vectors.rightCols(rank) * values.tail(rank).sqrt().inverse().matrix().asDiagonal();
   ClusterScores inside{{}, base.transpose() * own.scores};
   for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);
   // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.

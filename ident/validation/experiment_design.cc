@@ -1,12 +1,14 @@
 // ident: candidate pushes and their information.
 #include "ident/validation/experiment_design.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
+#include "ident/validation/error_parts.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -144,8 +146,7 @@ Eigen::MatrixXd SpreadRoot(const Eigen::MatrixXd& clustered, const Eigen::Matrix
   const Eigen::VectorXd inverse = error.cwiseInverse();
   const SymmetricEigen root = DecomposeSymmetric(
       groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
-  return error.asDiagonal() * root.vectors *
-         root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return error.asDiagonal() * root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 // (I^-1 + L L')^-1, also where I is singular (Woodbury).

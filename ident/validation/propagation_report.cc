@@ -1,8 +1,7 @@
 // ident: propagation as JSON and as tables.
-#include "datasets/files/number_text.h"
-
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"

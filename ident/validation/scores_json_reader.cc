@@ -1,8 +1,7 @@
 // ident: scores from JSON. scores_json.cc is the inverse.
-#include "datasets/files/json_file.h"
-
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/json_file.h"
 #include "ident/parameters/fit_options_json.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/step_score_report.h"

@@ -116,10 +116,6 @@ MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std:
 
 }  // namespace
 
-std::string WithError(double value, double error) {
-  return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
-}
-
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
   const ShownMetrics shown = MetricsOf(evaluation.model.observed, false);

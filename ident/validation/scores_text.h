@@ -8,9 +8,6 @@
 
 namespace pushid {
 
-// "3.2 +- 0.3"; without what it is off by where that is not known.
-std::string WithError(double value, double error);
-
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
 // One column per summary: all recordings, one setting, one candidate.
 struct PropagationColumn {

@@ -7,7 +7,6 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/validation/scores_text.h"
 
 namespace pushid {
 namespace {

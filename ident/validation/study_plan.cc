@@ -9,8 +9,9 @@
 #include <numeric>
 
 #include "ident/parameters/parameter_table.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "ident/validation/error_parts.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -21,31 +22,6 @@ using Eigen::MatrixXd;
 constexpr int kPeople[] = {4, 10, 20, 40};
 constexpr double kMorePushes = 2.0;  // times as many of each
 constexpr int kIterations = 200;     // of EM: more change no ratio by a percent
-
-// Who is pushed in each recording, as consecutive numbers.
-std::vector<int> PushedPeople(const std::vector<PendulumRecording>& recordings) {
-  std::map<std::string, int> known;
-  std::vector<int> people;
-  for (const PendulumRecording& r : recordings) {
-    people.push_back(
-        known.emplace(PersonKey(r, r.pushed_person), static_cast<int>(known.size())).first->second);
-  }
-  return people;
-}
-
-JacobianBlocks Clustered(JacobianBlocks score, const std::vector<int>& cluster_of_recording) {
-  for (int& cluster : score.cluster_of_row) {
-    if (cluster >= 0) cluster = cluster_of_recording[cluster];
-  }
-  score.clusters.clear();
-  for (int cluster : score.cluster_of_row) {
-    if (cluster >= 0) score.clusters.push_back(cluster);
-  }
-  std::sort(score.clusters.begin(), score.clusters.end());
-  score.clusters.erase(std::unique(score.clusters.begin(), score.clusters.end()),
-                       score.clusters.end());
-  return score;
-}
 
 // What a recording says of its own parameters: J'J and J'r of its rows.
 struct OwnInformation {
@@ -69,9 +45,8 @@ MixedModel FitMixedModel(const std::vector<OwnInformation>& own, const MatrixXd&
     double left = squares;
     for (const OwnInformation& g : own) {
       // (H / noise + spread^-1)^-1, also where the spread is singular.
-      const MatrixXd covariance =
-          SolveGeneral(MatrixXd::Identity(size, size) + model.spread * g.hessian / model.noise,
-                       model.spread);
+      const MatrixXd covariance = SolveGeneral(
+          MatrixXd::Identity(size, size) + model.spread * g.hessian / model.noise, model.spread);
       const Eigen::VectorXd deviation = covariance * g.gradient / model.noise;
       moments += deviation * deviation.transpose() + covariance;
       left += deviation.dot(g.hessian * deviation) - 2.0 * deviation.dot(g.gradient) +
@@ -196,33 +171,12 @@ std::string WhyNoSizes(const FitProblem& problem, const ErrorParts& parts) {
   return "";
 }
 
-// By the clusters that the rows name.
-Covariance ByClusters(const JacobianBlocks& score, const Eigen::VectorXd& unit) {
-  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false});
-}
-
 }  // namespace
 
 double ExpectedError(const StudyPlan& plan, size_t parameter, double people, double pushes) {
   const double b = plan.between_people[parameter], w = plan.between_recordings[parameter],
                n = plan.noise[parameter];
   return std::sqrt(b * b / people + (w * w + n * n) / (people * pushes));
-}
-
-ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate) {
-  ScoredFit fit = ScoreAt(problem, estimate);
-  ErrorParts parts;
-  parts.person = PushedPeople(problem.recordings());
-  const Covariance by_person = ByClusters(Clustered(fit.score, parts.person), fit.unit);
-  std::vector<int> each(parts.person.size());
-  std::iota(each.begin(), each.end(), 0);
-  parts.score = Clustered(std::move(fit.score), each);
-  const Covariance by_recording = ByClusters(parts.score, fit.unit);
-  parts.sigma = by_recording.sigma;
-  parts.naive = by_recording.naive;
-  parts.by_recording = by_recording.clustered;
-  parts.by_person = by_person.clustered;
-  return parts;
 }
 
 StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const ErrorParts& parts,

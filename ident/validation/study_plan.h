@@ -40,24 +40,12 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/covariance.h"
+#include "ident/problem/fit_point.h"
 
 namespace pushid {
 
-// What the errors of a fit are made of; covariances on the fitted scale, in the order of
-// FitPoint::Flat, whatever the fit's own clusters are.
-struct ErrorParts {
-  JacobianBlocks score;  // by recording
-  double sigma = 0.0;
-  Eigen::MatrixXd naive;
-  Eigen::MatrixXd by_recording;  // empty with a single recording
-  Eigen::MatrixXd by_person;     // by who is pushed; empty with a single person
-  std::vector<int> person;       // of each recording, from 0
-
-  int num_recordings() const { return static_cast<int>(person.size()); }
-};
-ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate);
+class FitProblem;
+struct ErrorParts;
 
 // One size of a study, and the standard errors it would leave.
 struct StudySize {

@@ -1,6 +1,8 @@
 // models: networks as named matrices and back.
 #include "models/restoration/tensors.h"
 
+#include <algorithm>
+
 namespace pushid {
 
 Eigen::MatrixXf TensorReader::Take(const std::string& name, int rows, int columns) {

@@ -1,5 +1,6 @@
 // A skeleton as Mixamo names it, in units that have no name, from the fit to BVH and glTF.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/any_skeleton_fixture.h"

@@ -1,5 +1,6 @@
 // Process noise through the programs: fits by single steps, drawn futures, most probable paths.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/app_fixture.h"

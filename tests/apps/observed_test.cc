@@ -1,5 +1,6 @@
 // --observed in predict, evaluate and crossvalidate; --population in fit.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/app_fixture.h"

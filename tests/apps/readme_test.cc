@@ -59,7 +59,7 @@ std::vector<std::string> Blocks(const std::string& text, const std::string& name
 
 TEST(ReadmeTest, TheFirstPageIsOnePage) {
   const std::string text = ReadFile(kSource / "README.md");
-  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 170);
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 150);
 }
 
 TEST(ReadmeTest, LinksLeadSomewhere) {

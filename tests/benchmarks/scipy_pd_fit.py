@@ -1,4 +1,4 @@
-"""Yardstick: the six-parameter PD model fitted with plain NumPy and SciPy.
+"""Baseline: the six-parameter PD model fitted with plain NumPy and SciPy.
 
 What a researcher would write without pushid: read the BVH files, roll out all recordings at once
 (vectorised over recordings), hand hip errors to scipy.optimize.least_squares with its finite

@@ -1,4 +1,4 @@
-"""Yardstick: the six-parameter PD model of scipy_pd_fit.py fitted with PyTorch.
+"""Baseline: the six-parameter PD model of scipy_pd_fit.py fitted with PyTorch.
 
 The same recordings, physics, starts and robust loss; all recordings are rolled out side by side, and the
 gradient is autograd's through all frames. The optimizer is torch.optim.LBFGS with its Wolfe line search,

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "datasets/files/random.h"
 #include "models/ipm.h"
 #include "models/parameters.h"

@@ -26,7 +26,7 @@ def objects(build):
         with open(os.path.join(build, ".ninja_log"), encoding="utf-8") as log:
             for line in log:
                 fields = line.rstrip("\n").split("\t")
-                if len(fields) == 5 and fields[3].endswith((".o", ".gch")):
+                if len(fields) == 5 and fields[3].endswith(".o"):
                     seconds[fields[3]] = (int(fields[1]) - int(fields[0])) / 1000
     except FileNotFoundError:
         sys.exit(f"{build}: no log of Ninja's: build with -G Ninja")
@@ -34,7 +34,7 @@ def objects(build):
 
 
 def short(name):
-    """unity_ident_problem_0_cxx.cxx.o of target pushid_ident -> ident/problem, batch 0."""
+    """unity_ident_problem_0_cxx.cxx.o of target pushid_ident -> pushid_ident: batch ident_problem 0."""
     target = re.search(r"CMakeFiles/([^/]+)\.dir", name).group(1)
     batch = re.search(r"unity_(.+)_(\d+)_cxx", name)
     source = f"batch {batch.group(1)} {batch.group(2)}" if batch else os.path.basename(name)[:-2]

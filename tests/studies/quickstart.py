@@ -17,7 +17,7 @@ SEEDS = 30
 def transcript():
     done = subprocess.run(["bash", os.path.join(studies.SOURCE, "apps/quickstart.sh")], stdout=subprocess.PIPE,
                           stderr=subprocess.DEVNULL, text=True, check=True)
-    return "```\n== " + done.stdout.split("\n== ")[-1].rstrip() + "\n```"
+    return "```\n" + done.stdout.partition("\n== Result\n")[2].rstrip() + "\n```"
 
 
 def program(name, *arguments):

@@ -7,6 +7,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/page/sections.h"
+#include "ident/validation/error_parts.h"
 
 namespace pushid {
 namespace {
@@ -43,7 +44,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
                  model.provenance.setting + "), preset " + result.options.preset;
   report.subtitle =
-      "friction, gains and push tails, how sure they are, and what they predict; pushid " +
+      "friction, gains and push tails, their uncertainty and their predictions; pushid " +
       model.provenance.version;
   const std::vector<RecordingView> views =
       ViewRecordings(result, recordings, options.num_threads, options.progress);

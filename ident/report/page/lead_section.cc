@@ -94,7 +94,7 @@ std::string Next(const FittedModel& model) {
 
 // Of the free parameters: what a reader of the pictures meets.
 TextTable Legend(const FitResult& result) {
-  TextTable table({"name", "unit", "what it is"}, {true, true, true});
+  TextTable table({"name", "unit", "meaning"}, {true, true, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;

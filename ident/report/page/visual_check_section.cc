@@ -127,7 +127,7 @@ ReportSection VisualCheckSection(const FittedModel& model,
       "Simulated recordings have their own recording effects and correlated errors; only the first "
       "frame and the push of a recording are used. These recordings were fitted: errors on new "
       "ones are larger.",
-      "Uniform? " + TestText("along", check.along) + "; " + TestText("across", check.across) +
+      "Uniformity " + TestText("along", check.along) + "; " + TestText("across", check.across) +
           ". Values 0.25 s apart, Hotelling's test of five bins, clustered by recording: a small p "
           "indicates that the distribution is wrong."};
   section.tables.push_back({"", StrataTable(check)});

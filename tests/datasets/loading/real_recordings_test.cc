@@ -1,5 +1,6 @@
 // The real recordings, where they are.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "datasets/formats/bvh.h"

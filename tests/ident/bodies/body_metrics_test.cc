@@ -2,6 +2,7 @@
 #include "ident/bodies/body_metrics.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ident/bodies/body_evaluation.h"

@@ -2,6 +2,7 @@
 #include "ident/bodies/peer_files.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/models/mrt_samples.h"

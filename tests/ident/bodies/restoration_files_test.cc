@@ -2,6 +2,7 @@
 #include "ident/bodies/restoration_files.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/npy.h"

@@ -2,6 +2,7 @@
 #include "ident/forecasts/forecast_spread.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ident/forecasts/path_search.h"

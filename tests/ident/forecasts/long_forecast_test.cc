@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ident/forecasts/group_spread.h"
 #include "tests/models/body_samples.h"
 

@@ -2,6 +2,7 @@
 #include "ident/generators/generator_files.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/models/generators/generator_samples.h"

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "ident/results/fit.h"

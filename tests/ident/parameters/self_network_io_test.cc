@@ -1,6 +1,9 @@
 // Learned self forces and rods by name, by seed and by file.
 #include <gtest/gtest.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "ident/parameters/learned_terms_io.h"
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/option_table.h"
 #include "ident/results/fit.h"

@@ -1,6 +1,8 @@
 // Fits by likelihoods of single steps: planted noise and gains, scores, and what is refused.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ident/results/fit.h"
 #include "ident/results/fit_setup.h"
 #include "ident/results/result_json.h"

@@ -1,6 +1,7 @@
 // Fits with a self-force network: a planted one is found again (its predictions, not its weights),
 // what guards a training, and what a result keeps of it.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"

@@ -5,6 +5,7 @@
 
 #include <Eigen/LU>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "ident/results/recording_effect_json.h"
 #include "tests/ident/effect_samples.h"

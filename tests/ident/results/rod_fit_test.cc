@@ -1,6 +1,7 @@
 // Fits with a rod that moves: a planted law is found again in what it predicts, together with the
 // cart's lift, and results keep it.
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ident/diagnostics/diagnostics.h"

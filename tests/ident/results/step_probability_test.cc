@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/random.h"
 #include "ident/results/step_probability_json.h"

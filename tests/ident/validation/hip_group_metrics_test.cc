@@ -2,6 +2,7 @@
 #include "ident/validation/hip_group_metrics.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "ident/validation/predictors.h"

@@ -2,6 +2,7 @@
 #include "ident/validation/scores_json.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/ident/fit_samples.h"

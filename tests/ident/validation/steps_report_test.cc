@@ -2,6 +2,7 @@
 #include "ident/validation/steps_report.h"
 
 #include <gtest/gtest.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/test_support.h"

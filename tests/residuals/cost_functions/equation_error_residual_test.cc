@@ -53,7 +53,7 @@ TEST(EquationError, VanishesAtTheTruthOfAMotionTheSmoothingReproduces) {
     SCOPED_TRACE(Describe(options));
     const PendulumRecording recording = CubicMotion(options, RecoveringParameters(), &random);
     const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, options, map),
-                                               {SharedBlock(map, RecoveringParameters())}, {});
+                                                   {SharedBlock(map, RecoveringParameters())}, {});
     ASSERT_TRUE(evaluation.ok);
     ASSERT_EQ(evaluation.residuals.size(), 4 * 2 * kCubicFrames);
     EXPECT_LT(evaluation.residuals.cwiseAbs().maxCoeff(), 1e-8);  // m/s^2
@@ -67,7 +67,7 @@ TEST(EquationError, VanishesForPeopleAtRest) {
       RecordRollout(scene, {}, std::vector(2, RecoveringParameters()), 30);
   const ParameterMap map = EveryParameterMap({});
   const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map),
-                                             {SharedBlock(map, RecoveringParameters())}, {});
+                                                 {SharedBlock(map, RecoveringParameters())}, {});
   EXPECT_LT(evaluation.residuals.cwiseAbs().maxCoeff(), 1e-9);
 }
 
@@ -86,7 +86,7 @@ TEST(EquationError, OfARolledOutMotionShrinksWithTheStep) {
     const PendulumRecording recording =
         RecordRollout(scene, {}, {RecoveringParameters()}, kCubicFrames * refinement);
     const CostEvaluation evaluation = EvaluateCost(EquationErrorResidual(recording, {}, map, 5),
-                                               {SharedBlock(map, RecoveringParameters())}, {});
+                                                   {SharedBlock(map, RecoveringParameters())}, {});
     errors.push_back(evaluation.residuals.norm() /
                      std::sqrt(static_cast<double>(evaluation.residuals.size())));
   }
