@@ -24,7 +24,7 @@
   /* friction and balance: the cart's gains may turn negative, the data must be able to say so */ \
   X(kMu, "mu", "mu", "N s/m", 100, -2000, 2000, 100, kIdentity, \
     true, false, \
-    "drag of the stepping feet (no floor's friction)", \
+    "drag of the stepping feet (not floor friction)", \
     "always: with Kp_x and Kp_y held it is the whole drag of the stepping feet") \
   X(kMuY, "mu_y", "mu_y", "N s/m", 100, -2000, 2000, 100, kIdentity, \
     m.friction == FrictionKind::kAnisotropic, false, \
@@ -41,7 +41,7 @@
   X(kKpTheta, "Kp_theta", "Kp_theta", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
     true, false, \
     "balance stiffness about y", \
-    "always, with pushes forwards or back") \
+    "always, with pushes forwards or backwards") \
   X(kKpPhi, "Kp_phi", "Kp_phi", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
     true, false, \
     "balance stiffness about x", \
@@ -98,11 +98,11 @@
   /* the push tail */ \
   X(kTailGain, "tail_gain", "g", "1", 1, 1e-3, 50, 1, kLog, \
     m.push_tail == PushTail::kExponential, false, \
-    "tail force over the push's mean force", \
+    "ratio of tail force to mean push force", \
     "where the pushes cover only their first part") \
   X(kTailTorque, "tail_torque", "r", "1", 0.3, -50, 50, 0.3, kIdentity, \
     m.push_tail == PushTail::kExponential && m.stance == Stance::kSlide, false, \
-    "tail torque over the push's mean torque", \
+    "ratio of tail torque to mean push torque", \
     "where the pushes cover only their first part") \
   X(kTailTime, "tail_time", "t", "s", 0.2, 0.005, 5, 0.2, kLog, \
     m.push_tail == PushTail::kExponential, false, \
@@ -156,15 +156,15 @@
   /* after being pushed by others; and the rod */ \
   X(kDriveGain, "drive_gain", "g", "1", 0.5, -20, 20, 0.5, kIdentity, \
     m.interaction.drive, m.interaction.drive, \
-    "cart force over the contact lately felt", \
+    "ratio of cart force to recent contact force", \
     "where people step on after others have let go") \
   X(kDriveTorque, "drive_torque", "r", "1", 0.2, -20, 20, 0.2, kIdentity, \
     m.interaction.drive, m.interaction.drive, \
-    "torque over the contact lately felt", \
+    "ratio of torque to recent contact force", \
     "where people step on after others have let go") \
   X(kDriveTime, "drive_time", "tau", "s", 0.3, 0.01, 5, 0.3, kLog, \
     m.interaction.drive, m.interaction.drive, \
-    "how long contact is felt", \
+    "decay time of the response to contact", \
     "where people step on after others have let go") \
   X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
     RodMoves(m), RodMoves(m), \

@@ -57,7 +57,7 @@ class MotionInspector {
         text += "; taken as " + Rounded(whole) + " (\"fps\" in the manifest wins)";
       }
       if (motion_.rate_hz < 30.0) {
-        found_.Warn("a push lasts a few frames only at " + Rounded(motion_.rate_hz) +
+        found_.Warn("a push lasts only a few frames at " + Rounded(motion_.rate_hz) +
                     " frames per second");
       }
     } else {
@@ -164,7 +164,7 @@ class MotionInspector {
     const LengthUnit unit = motion_.unit ? *motion_.unit : fits.value_or(LengthUnit::kMillimetre);
     metres_ = MetresPer(unit);
     found_.Fact("unit", Name(unit) + (motion_.unit ? ", as given in the file"
-                                      : fits       ? ", by the length of the rod"
+                                      : fits       ? ", inferred from the rod length"
                                                    : ", assumed"));
     if (!motion_.unit && !motion_.unit_text.empty()) {
       found_.Warn("the file's unit is " + Quoted(motion_.unit_text) + ", which is unknown");
@@ -255,7 +255,7 @@ class MotionInspector {
       if (across.norm() > farthest.norm()) farthest = across;
     }
     if (found_.onset_frame < 0) {
-      found_.Warn("the hip never moves by 2 cm: there is no push");
+      found_.Warn("the hip moves less than 2 cm: there is no push");
       return;
     }
     found_.Fact(
@@ -263,7 +263,8 @@ class MotionInspector {
         "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +
             (motion_.rate_hz > 0.0 ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
                                    : "") +
-            "; it goes " + Rounded(farthest.norm(), 3) + " m, mostly along " + AxisName(farthest));
+            "; at most it moves " + Rounded(farthest.norm(), 3) + " m, mostly along " +
+            AxisName(farthest));
   }
 
   // From frame to frame of the same point, where metres are known.

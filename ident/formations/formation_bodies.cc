@@ -86,7 +86,7 @@ MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
   }
   if (!AtRateOf(settings, scene.dt)) {
     return Error{"--" + flag + " names a generator that was trained at " +
-                 Rounded(settings.rate, 3) + " frames a second, and the formation has " +
+                 Rounded(settings.rate, 3) + " frames per second, and the formation has " +
                  Rounded(1.0 / scene.dt, 3) + ": give --fps=" + Rounded(settings.rate, 3)};
   }
   settings.observed = 1;

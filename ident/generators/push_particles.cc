@@ -115,7 +115,7 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
   const double dt = recording.pendulum.scene.dt;
   if (!AtRateOf(settings, dt)) {
     return Error{"recording " + recording.pendulum.id + " has " + Rounded(1.0 / dt, 3) +
-                 " frames a second; the generator was trained at " + Rounded(settings.rate, 3) +
+                 " frames per second; the generator was trained at " + Rounded(settings.rate, 3) +
                  ": resample the recording"};
   }
   const int observed = settings.observed, recorded = recording.num_frames();

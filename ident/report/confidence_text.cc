@@ -62,7 +62,7 @@ std::string RecordingsText(const Diagnostics& d) {
             [](const auto* a, const auto* b) { return a->explained < b->explained; });
   if (worst.size() > kWorstRecordings) worst.resize(kWorstRecordings);
   TextTable table({"explained least", "% of motion", "cost", "down-weighted frames",
-                   "without it moves (std errors)"},
+                   "change without it (std errors)"},
                   {true, false, false, false, true});
   for (const RecordingDiagnostics* r : worst) {
     table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3),

@@ -25,7 +25,7 @@ TEST(ParameterFacts, TheFirstRow) {
   EXPECT_EQ(mu.upper, 2000.0);
   EXPECT_EQ(mu.scale, 100.0);
   EXPECT_EQ(mu.transform, Transform::kIdentity);
-  EXPECT_EQ(mu.meaning, "drag of the stepping feet (no floor's friction)");
+  EXPECT_EQ(mu.meaning, "drag of the stepping feet (not floor friction)");
   EXPECT_FALSE(mu.when_to_free.empty());
   EXPECT_EQ(kParameterNames[kContactHeight], "contact_height");
   EXPECT_EQ(AllParameterFacts()[kContactHeight].transform, Transform::kLogit);

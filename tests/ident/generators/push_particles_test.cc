@@ -92,7 +92,7 @@ TEST(PushParticlesTest, AGeneratorGoesOnWhereTheRecordingWasShownTo) {
   settings.rate = 100.0;
   const auto other_rate = GenerateBodies(settings, still, recording);
   ASSERT_FALSE(other_rate.ok());
-  EXPECT_TRUE(Contains(other_rate.error().message, "60 frames a second"));
+  EXPECT_TRUE(Contains(other_rate.error().message, "60 frames per second"));
   settings.rate = 60.0;
   settings.observed = 10;
   EXPECT_FALSE(GenerateBodies(settings, still, recording).ok());

@@ -17,7 +17,7 @@ TEST(ParameterGlossary, HasARowForEveryParameter) {
   ASSERT_EQ(rows.size(), 1u + kFirstOwnParameter);
   EXPECT_EQ(rows[1], (std::vector<std::string>{
                          "mu", "mu", "N s/m", "100", "-2000 to 2000",
-                         "drag of the stepping feet (no floor's friction)",
+                         "drag of the stepping feet (not floor friction)",
                          "always: with Kp_x and Kp_y held it is the whole drag of the stepping "
                          "feet"}));
   for (int i = 0; i < kFirstOwnParameter; ++i) EXPECT_EQ(rows[1 + i][0], kParameterNames[i]);
