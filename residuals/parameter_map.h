@@ -15,25 +15,17 @@
 #include <utility>
 #include <vector>
 
-#include "models/enum_names.h"
 #include "models/parameters.h"
 #include "models/transform.h"
 
 namespace pushid {
 
 // What pooled parameters may differ by: the unit that a deviation belongs to.
-enum class PoolBy {
-  kSubject,
-  kSetting,
-  kCondition  // of the protocol; the setting of a recording that names no condition
-};
-constexpr EnumNames<PoolBy, 3> Names(PoolBy) {
-  return {{{"subject", PoolBy::kSubject},
-           {"setting", PoolBy::kSetting},
-           {"condition", PoolBy::kCondition}}};
-}
+// The person, or recordings of one label (datasets/manifest/recording_labels.h): setting,
+// condition, or any other key; the setting of a recording without the label.
+inline constexpr char kSubjectUnit[] = "subject";
 // Whether all people in a recording belong to one unit.
-constexpr bool HoldsForRecording(PoolBy pool_by) { return pool_by != PoolBy::kSubject; }
+inline bool HoldsForRecording(const std::string& pool_by) { return pool_by != kSubjectUnit; }
 
 struct FittedParameter {
   Parameter parameter;
@@ -52,7 +44,7 @@ struct ParameterMap {
   ParameterSet<double> values{};        // of the parameters that are not fitted
   std::vector<FittedParameter> fitted;  // in the order of the shared block
   int num_deviations = 0;               // length of a unit's block; 0: no such blocks
-  PoolBy pool_by = PoolBy::kSubject;
+  std::string pool_by = kSubjectUnit;
   int num_weights = 0;  // of what is learned
 
   int num_shared() const { return static_cast<int>(fitted.size()); }

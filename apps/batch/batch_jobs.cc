@@ -78,26 +78,19 @@ Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant
   return hash.Hex();
 }
 
-std::string GroupOf(GroupBy by, const ManifestRecording& entry) {
-  switch (by) {
-    case GroupBy::kRecording:
-      return entry.id;
-    case GroupBy::kSubject:
-      return entry.subjects[entry.pushed_person].id;
-    case GroupBy::kSetting:
-      return entry.setting;
-    case GroupBy::kNone:
-      break;
-  }
-  return "all";
+// Empty where the recording has no such label.
+std::string GroupOf(const std::string& by, const ManifestRecording& entry) {
+  if (by == "none") return "all";
+  if (by == "recording") return entry.id;
+  if (by == "subject") return entry.subjects[entry.pushed_person].id;
+  return entry.labels.Of(by);
 }
 
 // All that MakeFolds looks at.
 PendulumRecording AsKnown(const ManifestRecording& entry) {
   PendulumRecording recording;
   recording.id = entry.id;
-  recording.setting = entry.setting;
-  recording.magnitude = entry.magnitude;
+  recording.labels = entry.labels;
   recording.pushed_person = entry.pushed_person;
   for (const ManifestSubject& subject : entry.subjects) {
     recording.subject_ids.push_back(subject.id);
@@ -187,6 +180,12 @@ class Expander {
       if (!hash.ok()) return hash.error();
       hashes_[i] = hash.value();
       const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
+      if (name.empty()) {
+        return plan_.ErrorAt(
+            "group_by", Error{"must be none, recording, subject or a label; recording " +
+                              Quoted(manifest_.recordings[i].id) + " has no label " +
+                              Quoted(plan_.group_by)});
+      }
       auto at = std::find_if(groups.begin(), groups.end(),
                              [&name](const auto& group) { return group.first == name; });
       if (at == groups.end()) at = groups.insert(groups.end(), {name, {}});

@@ -155,22 +155,7 @@ class PlanReader {
     Known(*jobs, "[jobs]",
           {"group_by", "folds", "bootstrap", "seed", "time_limit_s", "memory_limit_mb"});
     KeepLines(*jobs);
-    std::string group_by = "none";
-    Get(*jobs, "group_by", "a string", &group_by);
-    const std::vector<std::pair<std::string, GroupBy>> names = {{"none", GroupBy::kNone},
-                                                                {"recording", GroupBy::kRecording},
-                                                                {"subject", GroupBy::kSubject},
-                                                                {"setting", GroupBy::kSetting}};
-    bool known = false;
-    for (const auto& [name, value] : names) {
-      if (name != group_by) continue;
-      plan_.group_by = value;
-      known = true;
-    }
-    if (!known) {
-      Fail(*jobs->get("group_by"),
-           "group_by is '" + group_by + "'; it must be none, recording, subject or setting");
-    }
+    Get(*jobs, "group_by", "a string", &plan_.group_by);
     GetCount(*jobs, "folds", 1000, &plan_.folds);
     if (plan_.folds == 1) Fail(*jobs->get("folds"), "folds is 1; it must be 0 or at least 2");
     GetCount(*jobs, "bootstrap", 1000000, &plan_.bootstrap);

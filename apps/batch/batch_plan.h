@@ -7,7 +7,7 @@
 //   leave_out = ["c"]                # not these of them
 //
 //   [jobs]
-//   group_by = "subject"             # recording, subject, setting or none (default)
+//   group_by = "subject"             # recording, subject, a label (setting, ...) or none (default)
 //   folds = 0                        # k: each group in k folds, held-out recordings scored
 //   bootstrap = 0                    # replicas of each group, besides the recordings as they are
 //   seed = 1
@@ -33,8 +33,6 @@
 
 namespace pushid {
 
-enum class GroupBy { kNone, kRecording, kSubject, kSetting };
-
 struct BatchVariant {
   std::string name;
   std::vector<std::string> flags;  // of pushid-fit, with paths as the programs can open them
@@ -48,7 +46,7 @@ struct BatchPlan {
   std::string manifest;  // as the programs can open it
   std::string setting = "all";
   std::vector<std::string> ids, leave_out;
-  GroupBy group_by = GroupBy::kNone;
+  std::string group_by = "none";
   int folds = 0, bootstrap = 0;
   uint64_t seed = 1;
   double time_limit_s = 0.0;

@@ -72,9 +72,9 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
   TrackedRecording tracks;
   tracks.id = id;
   tracks.fps = fps;
-  tracks.setting = setting;
-  tracks.magnitude = magnitude;
-  tracks.condition = condition;
+  tracks.labels.Set(kSettingLabel, setting);
+  tracks.labels.Set(kMagnitudeLabel, magnitude);
+  tracks.labels.Set(kConditionLabel, condition);
   tracks.pushed_person = pushed_person;
   const auto kind = PushKindFromName(push_kind);
   const auto velocity = InitialVelocityFromName(initial_velocity);

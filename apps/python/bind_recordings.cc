@@ -148,9 +148,9 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
 void BindRecordings(py::module_* module) {
   py::class_<Recording, std::shared_ptr<Recording>>(*module, "Recording")
       .def_readonly("id", &Recording::id)
-      .def_readonly("setting", &Recording::setting)
-      .def_readonly("magnitude", &Recording::magnitude)
-      .def_readonly("condition", &Recording::condition)
+      .def_property_readonly("setting", [](const Recording& r) { return r.labels.setting(); })
+      .def_property_readonly("magnitude", [](const Recording& r) { return r.labels.magnitude(); })
+      .def_property_readonly("condition", [](const Recording& r) { return r.labels.condition(); })
       .def_readonly("fps", &Recording::fps)
       .def_readonly("pushed_person", &Recording::pushed_person)
       .def_readonly("content_hash", &Recording::content_hash)

@@ -97,14 +97,12 @@ std::vector<TimedForce> PushesOn(const Recording& recording, int person) {
 ManifestRecording EntryOf(const Recording& recording) {
   ManifestRecording entry;
   entry.id = recording.id;
-  entry.setting = recording.setting;
+  entry.labels = recording.labels;
   entry.fps = recording.fps;
   entry.frames = recording.num_frames();
   entry.pushed_person = recording.pushed_person;
   entry.motion_format = MotionFormat::kBids;
   entry.push_kind = recording.push_kind;
-  entry.magnitude = recording.magnitude;
-  entry.condition = recording.condition;
   entry.initial_velocity = recording.initial_velocity;
   return entry;
 }

@@ -18,7 +18,7 @@ MaybeError InspectManifest(Inspection* found) {
   int pushed = 0, read = 0;
   PlausibilityCheck plausible;
   for (const ManifestRecording& entry : manifest.value().recordings) {
-    ++settings[entry.setting];
+    ++settings[entry.labels.setting()];
     ++formats[Title(entry.motion_format)];
     for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
     pushed += entry.push_csv.empty() && entry.pushes.empty() ? 0 : 1;

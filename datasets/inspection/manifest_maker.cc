@@ -162,9 +162,10 @@ class Maker {
       return Error{"it does not give its frame rate; give --fps",
                    (fs::path(options_.folder) / files->front().path).string()};
     }
-    recording.setting = Value(values, "setting", options_.setting);
-    recording.magnitude = Value(values, "magnitude", options_.magnitude);
-    recording.condition = Value(values, "condition", Value(values, kOldConditionKey, ""));
+    recording.labels.Set(kSettingLabel, Value(values, kSettingLabel, options_.setting));
+    recording.labels.Set(kMagnitudeLabel, Value(values, kMagnitudeLabel, options_.magnitude));
+    recording.labels.Set(kConditionLabel,
+                         Value(values, kConditionLabel, Value(values, kOldConditionKey, "")));
     recording.push_kind = options_.push_kind;
     recording.motion_format = format_;
     for (const FoundFile& file : *files) {

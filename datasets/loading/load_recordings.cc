@@ -72,9 +72,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
                                 const LoadOptions& options, std::vector<std::string>* warnings) {
   Recording recording;
   recording.id = entry.id;
-  recording.setting = entry.setting;
-  recording.magnitude = entry.magnitude;
-  recording.condition = entry.condition;
+  recording.labels = entry.labels;
   recording.pushed_person = entry.pushed_person;
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;

@@ -38,9 +38,7 @@ std::string HashOf(const PendulumRecording& recording, const std::string& files)
 PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
   PendulumRecording result;
   result.id = recording.id;
-  result.setting = recording.setting;
-  result.magnitude = recording.magnitude;
-  result.condition = recording.condition;
+  result.labels = recording.labels;
   result.pushed_person = recording.pushed_person;
   result.initial_velocity = recording.initial_velocity;
   result.scene.dt = 1.0 / recording.fps;

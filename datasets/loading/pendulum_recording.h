@@ -14,9 +14,7 @@ namespace pushid {
 
 struct PendulumRecording {
   std::string id;
-  std::string setting;
-  std::string magnitude;
-  std::string condition;
+  RecordingLabels labels;
   int pushed_person = 0;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<std::string> subject_ids;  // one per person

@@ -86,9 +86,8 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
   Recording recording;
   recording.id = tracks.id;
   recording.fps = tracks.fps;
-  recording.setting = tracks.setting;
-  recording.magnitude = tracks.magnitude;
-  recording.condition = tracks.condition;
+  recording.labels = std::move(tracks.labels);
+  if (recording.labels.setting().empty()) recording.labels.Set(kSettingLabel, "single");
   recording.pushed_person = tracks.pushed_person;
   recording.push_kind = tracks.push_kind;
   recording.initial_velocity = tracks.initial_velocity;

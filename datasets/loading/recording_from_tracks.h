@@ -27,7 +27,7 @@ struct TrackedRecording {
   int pushed_person = 0;
   PushKind push_kind = PushKind::kExternal;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
-  std::string setting = "single", magnitude = "unknown", condition;
+  RecordingLabels labels;
 };
 
 // Gaps are filled as those of files are, and the motion filtered and resampled. Errors: a mass not

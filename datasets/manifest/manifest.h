@@ -6,7 +6,7 @@
 //     "bvh": ["bvh/s1_00.bvh"], "push_csv": "push/s1_00.csv",
 //     "push_kind": "external", "magnitude": "weak"}]}
 //
-// Required per recording: id, setting, subjects (id, mass_kg), pushed_person, bvh, magnitude; all
+// Required per recording: id, setting, subjects (id, mass_kg), pushed_person, bvh; all
 // that are missing are told of in one error. fps may be left out where the motion's file says its
 // rate (BVH's frame time, C3D's and TRC's rate, a column of times) or a mapping gives it; a file's
 // rate is read as the whole number that it most likely means (frame_rate.h). A given fps wins over
@@ -15,8 +15,9 @@
 // external), joints {hip, left_ankle, right_ankle and other roles of body_roles.h} by name or
 // index, up and forward (axes of the BVH such as "z", "+x", "-y"; default z and x), length_unit
 // (mm, cm, m) or length_scale (m), pushes [{person, csv, start_frame}] in addition to push_csv,
-// initial_velocity (zero, estimated, free; default zero), condition (label of the protocol;
-// condition_code in older files), frames. At the top: length_unit, units.bvh_length or length_scale
+// initial_velocity (zero, estimated, free; default zero), magnitude (label of the push's
+// strength), condition (of the protocol; condition_code in older files), frames; any other text is
+// a label, too. At the top: length_unit, units.bvh_length or length_scale
 // for all recordings.
 //
 // Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
@@ -80,7 +81,7 @@ struct ManifestPush {
 
 struct ManifestRecording {
   std::string id;
-  std::string setting;
+  RecordingLabels labels;
   double fps = 0.0;  // 0: as the motion's files say
   std::vector<ManifestSubject> subjects;
   int pushed_person = 0;
@@ -89,8 +90,6 @@ struct ManifestRecording {
   std::string mapping;              // relative to the manifest; empty: none
   std::string push_csv;             // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;
-  std::string magnitude;
-  std::string condition;
   JointMapping joints;
   std::string up = "z";       // axis of the BVH that points up
   std::string forward = "x";  // axis of the BVH that points forward, in the push direction

@@ -1,4 +1,5 @@
 // datasets: the manifest read and checked.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -10,6 +11,7 @@
 #include "datasets/formats/axes.h"
 #include "datasets/formats/frame_rate.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/manifest/manifest_keys.h"
 #include "datasets/manifest/mapping_json.h"
 #include "datasets/manifest/recording_names.h"
 
@@ -98,6 +100,20 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
   }
 }
 
+// A text under a key that no program knows is a label as well.
+void ReadLabels(const Json& object, JsonFields* fields, RecordingLabels* labels) {
+  labels->Set(kSettingLabel, fields->Text(kSettingLabel, "text, for instance single"));
+  labels->Set(kMagnitudeLabel, fields->OptionalText(kMagnitudeLabel, ""));
+  labels->Set(kConditionLabel,
+              fields->OptionalText(kConditionLabel, fields->OptionalText(kOldConditionKey, "")));
+  if (!object.is_object()) return;
+  const std::vector<std::string>& known = ManifestKeys();
+  for (const auto& [key, value] : object.items()) {
+    const bool used = std::find(known.begin(), known.end(), key) != known.end();
+    if (!used && value.is_string()) labels->Set(key, value.get<std::string>());
+  }
+}
+
 // What is wrong is added to the manifest's fields.
 ManifestRecording ReadRecording(const JsonDocument& document, const Json& object, int index,
                                 JsonFields* manifest) {
@@ -111,7 +127,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
     fields.Fail("id", "must have no comma: commas separate ids in lists");
   }
 
-  recording.setting = fields.Text("setting", "text, for instance single");
+  ReadLabels(object, &fields, &recording.labels);
   if (fields.Has("fps")) {
     recording.fps = fields.Number("fps", "the frames per second");
     const std::string problem = FrameRateProblem(recording.fps);
@@ -129,9 +145,6 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.push_csv = fields.OptionalText("push_csv", "");
   recording.push_kind = fields.Choice("push_kind", &PushKindFromName, PushKind::kExternal,
                                       "net, net_without_friction or external");
-  recording.magnitude =
-      fields.Text("magnitude", "the push's strength as a label, for instance weak, medium, strong");
-  recording.condition = fields.OptionalText("condition", fields.OptionalText(kOldConditionKey, ""));
   recording.joints = ReadJointMapping(document, &fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);

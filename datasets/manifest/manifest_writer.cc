@@ -73,7 +73,8 @@ Json JointsJson(const JointMapping& joints, const Json& object) {
 Json RecordingJson(const ManifestRecording& recording) {
   Json json = recording.json->is_object() ? *recording.json : Json::object();
   json["id"] = recording.id;
-  json["setting"] = recording.setting;
+  const RecordingLabels& labels = recording.labels;
+  json[kSettingLabel] = labels.setting();
   // Left out again where the file says it.
   const bool whole_fps = recording.fps == std::floor(recording.fps) && recording.fps < 1e6;
   SetUnless(recording.fps == 0.0, "fps",
@@ -91,10 +92,11 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = Name(recording.push_kind);
-  json["magnitude"] = recording.magnitude;
+  SetUnless(labels.magnitude().empty(), kMagnitudeLabel, labels.magnitude(), &json);
   // A file that has both keeps both; one that has the old key alone gets the new one.
-  if (!json.contains("condition")) json.erase(kOldConditionKey);
-  SetOrKeep(recording.condition.empty(), "condition", recording.condition, &json);
+  if (!json.contains(kConditionLabel)) json.erase(kOldConditionKey);
+  SetOrKeep(labels.condition().empty(), kConditionLabel, labels.condition(), &json);
+  for (const std::string& key : labels.Keys()) json[key] = labels.Of(key);
   const Json joints = JointsJson(recording.joints, json);
   SetUnless(joints.empty(), "joints", joints, &json);
   SetOrKeep(recording.up == "z", "up", recording.up, &json);

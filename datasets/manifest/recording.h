@@ -9,6 +9,7 @@
 
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/body_roles.h"
+#include "datasets/manifest/recording_labels.h"
 #include "models/push.h"  // PushKind
 
 namespace pushid {
@@ -65,9 +66,7 @@ struct RecordedPerson {
 
 struct Recording {
   std::string id;
-  std::string setting;
-  std::string magnitude;  // strength label, e.g. weak, medium, strong
-  std::string condition;  // of the protocol, a free label; may be empty
+  RecordingLabels labels;
   double fps = 0.0;
   int pushed_person = 0;
   PushKind push_kind = PushKind::kExternal;

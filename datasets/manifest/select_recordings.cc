@@ -13,7 +13,7 @@ namespace {
 // "group_1 (9), row_1 (13), single (32)"
 std::string SettingsOf(const Manifest& manifest) {
   std::map<std::string, int> counts;
-  for (const ManifestRecording& recording : manifest.recordings) ++counts[recording.setting];
+  for (const ManifestRecording& recording : manifest.recordings) ++counts[recording.labels.setting()];
   std::string text;
   for (const auto& [setting, count] : counts) {
     text += (text.empty() ? "" : ", ") + setting + " (" + std::to_string(count) + ")";
@@ -62,7 +62,7 @@ Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::s
     bool found = false;
     for (std::size_t i = 0; i < count; ++i) {
       const ManifestRecording& recording = manifest.recordings[i];
-      if (name != recording.setting && name != "all" &&
+      if (name != recording.labels.setting() && name != "all" &&
           !(name == "groups" && recording.subjects.size() > 1)) {
         continue;
       }
@@ -88,7 +88,7 @@ Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::s
       selected.push_back(static_cast<int>(i));
     } else if (!wanted.empty()) {
       return Error{"recording " + Quoted(id) + " has the setting " +
-                       Quoted(manifest.recordings[i].setting) + ", which --setting=" + setting +
+                       Quoted(manifest.recordings[i].labels.setting()) + ", which --setting=" + setting +
                        " leaves out",
                    manifest.recordings[i].manifest, manifest.recordings[i].line};
     }

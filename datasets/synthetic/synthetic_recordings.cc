@@ -272,8 +272,8 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
             ObservePerson(options, made, *row[n], static_cast<int>(n), &noise));
       }
       recording.id = id;
-      recording.magnitude = strength.name;
-      recording.setting = row.size() > 1 ? "row" : "single";
+      recording.labels.Set(kMagnitudeLabel, strength.name);
+      recording.labels.Set(kSettingLabel, row.size() > 1 ? "row" : "single");
       recording.fps = options.fps;
       recording.push_kind = options.push_kind;
       const ScenePush& push = made.scene.pushes[0];

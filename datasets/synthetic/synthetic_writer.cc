@@ -34,7 +34,7 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
   const std::vector<BvhJoint> joints = made.skeletons[0].Bvh(kUnit).joints;
   ManifestRecording entry;
   entry.id = recording.id;
-  entry.setting = recording.setting;
+  entry.labels = recording.labels;
   entry.fps = recording.fps;
   for (const RecordedPerson& person : recording.people) {
     entry.subjects.push_back({person.subject_id, person.mass_kg});
@@ -42,7 +42,6 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
   entry.pushed_person = recording.pushed_person;
   entry.motion = bvh;
   entry.push_kind = recording.push_kind;
-  entry.magnitude = recording.magnitude;
   entry.initial_velocity = recording.initial_velocity;
   entry.frames = recording.num_frames();
   entry.joints.hip = JointReference{joints[kHipJoint].name};

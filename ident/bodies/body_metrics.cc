@@ -119,9 +119,10 @@ BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
     if (!score.failure.empty()) continue;
     const PendulumRecording& recording = recordings[i].pendulum;
     all.push_back(&score);
-    magnitude[recording.magnitude].push_back(&score);
+    const RecordingLabels& labels = recording.labels;
+    if (!labels.magnitude().empty()) magnitude[labels.magnitude()].push_back(&score);
     subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
-    setting[recording.setting].push_back(&score);
+    setting[labels.setting()].push_back(&score);
   }
   summary.groups = GroupsOf(recordings, summary.recordings);
   summary.mean = Mean(all, false);

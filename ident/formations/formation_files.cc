@@ -62,8 +62,8 @@ BvhMotion PendulumMotion(const FormationRun& run, int person) {
 ManifestRecording Entry(const FormationRun& run) {
   ManifestRecording entry;
   entry.id = run.recording.id;
-  entry.setting = run.recording.setting;
-  entry.magnitude = "simulated";
+  entry.labels = run.recording.labels;
+  entry.labels.Set(kMagnitudeLabel, "simulated");
   entry.fps = 1.0 / run.recording.scene.dt;
   entry.frames = run.num_frames();
   entry.pushed_person = run.recording.pushed_person;

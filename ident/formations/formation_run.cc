@@ -21,7 +21,8 @@ std::string PersonName(int person, int people) {
 
 PendulumRecording AsRecording(const Scene& scene) {
   PendulumRecording recording;
-  recording.id = recording.setting = "formation";
+  recording.id = "formation";
+  recording.labels.Set(kSettingLabel, recording.id);
   recording.scene = scene;
   if (!scene.pushes.empty()) recording.pushed_person = scene.pushes.front().person;
   for (int n = 0; n < scene.num_people(); ++n) {

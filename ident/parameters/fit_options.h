@@ -102,7 +102,7 @@ struct FitOptions {
   // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
   // or "none".
   std::string pool = "none";
-  PoolBy pool_by = PoolBy::kSubject;  // the unit they may differ by
+  std::string pool_by = kSubjectUnit;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
   // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.h).
   // PoolParameters gives it to the pooled parameters.

@@ -120,6 +120,24 @@ Row PoolingSigmaRow() {
   return row;
 }
 
+Row PoolByRow() {
+  Row row = WordsRow("pool_by", OptionStage::kModel,
+                     "what pooled parameters may differ by: subject, setting, condition or any "
+                     "other label of the manifest; a recording without the label takes its setting",
+                     [](const std::string& given, FitOptions* o) -> MaybeError {
+                       if (given.empty()) {
+                         return BadOption("pool_by", given, "must be subject or a label");
+                       }
+                       o->pool_by = given;
+                       return std::nullopt;
+                     });
+  row.text = [](const FitOptions& o) { return o.pool_by; };
+  row.json = "/pool_by";
+  row.write = [](const FitOptions& o) { return Json(o.pool_by); };
+  row.read = [](const Json& json, FitOptions* o) { o->pool_by = json.get<std::string>(); };
+  return row;
+}
+
 Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
   return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
     TableEdits edits;
@@ -189,10 +207,7 @@ std::vector<Row> WeightRows() {
           [](O & o) -> auto& { return o.stability_weight; }, kNotNegative,
           "weight of the rollouts continued past the end of the data, with the push and with 1.4 "
           "times the push"),
-      Decided(NameRow<PoolBy>(
-          "pool_by", "/pool_by", [](O & o) -> auto& { return o.pool_by; },
-          "the unit that pooled parameters may differ by: subject, setting or condition (the "
-          "setting where a recording names no condition)")),
+      Decided(PoolByRow()),
       PoolingSigmaRow(),
       MayBeAbsent(NumberRow(
           "network_prior", "/network_prior", [](O & o) -> auto& { return o.network_prior; },

@@ -80,7 +80,7 @@ bool AnyPooled(const ParameterTable& table);
 //   pool:  names, or all, or none; -name leaves out, as in all,-mu
 struct TableEdits {
   std::string fix, free, prior, set, pool;
-  PoolBy pool_by = PoolBy::kSubject;
+  std::string pool_by = kSubjectUnit;
 };
 MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/manifest/recording_labels.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "models/parameter_facts.h"
 
@@ -40,7 +41,7 @@ FitOptions TailPreset() {
   // Not by the push's duration (tail_exponent): in the published recordings that stands for the
   // condition, and it sends people away who are pushed weakly for long.
   o.pool = "tail_time";
-  o.pool_by = PoolBy::kCondition;
+  o.pool_by = kConditionLabel;
   o.settling_weight = 30.0;
   return o;
 }

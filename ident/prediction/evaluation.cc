@@ -243,9 +243,10 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
     score.pushed = PersonKey(recording, recording.pushed_person);
     if (!score.failure.empty()) continue;
     all.push_back(&score);
-    magnitude[recording.magnitude].push_back(&score);
+    const RecordingLabels& labels = recording.labels;
+    if (!labels.magnitude().empty()) magnitude[labels.magnitude()].push_back(&score);
     subject[names[i]].push_back(&score);
-    setting[recording.setting].push_back(&score);
+    setting[labels.setting()].push_back(&score);
   }
   auto propagation = [](const Group& group) {
     std::vector<const PropagationScore*> of_group;

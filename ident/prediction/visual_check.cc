@@ -91,8 +91,8 @@ std::vector<CheckedStratum> Strata(const std::vector<Checked>& all) {
   std::map<std::string, std::vector<const Checked*>> groups;
   for (const Checked& c : all) {
     const PendulumRecording& r = *c.recording;
-    if (!r.condition.empty()) groups["condition " + r.condition].push_back(&c);
-    if (!r.magnitude.empty()) groups["strength " + r.magnitude].push_back(&c);
+    if (!r.labels.condition().empty()) groups["condition " + r.labels.condition()].push_back(&c);
+    if (!r.labels.magnitude().empty()) groups["strength " + r.labels.magnitude()].push_back(&c);
   }
   std::vector<CheckedStratum> strata;
   for (const auto& [name, group] : groups) {

@@ -25,7 +25,7 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
                                   int repeats, uint64_t seed) {
   std::map<std::array<std::string, 3>, std::vector<int>> strata;
   for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
-    strata[{recordings[i].setting, recordings[i].magnitude, PushedSubject(recordings[i])}]
+    strata[{recordings[i].labels.setting(), recordings[i].labels.magnitude(), PushedSubject(recordings[i])}]
         .push_back(i);
   }
   std::vector<Fold> folds;
@@ -53,7 +53,7 @@ Result<std::vector<Fold>> InterleavedFolds(const std::vector<PendulumRecording>&
   std::vector<Fold> folds(num_folds);
   std::map<std::string, int> position;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    const int fold = position[recordings[i].setting]++ % num_folds;
+    const int fold = position[recordings[i].labels.setting()]++ % num_folds;
     folds[fold].held_out.push_back(static_cast<int>(i));
   }
   if (folds[1].held_out.empty()) {
@@ -86,9 +86,9 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
   for (int i = 0; i < total; ++i) {
     const PendulumRecording& recording = recordings[i];
     std::string key = PushedSubject(recording);
-    if (scheme == FoldScheme::kSetting) key = recording.setting;
+    if (scheme == FoldScheme::kSetting) key = recording.labels.setting();
     if (scheme == FoldScheme::kStrong) key = "strong";
-    if (scheme == FoldScheme::kStrong && recording.magnitude != "strong") continue;
+    if (scheme == FoldScheme::kStrong && recording.labels.magnitude() != "strong") continue;
     by_name[key].name = "without " + key;
     by_name[key].held_out.push_back(i);
   }

@@ -202,7 +202,7 @@ TextTable BehaviourTable(const FitResult& result) {
 
 TextTable PooledTable(const FitResult& result) {
   const bool by_setting = !result.settings.empty();
-  std::vector<std::string> header = {NameOf(result.options.pool_by)};
+  std::vector<std::string> header = {result.options.pool_by};
   std::vector<bool> left = {true};
   if (!by_setting) header.push_back("kg"), left.push_back(false);
   header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
@@ -229,7 +229,7 @@ TextTable PooledTable(const FitResult& result) {
 TextTable SpreadTable(const FitResult& result) {
   const FitOptions& o = result.options;
   TextTable table({"pooled", "shared", "std error", "unit",
-                   "spread between " + NameOf(o.pool_by) + "s (1 sigma)"},
+                   "spread between " + o.pool_by + "s (1 sigma)"},
                   {true, false, false, true, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = o.table.Find(e.name);

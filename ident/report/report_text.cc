@@ -25,7 +25,7 @@ std::string Count(int number, const std::string& noun) {
 
 std::string PoolingText(const FitOptions& options) {
   for (const ParameterSpec& spec : options.table.specs) {
-    if (spec.free && spec.pooled) return ", pooled by " + NameOf(options.pool_by);
+    if (spec.free && spec.pooled) return ", pooled by " + options.pool_by;
   }
   return "";
 }

@@ -17,7 +17,7 @@ struct IdentifiedModel {
   ParameterTable table;  // names, units and bounds, for --set
   ParameterSet<double> parameters{};
   std::vector<EnsembleMember> others;  // of an ensemble
-  PoolBy pool_by = PoolBy::kSubject;
+  std::string pool_by = kSubjectUnit;
   std::map<std::string, ParameterSet<double>> by_unit;  // options' pool_by; only where pooled
   std::optional<PushRange> push_range;                  // that it was fitted to
   std::optional<StepProbability> step_probability;      // of the people it was fitted to

@@ -74,7 +74,22 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
       preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
   if (!asked) return;
   warnings->push_back("--pool=" + options->pool + " does nothing: all recordings share one " +
-                      NameOf(options->pool_by) + ", '" + *units.begin() + "'");
+                      options->pool_by + ", '" + *units.begin() + "'");
+}
+
+// A label that no recording has pools by nothing; that of the presets may be absent.
+MaybeError CheckPoolingLabel(const std::vector<PendulumRecording>& recordings,
+                             const FitOptions& options) {
+  const std::string& key = options.pool_by;
+  if (key == kSubjectUnit || key == kSettingLabel || key == kConditionLabel) return std::nullopt;
+  std::set<std::string> known = {kSubjectUnit};
+  for (const PendulumRecording& recording : recordings) {
+    for (const std::string& own : recording.labels.Keys()) known.insert(own);
+  }
+  if (known.count(key) > 0) return std::nullopt;
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  return Error{"--pool_by is '" + key + "', a label that no recording has; there are " + names};
 }
 
 MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
@@ -192,6 +207,7 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       std::vector<std::string>* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
   if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;

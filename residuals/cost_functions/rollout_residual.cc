@@ -7,10 +7,11 @@
 
 namespace pushid {
 
-std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by) {
+std::vector<std::string> PoolingUnits(const PendulumRecording& recording,
+                                      const std::string& pool_by) {
   if (!HoldsForRecording(pool_by)) return recording.subject_ids;
-  const bool by_condition = pool_by == PoolBy::kCondition && !recording.condition.empty();
-  const std::string& unit = by_condition ? recording.condition : recording.setting;
+  const std::string& label = recording.labels.Of(pool_by);
+  const std::string& unit = label.empty() ? recording.labels.setting() : label;
   return std::vector<std::string>(recording.scene.people.size(), unit);
 }
 

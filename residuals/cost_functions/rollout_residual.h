@@ -23,7 +23,8 @@
 namespace pushid {
 
 // The unit of each person, by which pooled parameters differ.
-std::vector<std::string> PoolingUnits(const PendulumRecording& recording, PoolBy pool_by);
+std::vector<std::string> PoolingUnits(const PendulumRecording& recording,
+                                      const std::string& pool_by);
 
 // Everything a rollout residual needs; shared by the analytic cost function and its oracle.
 struct RolloutProblem {

@@ -49,7 +49,7 @@ TEST_F(BatchPlanTest, BadPlansAreToldWhereAndWhy) {
       {data + "setting = \u00e4\n" + rest, "plan.toml:3"},
       {data + "\u0401 = 1\n" + rest, "plan.toml:3"},
       {rest, "no [data]"},
-      {data + "[jobs]\ngroup_by = \"city\"\n" + rest, "plan.toml:4: group_by is 'city'"},
+      {data + "[jobs]\ngroup_by = \"city\"\n" + rest, "plan.toml:4: group_by: must be none, recording, subject or a label"},
       {data + "[jobs]\nfolds = 1\n" + rest, "plan.toml:4: folds is 1"},
       {data + "[jobs]\nfolds = -2\n" + rest, "plan.toml:4: folds is -2"},
       {data + "[jobs]\nfolds = \"two\"\n" + rest, "folds must be a whole number"},

@@ -219,6 +219,22 @@ TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
   EXPECT_TRUE(Contains(fit_.err, "--pool=mu does nothing: all recordings share one setting"));
 }
 
+TEST_F(FitAppTest, AnyLabelOfTheManifestMayPool) {
+  const std::string shod = ChangedManifest([](nlohmann::ordered_json& json) {
+    int i = 0;
+    for (auto& r : json["recordings"]) {
+      r["shoes"] = ++i % 2 == 0 ? "bare" : "trainers";
+      r.erase("magnitude");  // nor does a recording need one
+    }
+  });
+  const AppRun fit = RunApp("pushid-fit", {shod, "--pool=mu", "--pool_by=shoes"});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_TRUE(Contains(fit.out, "pooled by shoes"));
+  EXPECT_TRUE(Contains(fit.out, "trainers"));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {shod, "--pool=mu", "--pool_by=shoe"}),
+                      {"--pool_by is 'shoe'", "no recording has", "shoes"}));
+}
+
 TEST_F(FitAppTest, OnlyTheRecordingsAskedForAreFitted) {
   const nlohmann::ordered_json model = Json(FitModel("m.json", {"--ids=" + id_}));
   ASSERT_EQ(model["data"]["recordings"].size(), 1u);

@@ -93,7 +93,7 @@ FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
 
 FitOptions PooledOptions() {
   FitOptions options = GroupOptions(SelfForceKind::kLinear, false);
-  options.pool_by = PoolBy::kSetting;
+  options.pool_by = kSettingLabel;
   options.pooling_sigma = 0.3;
   for (ParameterSpec& spec : options.table.specs) spec.pooled = spec.free;
   return options;

@@ -46,12 +46,12 @@ class RecordingFolderTest : public TempDirTest {
     WritePush("a.csv", 5);
     ManifestRecording recording;
     recording.id = "a";
-    recording.setting = "single";
+    recording.labels.Set(kSettingLabel, "single");
     recording.fps = 60.0;
     recording.subjects = {{"s1", 70.0}};
     recording.motion = {"a.bvh"};
     recording.push_csv = "a.csv";
-    recording.magnitude = "weak";
+    recording.labels.Set(kMagnitudeLabel, "weak");
     manifest_.recordings = {recording};
   }
 

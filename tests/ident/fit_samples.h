@@ -65,7 +65,7 @@ inline IdentifiedModel TruthOf(const SyntheticOptions& study,
 inline FitOptions DefaultFit(const SyntheticOptions& study) {
   FitOptions options = MakePreset("tail").value();
   options.pool = "none";
-  options.pool_by = PoolBy::kSubject;
+  options.pool_by = kSubjectUnit;
   (void)PoolParameters(&options);
   options.model = study.model;
   for (ParameterSpec& spec : options.table.specs) {

@@ -205,15 +205,16 @@ ReportSection ParameterSection(const FittedModel& model) {
 
 ReportSection UnitSection(const FittedModel& model) {
   const FitResult& result = model.fit;
-  const std::string by = NameOf(result.options.pool_by);
+  const std::string by = result.options.pool_by;
   ReportSection section{"units", "By " + by, {}, {}, {}, {}, {}, ""};
   const TextTable pooled = PooledTable(result);
   if (pooled.rows().size() < 2) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value (diamond) as far as its "
       "recordings require."};
-  if (result.options.pool_by == PoolBy::kCondition) {
-    section.paragraphs.back() += " A recording without a condition is grouped by its setting.";
+  if (by != kSubjectUnit && by != kSettingLabel) {
+    section.paragraphs.back() +=
+        " A recording without a " + by + " is grouped by its setting.";
   }
   std::map<std::string, std::vector<ForestRow>> by_parameter;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {

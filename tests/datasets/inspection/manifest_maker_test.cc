@@ -88,8 +88,8 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   EXPECT_EQ(second.id, "anna_weak_2");
   EXPECT_EQ(second.people[0].subject_id, "anna");
   EXPECT_EQ(second.people[0].mass_kg, 62.0);
-  EXPECT_EQ(second.magnitude, "weak");
-  EXPECT_EQ(second.setting, "single");
+  EXPECT_EQ(second.labels.magnitude(), "weak");
+  EXPECT_EQ(second.labels.setting(), "single");
   EXPECT_EQ(second.fps, 60.0);  // 0.016667 s
   EXPECT_EQ(second.pushes.size(), 1u);
   EXPECT_EQ(loaded.value()[2].people[0].mass_kg, 80.0);

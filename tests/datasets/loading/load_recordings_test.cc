@@ -11,7 +11,7 @@ namespace {
 using LoadRecordingsTest = RecordingFolderTest;
 
 TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
-  entry().condition = "p";
+  entry().labels.Set(kConditionLabel, "p");
   entry().push_kind = PushKind::kNet;
   entry().initial_velocity = InitialVelocity::kEstimated;
   entry().frames = 20;
@@ -20,9 +20,9 @@ TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
   ASSERT_EQ(loaded.value().size(), 1u);
   const Recording& recording = loaded.value()[0];
   EXPECT_EQ(recording.id, "a");
-  EXPECT_EQ(recording.setting, "single");
-  EXPECT_EQ(recording.magnitude, "weak");
-  EXPECT_EQ(recording.condition, "p");
+  EXPECT_EQ(recording.labels.setting(), "single");
+  EXPECT_EQ(recording.labels.magnitude(), "weak");
+  EXPECT_EQ(recording.labels.condition(), "p");
   EXPECT_EQ(recording.fps, 60.0);
   EXPECT_EQ(recording.push_kind, PushKind::kNet);
   EXPECT_EQ(recording.initial_velocity, InitialVelocity::kEstimated);
@@ -315,12 +315,12 @@ TEST_F(LoadRecordingsTest, BadFilesAreNamed) {
 TEST_F(LoadRecordingsTest, SettingsAndIds) {
   ManifestRecording pair = entry();
   pair.id = "b";
-  pair.setting = "row_1";
+  pair.labels.Set(kSettingLabel, "row_1");
   pair.subjects.push_back({"s2", 80.0});
   pair.motion.push_back("a.bvh");
   ManifestRecording other = entry();
   other.id = "c";
-  other.setting = "other";
+  other.labels.Set(kSettingLabel, "other");
   manifest_.recordings = {entry(), pair, other};
   const auto ids = [&](const std::string& setting, const std::vector<std::string>& only = {}) {
     LoadOptions options;

@@ -58,7 +58,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   ASSERT_EQ(read.value().recordings.size(), 2u);
   const ManifestRecording& a = read.value().recordings[0];
   EXPECT_EQ(a.id, "a");
-  EXPECT_EQ(a.setting, "single");
+  EXPECT_EQ(a.labels.setting(), "single");
   EXPECT_EQ(a.fps, 60.0);
   ASSERT_EQ(a.subjects.size(), 1u);
   EXPECT_EQ(a.subjects[0].id, "s1");
@@ -66,7 +66,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(a.motion, std::vector<std::string>{"bvh/a.bvh"});
   EXPECT_EQ(a.push_csv, "push/a.csv");
   EXPECT_EQ(a.push_kind, PushKind::kNet);
-  EXPECT_EQ(a.magnitude, "weak");
+  EXPECT_EQ(a.labels.magnitude(), "weak");
   EXPECT_EQ(a.up, "z");
   EXPECT_EQ(a.initial_velocity, InitialVelocity::kZero);
   EXPECT_FALSE(a.length_unit || a.frames || a.joints.hip);
@@ -77,7 +77,9 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.pushed_person, 1);
   EXPECT_EQ(b.push_csv, "");
   EXPECT_EQ(b.push_kind, PushKind::kExternal);
-  EXPECT_EQ(b.condition, "p");
+  EXPECT_EQ(b.labels.condition(), "p");
+  EXPECT_EQ(b.labels.Of("why"), "because");
+  EXPECT_EQ(b.labels.Keys(), (std::vector<std::string>{"condition", "magnitude", "setting", "why"}));
   EXPECT_EQ(b.joints.hip->name, "Hips");
   EXPECT_EQ(b.joints.left_ankle->index, 3);
   EXPECT_FALSE(b.joints.right_ankle);
@@ -149,11 +151,11 @@ TEST_F(ManifestTest, WrittenFromScratch) {
   manifest.length_unit = LengthUnit::kMetre;
   ManifestRecording recording;
   recording.id = "x";
-  recording.setting = "single";
+  recording.labels.Set(kSettingLabel, "single");
   recording.fps = 120.5;
   recording.subjects = {{"s", 80.0}};
   recording.motion = {"x.bvh"};
-  recording.magnitude = "weak";
+  recording.labels.Set(kMagnitudeLabel, "weak");
   recording.pushes = {{0, "x.csv", 4}};
   manifest.recordings.push_back(recording);
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
@@ -189,7 +191,7 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
       {"\"id\": \"b\"", "\"id\": \"a\"",
        ":18:10: ", "recording 'a': this id was given before, in line 5"},
       {"\"setting\": \"single\",", "", ":5:3: ", "recording 'a': setting is missing"},
-      {"\"magnitude\": \"weak\",", "", ":5:3: ", "recording 'a': magnitude is missing"},
+      {"\"magnitude\": \"weak\"", "\"magnitude\": 3", ":14:17: ", "magnitude must be text in quotes, not '3'"},
       {"67.5, \"order\"", "0, \"order\"",
        ":8:41: ", "recording 'a', subject 0: mass_kg is 0; a mass"},
       {"67.5, \"order\"", "-5, \"order\"", ":8:41: ", "mass_kg is -5"},
@@ -278,15 +280,12 @@ TEST_F(ManifestTest, AllMissingKeysInOneError) {
                     "{\"id\": \"b\", \"subjects\": [{\"id\": \"s\"}], \"trc\": [\"b.trc\"]}"),
             Path("manifest.json") +
                 ":2:14: recording 'a', subject 0: mass_kg is missing; it must be the person's mass "
-                "in kg; recording 'a': magnitude is missing; it must be the push's strength as a "
-                "label, for instance weak, medium, strong; recording 'b': setting, pushed_person "
-                "and magnitude are missing; setting must be text, for instance single; "
-                "pushed_person must be the index of the pushed subject, 0; recording 'b', subject "
-                "0: mass_kg is missing");
+                "in kg; recording 'b': setting and pushed_person are missing; setting must be "
+                "text, for instance single; pushed_person must be the index of the pushed "
+                "subject, 0; recording 'b', subject 0: mass_kg is missing");
   const std::string nothing = message("{}");
   EXPECT_TRUE(Contains(nothing,
-                       "recording 0: id, setting, subjects, pushed_person, bvh and "
-                       "magnitude are missing"));
+                       "recording 0: id, setting, subjects, pushed_person and bvh are missing"));
   EXPECT_TRUE(Contains(nothing, "under the key of their format: bvh, c3d, trc, csv, sto"));
   std::string many = "{}";
   for (int i = 0; i < 10; ++i) many += ", {}";

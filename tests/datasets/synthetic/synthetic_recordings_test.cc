@@ -55,7 +55,7 @@ void ExpectMotionOf(const SyntheticRecording& made, const Recording& observed, d
   ASSERT_EQ(pendulum.num_frames(), made.path.num_frames());
   EXPECT_EQ(pendulum.id, made.recording.id);
   EXPECT_EQ(pendulum.subject_ids[0], made.recording.people[0].subject_id);
-  EXPECT_EQ(pendulum.magnitude, made.recording.magnitude);
+  EXPECT_EQ(pendulum.labels.magnitude(), made.recording.labels.magnitude());
   const Body& body = pendulum.scene.people[0].body;
   EXPECT_EQ(body.mass, made.scene.people[0].body.mass);
   EXPECT_NEAR(body.cart_height, made.scene.people[0].body.cart_height, tolerance);
@@ -89,7 +89,7 @@ TEST_F(SyntheticRecordings, WrittenFilesGiveBackTheRollout) {
         ExpectMotionOf(made[i], made[i].recording, 1e-12);
         // Digits enough for recovering parameters to 1e-6.
         ExpectMotionOf(made[i], loaded[i], 1e-12);
-        EXPECT_EQ(loaded[i].setting, "single");
+        EXPECT_EQ(loaded[i].labels.setting(), "single");
         EXPECT_EQ(loaded[i].fps, options.fps);
       }
     }

@@ -15,8 +15,8 @@ namespace {
 BodyRecording Standing(int frames, const std::string& id = "a") {
   BodyRecording recording;
   recording.pendulum.id = id;
-  recording.pendulum.setting = "single";
-  recording.pendulum.magnitude = "weak";
+  recording.pendulum.labels.Set(kSettingLabel, "single");
+  recording.pendulum.labels.Set(kMagnitudeLabel, "weak");
   recording.pendulum.subject_ids = {"s"};
   const RestorationInput person = WithPendulum(StandingPose(), 80);
   recording.pendulum.scene.people.push_back({person.body, {person.q[0], Vector4<double>::Zero()}});

@@ -15,7 +15,7 @@ namespace {
 BodyRecording Walking(int people, int frames, double dt = 1.0 / 60.0) {
   BodyRecording recording;
   recording.pendulum.id = "a";
-  recording.pendulum.setting = "row_1";
+  recording.pendulum.labels.Set(kSettingLabel, "row_1");
   recording.pendulum.scene.dt = dt;
   recording.bodies = WalkingGroup(people, frames);
   for (const BodyMotion& body : recording.bodies) {

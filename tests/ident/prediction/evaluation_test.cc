@@ -13,8 +13,8 @@ namespace {
 PendulumRecording Parabola(const std::string& id, int frames) {
   PendulumRecording recording;
   recording.id = id;
-  recording.setting = "single";
-  recording.magnitude = frames > 4 ? "strong" : "weak";
+  recording.labels.Set(kSettingLabel, "single");
+  recording.labels.Set(kMagnitudeLabel, frames > 4 ? "strong" : "weak");
   recording.subject_ids = {"S" + id};
   recording.scene.people.resize(1);
   recording.scene.people[0].body = {80.0, 1.0, 0.0};

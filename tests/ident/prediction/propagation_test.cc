@@ -36,7 +36,7 @@ HipPaths Hips(const std::vector<double>& x, const std::vector<int>& onsets, int 
 PendulumRecording Row(const std::vector<double>& x, const std::vector<int>& onsets, int frames) {
   PendulumRecording recording;
   recording.id = "row";
-  recording.setting = "row";
+  recording.labels.Set(kSettingLabel, "row");
   recording.scene.dt = kDt;
   for (double position : x) {
     ScenePerson person;

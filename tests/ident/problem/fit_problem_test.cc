@@ -11,7 +11,7 @@ TEST(FitProblem, FindsThePointOfARow) {
   const auto recordings = MakePendulums(TinyStudy());
   FitOptions options = MakePreset("tail").value();
   options.pool = "mu,tail_time";
-  options.pool_by = PoolBy::kSubject;
+  options.pool_by = kSubjectUnit;
   ASSERT_FALSE(PoolParameters(&options));
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();

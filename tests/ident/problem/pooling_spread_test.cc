@@ -48,7 +48,7 @@ FitOptions WeighedFit(const SyntheticOptions& study) {
   options.sigmas.rate = 4.0 * study.joint_noise_m * study.fps;
   options.recording_weight = RecordingWeight::kFrame;
   options.pool = "Kp_theta";
-  options.pool_by = PoolBy::kSubject;
+  options.pool_by = kSubjectUnit;
   options.pooling_sigma.reset();
   EXPECT_FALSE(PoolParameters(&options));
   return options;

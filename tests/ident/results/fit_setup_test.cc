@@ -55,7 +55,7 @@ TEST(FitSetup, PoolingFollowsTheTerms) {
 TEST(FitSetup, ThePresetPoolsWhatItCan) {
   const FitOptions tail = MakeFitOptions({{"preset", "tail"}}).value();
   EXPECT_TRUE(tail.table[kTailTime].pooled);
-  EXPECT_EQ(tail.pool_by, PoolBy::kCondition);
+  EXPECT_EQ(tail.pool_by, kConditionLabel);
   EXPECT_FALSE(tail.pooling_sigma);
   for (const GivenOptions& given :
        {GivenOptions{{"fix", "tail_time"}}, GivenOptions{{"push_tail", "none"}},

@@ -90,7 +90,7 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
 TEST(LearnedInteraction, LargeOnesLearnByTheirGradient) {
   Rows rows;
   rows.options.max_iterations = 100;
-  rows.options.pool_by = PoolBy::kSubject;
+  rows.options.pool_by = kSubjectUnit;
   rows.options.table[kMu].pooled = true;
   const double without = rows.HeldOutAde(rows.Fitted({}));
   const PairShape large{{48, 32}};

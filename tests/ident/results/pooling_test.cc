@@ -88,14 +88,14 @@ TEST(Pooling, SettingsKeepTheirOwnContact) {
   for (double distance : {0.38, 0.46}) {
     study.parameters[kContactDistance] = distance;
     for (PendulumRecording& r : MakePendulums(study)) {
-      r.setting = distance < 0.4 ? "near" : "far";
+      r.labels.Set(kSettingLabel, distance < 0.4 ? "near" : "far");
       recordings.push_back(r);
     }
   }
   FitOptions options = UnbiasedFit(study);
   FreeTerms(&options);
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.pool_by = PoolBy::kSetting;
+  options.pool_by = kSettingLabel;
   options.table[kContactDistance].pooled = true;
   options.pooling_sigma = options.table[kContactDistance].pooling_sigma = 10.0;
   const FitResult result = Fit(recordings, options);

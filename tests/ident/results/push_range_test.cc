@@ -16,7 +16,7 @@ constexpr double kMass = 80.0, kRate = 60.0;
 PendulumRecording PushedPerson(const std::string& id, PushKind kind, int frames, double force) {
   PendulumRecording recording;
   recording.id = id;
-  recording.setting = "single";
+  recording.labels.Set(kSettingLabel, "single");
   recording.subject_ids = {"a"};
   recording.scene.dt = 1.0 / kRate;
   recording.scene.people.resize(1);
@@ -86,11 +86,11 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
 
 TEST(PushRange, AUnitsOwnTailCounts) {
   IdentifiedModel model = Model();
-  model.pool_by = PoolBy::kCondition;
+  model.pool_by = kConditionLabel;
   model.by_unit["m"] = model.parameters;
   model.by_unit["m"][kTailTime] *= 4.0;
   PendulumRecording of_m = PushedPerson("m", PushKind::kNet, 6, 200.0), plain = of_m;
-  of_m.condition = "m";
+  of_m.labels.Set(kConditionLabel, "m");
   const double longer = FittedPushRange(model, {of_m}).impulse_per_mass.upper;
   EXPECT_GT(longer, 2.0 * FittedPushRange(model, {plain}).impulse_per_mass.upper);
 }

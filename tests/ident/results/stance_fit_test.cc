@@ -30,7 +30,7 @@ FitOptions FreeStance(const SyntheticOptions& study) {
   FitOptions options = MakePreset("tail").value();
   SetStance(Stance::kThreshold, &options);
   options.pool = "none";
-  options.pool_by = PoolBy::kSubject;
+  options.pool_by = kSubjectUnit;
   for (ParameterSpec& spec : options.table.specs) {
     spec.prior.reset();
     spec.free = false;

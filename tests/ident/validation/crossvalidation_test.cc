@@ -25,7 +25,7 @@ std::vector<PendulumRecording> Labels() {
       for (int i = 0; i < counts[subject][strength]; ++i) {
         PendulumRecording r;
         r.id = std::to_string(recordings.size());
-        r.magnitude = strengths[strength];
+        r.labels.Set(kMagnitudeLabel, strengths[strength]);
         r.subject_ids = {"S" + std::to_string(subject)};
         r.scene.people.resize(1);
         recordings.push_back(r);
@@ -43,7 +43,7 @@ TEST(Folds, StratifiedHoldOutEachOncePerRepeat) {
   ASSERT_TRUE(folds.ok());
   ASSERT_EQ(folds.value().size(), static_cast<size_t>(kFolds * kRepeats));
   std::map<std::pair<std::string, std::string>, int> strata;
-  for (const PendulumRecording& r : recordings) ++strata[{r.subject_ids[0], r.magnitude}];
+  for (const PendulumRecording& r : recordings) ++strata[{r.subject_ids[0], r.labels.magnitude()}];
   std::set<std::vector<int>> distinct;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     std::vector<int> held(total, 0);
@@ -58,7 +58,7 @@ TEST(Folds, StratifiedHoldOutEachOncePerRepeat) {
       std::map<std::pair<std::string, std::string>, int> own;
       for (int i : fold.held_out) {
         ++held[i];
-        ++own[{recordings[i].subject_ids[0], recordings[i].magnitude}];
+        ++own[{recordings[i].subject_ids[0], recordings[i].labels.magnitude()}];
       }
       for (const auto& [stratum, count] : strata) {
         EXPECT_GE(own[stratum], count / kFolds);
@@ -88,7 +88,7 @@ TEST(Folds, InterleavedCountWithinTheSetting) {
   std::vector<PendulumRecording> recordings = Labels();
   recordings.resize(9);
   for (size_t i = 0; i < recordings.size(); ++i) {
-    recordings[i].setting = i % 2 == 0 ? "row" : "group";
+    recordings[i].labels.Set(kSettingLabel, i % 2 == 0 ? "row" : "group");
   }
   const auto folds = MakeFolds(recordings, FoldScheme::kInterleaved, 3, 1, 1);
   ASSERT_TRUE(folds.ok());
@@ -113,7 +113,7 @@ TEST(Folds, SubjectsAndStrongPushes) {
   ASSERT_TRUE(strong.ok());
   ASSERT_EQ(strong.value().size(), 1u);
   EXPECT_EQ(strong.value()[0].held_out.size(), 7u);
-  for (int i : strong.value()[0].held_out) EXPECT_EQ(recordings[i].magnitude, "strong");
+  for (int i : strong.value()[0].held_out) EXPECT_EQ(recordings[i].labels.magnitude(), "strong");
 }
 
 TEST(Folds, ErrorsSayWhatIsMissing) {
@@ -128,11 +128,11 @@ TEST(Folds, ErrorsSayWhatIsMissing) {
   EXPECT_TRUE(Contains(message(FoldScheme::kStratified, 4, 0), "--repeats"));
   for (PendulumRecording& r : recordings) {
     r.subject_ids = {"only"};
-    r.magnitude = "weak";
+    r.labels.Set(kMagnitudeLabel, "weak");
   }
   EXPECT_TRUE(Contains(message(FoldScheme::kSubject, 0, 0), "at least two pushed subjects"));
   EXPECT_TRUE(Contains(message(FoldScheme::kStrong, 0, 0), "'strong'"));
-  for (PendulumRecording& r : recordings) r.magnitude = "strong";
+  for (PendulumRecording& r : recordings) r.labels.Set(kMagnitudeLabel, "strong");
   EXPECT_FALSE(MakeFolds(recordings, FoldScheme::kStrong, 0, 0, 0).ok());
 }
 

@@ -116,7 +116,7 @@ class RealGroupsTest : public ::testing::Test {
     for (const Recording& recording : recordings.value()) {
       const auto body = MakeBodyRecording(recording, SkeletonMapping::kExact);
       ASSERT_TRUE(body.ok()) << body.error().ToString();
-      const bool in_first = position[recording.setting]++ % 4 == 0;
+      const bool in_first = position[recording.labels.setting()]++ % 4 == 0;
       (in_first ? first_ : others_).push_back({body.value().bodies});
     }
     ASSERT_EQ(first_.size(), 14u);

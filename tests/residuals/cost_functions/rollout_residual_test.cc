@@ -82,16 +82,16 @@ INSTANTIATE_TEST_SUITE_P(
 // The same subject twice: one block of deviations moves both people.
 TEST(PoolingUnits, AreSubjectsSettingsOrConditions) {
   PendulumRecording recording;
-  recording.setting = "row_1";
+  recording.labels.Set(kSettingLabel, "row_1");
   recording.subject_ids = {"a", "b"};
   recording.scene.people.resize(2);
   using Units = std::vector<std::string>;
-  EXPECT_EQ(PoolingUnits(recording, PoolBy::kSubject), (Units{"a", "b"}));
-  EXPECT_EQ(PoolingUnits(recording, PoolBy::kSetting), (Units{"row_1", "row_1"}));
-  EXPECT_EQ(PoolingUnits(recording, PoolBy::kCondition), (Units{"row_1", "row_1"}));
-  recording.condition = "p";
-  EXPECT_EQ(PoolingUnits(recording, PoolBy::kCondition), (Units{"p", "p"}));
-  EXPECT_EQ(PoolingUnits(recording, PoolBy::kSetting), (Units{"row_1", "row_1"}));
+  EXPECT_EQ(PoolingUnits(recording, kSubjectUnit), (Units{"a", "b"}));
+  EXPECT_EQ(PoolingUnits(recording, kSettingLabel), (Units{"row_1", "row_1"}));
+  EXPECT_EQ(PoolingUnits(recording, kConditionLabel), (Units{"row_1", "row_1"}));
+  recording.labels.Set(kConditionLabel, "p");
+  EXPECT_EQ(PoolingUnits(recording, kConditionLabel), (Units{"p", "p"}));
+  EXPECT_EQ(PoolingUnits(recording, kSettingLabel), (Units{"row_1", "row_1"}));
 }
 
 TEST(RolloutResidual, PeopleMayShareASubject) {
