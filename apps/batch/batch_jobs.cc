@@ -182,9 +182,9 @@ class Expander {
       const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
       if (name.empty()) {
         return plan_.ErrorAt(
-            "group_by", Error{"must be none, recording, subject or a label; recording " +
-                              Quoted(manifest_.recordings[i].id) + " has no label " +
-                              Quoted(plan_.group_by)});
+            "group_by",
+            Error{"must be none, recording, subject or a label; recording " +
+                  Quoted(manifest_.recordings[i].id) + " has no label " + Quoted(plan_.group_by)});
       }
       auto at = std::find_if(groups.begin(), groups.end(),
                              [&name](const auto& group) { return group.first == name; });

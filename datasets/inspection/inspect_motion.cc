@@ -258,13 +258,12 @@ class MotionInspector {
       found_.Warn("the hip moves less than 2 cm: there is no push");
       return;
     }
-    found_.Fact(
-        "onset",
-        "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +
-            (motion_.rate_hz > 0.0 ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
-                                   : "") +
-            "; at most it moves " + Rounded(farthest.norm(), 3) + " m, mostly along " +
-            AxisName(farthest));
+    found_.Fact("onset", "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +
+                             (motion_.rate_hz > 0.0
+                                  ? " (" + Seconds(found_.onset_frame / motion_.rate_hz) + ")"
+                                  : "") +
+                             "; at most it moves " + Rounded(farthest.norm(), 3) +
+                             " m, mostly along " + AxisName(farthest));
   }
 
   // From frame to frame of the same point, where metres are known.

@@ -13,7 +13,8 @@ namespace {
 // "group_1 (9), row_1 (13), single (32)"
 std::string SettingsOf(const Manifest& manifest) {
   std::map<std::string, int> counts;
-  for (const ManifestRecording& recording : manifest.recordings) ++counts[recording.labels.setting()];
+  for (const ManifestRecording& recording : manifest.recordings)
+    ++counts[recording.labels.setting()];
   std::string text;
   for (const auto& [setting, count] : counts) {
     text += (text.empty() ? "" : ", ") + setting + " (" + std::to_string(count) + ")";
@@ -88,8 +89,8 @@ Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::s
       selected.push_back(static_cast<int>(i));
     } else if (!wanted.empty()) {
       return Error{"recording " + Quoted(id) + " has the setting " +
-                       Quoted(manifest.recordings[i].labels.setting()) + ", which --setting=" + setting +
-                       " leaves out",
+                       Quoted(manifest.recordings[i].labels.setting()) +
+                       ", which --setting=" + setting + " leaves out",
                    manifest.recordings[i].manifest, manifest.recordings[i].line};
     }
   }

@@ -25,7 +25,8 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
                                   int repeats, uint64_t seed) {
   std::map<std::array<std::string, 3>, std::vector<int>> strata;
   for (int i = 0; i < static_cast<int>(recordings.size()); ++i) {
-    strata[{recordings[i].labels.setting(), recordings[i].labels.magnitude(), PushedSubject(recordings[i])}]
+    strata[{recordings[i].labels.setting(), recordings[i].labels.magnitude(),
+            PushedSubject(recordings[i])}]
         .push_back(i);
   }
   std::vector<Fold> folds;

@@ -228,9 +228,9 @@ TextTable PooledTable(const FitResult& result) {
 
 TextTable SpreadTable(const FitResult& result) {
   const FitOptions& o = result.options;
-  TextTable table({"pooled", "shared", "std error", "unit",
-                   "spread between " + o.pool_by + "s (1 sigma)"},
-                  {true, false, false, true, true});
+  TextTable table(
+      {"pooled", "shared", "std error", "unit", "spread between " + o.pool_by + "s (1 sigma)"},
+      {true, false, false, true, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = o.table.Find(e.name);
     if (spec == nullptr || !spec->free || !spec->pooled) continue;

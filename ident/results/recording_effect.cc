@@ -190,8 +190,8 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
     if (!misfits[i].acts) continue;
     const PendulumRecording& r = *kept[i].recording;
     const EffectEstimate b = MeanEffect(EffectWeights(misfits[i].of_node, p.spread, p.scale));
-    effect.recordings.push_back({r.id, r.subject_ids[r.pushed_person], r.labels.condition(), b.mean, b.error,
-                                 LikeliestEffect(misfits[i].of_node)});
+    effect.recordings.push_back({r.id, r.subject_ids[r.pushed_person], r.labels.condition(), b.mean,
+                                 b.error, LikeliestEffect(misfits[i].of_node)});
   }
   LearnForecasts(model, std::move(kept), num_threads, &effect);
   return effect;

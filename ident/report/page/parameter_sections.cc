@@ -213,8 +213,7 @@ ReportSection UnitSection(const FittedModel& model) {
       "Partially pooled: each value deviates from the shared value (diamond) as far as its "
       "recordings require."};
   if (by != kSubjectUnit && by != kSettingLabel) {
-    section.paragraphs.back() +=
-        " A recording without a " + by + " is grouped by its setting.";
+    section.paragraphs.back() += " A recording without a " + by + " is grouped by its setting.";
   }
   std::map<std::string, std::vector<ForestRow>> by_parameter;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {

@@ -79,7 +79,8 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.push_kind, PushKind::kExternal);
   EXPECT_EQ(b.labels.condition(), "p");
   EXPECT_EQ(b.labels.Of("why"), "because");
-  EXPECT_EQ(b.labels.Keys(), (std::vector<std::string>{"condition", "magnitude", "setting", "why"}));
+  EXPECT_EQ(b.labels.Keys(),
+            (std::vector<std::string>{"condition", "magnitude", "setting", "why"}));
   EXPECT_EQ(b.joints.hip->name, "Hips");
   EXPECT_EQ(b.joints.left_ankle->index, 3);
   EXPECT_FALSE(b.joints.right_ankle);
@@ -191,7 +192,8 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
       {"\"id\": \"b\"", "\"id\": \"a\"",
        ":18:10: ", "recording 'a': this id was given before, in line 5"},
       {"\"setting\": \"single\",", "", ":5:3: ", "recording 'a': setting is missing"},
-      {"\"magnitude\": \"weak\"", "\"magnitude\": 3", ":14:17: ", "magnitude must be text in quotes, not '3'"},
+      {"\"magnitude\": \"weak\"", "\"magnitude\": 3",
+       ":14:17: ", "magnitude must be text in quotes, not '3'"},
       {"67.5, \"order\"", "0, \"order\"",
        ":8:41: ", "recording 'a', subject 0: mass_kg is 0; a mass"},
       {"67.5, \"order\"", "-5, \"order\"", ":8:41: ", "mass_kg is -5"},
@@ -284,8 +286,8 @@ TEST_F(ManifestTest, AllMissingKeysInOneError) {
                 "text, for instance single; pushed_person must be the index of the pushed "
                 "subject, 0; recording 'b', subject 0: mass_kg is missing");
   const std::string nothing = message("{}");
-  EXPECT_TRUE(Contains(nothing,
-                       "recording 0: id, setting, subjects, pushed_person and bvh are missing"));
+  EXPECT_TRUE(
+      Contains(nothing, "recording 0: id, setting, subjects, pushed_person and bvh are missing"));
   EXPECT_TRUE(Contains(nothing, "under the key of their format: bvh, c3d, trc, csv, sto"));
   std::string many = "{}";
   for (int i = 0; i < 10; ++i) many += ", {}";
