@@ -30,7 +30,7 @@ say "Making recordings of two other people, held out: the same parameters, other
 "$bin/pushid-simulate" --out="$out/held-out" --people=2 --recordings_per_person=3 --seed=2 --overwrite | tail -n 1
 
 say "Identifying friction, balance gains and the push tail from the four people's recordings"
-# With default flags: the priors know nothing of this truth.
+# With default flags, whose priors do not depend on this truth.
 "$bin/pushid-fit" --recordings="$out/recordings/manifest.json" --setting=single \
   --model_out="$out/model.json" >"$out/report.txt"
 "$bin/pushid-report" --model="$out/model.json" --truth="$out/recordings/manifest.json" | tee "$out/identified.txt"

@@ -14,7 +14,8 @@ double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double
   const double force = push.mean.head<2>().norm();
   if (push.kind == PushKind::kExternal || push.force.empty()) return force * duration;
   // The sum of TailForce over all frames to come, a geometric series.
-  const double tail = p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, LogTailDuration(duration)));
+  const double tail =
+      p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, LogTailDuration(duration)));
   return force * (duration + tail);
 }
 

@@ -14,8 +14,8 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "residuals/kernels/vector_kernels.h"
 #include "residuals/cost_functions/lane_group.h"
+#include "residuals/kernels/vector_kernels.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 #define PUSHID_VECTOR_DOUBLES 1
