@@ -11,7 +11,6 @@
 #include "datasets/files/list_of_names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/prediction.h"
 #include "models/learned_terms.h"
 

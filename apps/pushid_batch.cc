@@ -11,7 +11,7 @@
 #include "apps/support/child_process.h"
 #include "datasets/manifest/merged_manifest.h"
 #include "ident/figures/text_table.h"
-#include "ident/report/page/document_files.h"
+#include "ident/report/page/document.h"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/peer_files.h"
-#include "ident/prediction/input_warnings.h"
+#include "ident/prediction/prediction.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"

@@ -11,9 +11,9 @@
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
+#include "ident/prediction/prediction.h"
 #include "ident/results/model_rollout.h"
 
 namespace {

@@ -6,10 +6,8 @@
 #include "apps/flags/report_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/report/page/build_report.h"
-#include "ident/report/page/document_files.h"
-#include "ident/report/page/page.h"
+#include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
-#include "ident/report/truth_table.h"
 #include "ident/results/result_json.h"
 
 namespace {

@@ -19,7 +19,7 @@
 #include "ident/formations/formation_pictures.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
-#include "ident/prediction/input_warnings.h"
+#include "ident/prediction/prediction.h"
 #include "ident/results/result_json.h"
 #include "models/learned_terms.h"
 

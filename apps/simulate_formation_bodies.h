@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/flags/formation_output_flags.h"
-#include "ident/formations/formation_bodies.h"
+#include "ident/formations/formation_run.h"
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 
 #include "apps/batch/batch_jobs.h"
 #include "apps/batch/job_status.h"
-#include "ident/figures/metric.h"
+#include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {

@@ -10,8 +10,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/report/page/document_files.h"
-#include "ident/report/page/page.h"
+#include "ident/report/page/document.h"
 #include "ident/results/json_pieces.h"
 
 namespace pushid {

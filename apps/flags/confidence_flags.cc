@@ -14,8 +14,8 @@
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
 #include "ident/push/push_check.h"
+#include "ident/report/confidence_text.h"
 #include "ident/report/design_text.h"
-#include "ident/report/population_text.h"
 #include "ident/results/confidence.h"
 
 DEFINE_string(profile, "",

@@ -12,7 +12,7 @@
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
 #include "ident/report/page/build_report.h"
-#include "ident/report/page/page.h"
+#include "ident/report/page/document.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/predictors.h"
 #include "ident/validation/scores_json.h"

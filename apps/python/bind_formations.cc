@@ -4,7 +4,6 @@
 #include "apps/python/predicted.h"
 #include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/wave_bands.h"
 #include "ident/formations/wave_speed.h"
 #include "models/formation.h"
 

@@ -5,8 +5,8 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/prediction/futures.h"
-#include "ident/prediction/input_warnings.h"
 #include "ident/prediction/online_predictor.h"
+#include "ident/prediction/prediction.h"
 #include "ident/prediction/predictive_bands.h"
 
 namespace pushid {

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
-#include "ident/figures/metric.h"
+#include "ident/figures/text_table.h"
 #include "ident/validation/group_metrics.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/bodies/body_skeleton.h"
 #include "ident/prediction/prediction.h"
-#include "ident/validation/hip_group_metrics.h"
+#include "ident/validation/group_metrics.h"
 #include "models/restoration/restoration.h"
 #include "models/rollout.h"
 

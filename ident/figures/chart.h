@@ -67,4 +67,16 @@ struct LegendEntry {
 double LegendWidth(const std::vector<LegendEntry>& entries);
 void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
 
+// A table of signed numbers as colours.
+
+struct HeatMap {
+  std::string title;
+  std::vector<std::string> rows, columns;
+  std::vector<std::vector<double>> values;  // [row][column]; 0 is paper
+  double full = 1.0;                        // the value of the strongest colour
+};
+
+// Blue below zero, orange above.
+std::string DrawHeatMap(const HeatMap& map);
+
 }  // namespace pushid

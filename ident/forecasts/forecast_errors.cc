@@ -5,7 +5,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/length_unit.h"
-#include "ident/figures/metric.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 
 #include "ident/figures/svg.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/wave_bands.h"
+#include "ident/formations/wave_speed.h"
 
 namespace pushid {
 

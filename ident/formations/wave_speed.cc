@@ -1,6 +1,11 @@
 // ident: the speed of a wave from its onsets.
 #include "ident/formations/wave_speed.h"
 
+#include <algorithm>
+
+#include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/propagation.h"
+
 namespace pushid {
 
 std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets) {
@@ -23,6 +28,71 @@ std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run) {
   std::vector<int> onsets;
   for (const PersonSummary& person : run.summaries) onsets.push_back(person.onset_frame);
   return SpeedOfWave(run.recording.scene, onsets);
+}
+
+namespace {
+
+constexpr int kDraws = 60;
+constexpr double kLower = 0.05, kUpper = 0.95;
+
+// One for each draw: the onset frame of everybody, or nobody where the rollout left the model's
+// domain.
+std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
+                                          const FormationRun& run) {
+  const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
+  if (!replicas && model.fit.uncertainty.covariance.size() == 0) return {};
+  BandOptions options;
+  options.samples = kDraws;
+  if (replicas) options.bootstrap = &*model.bootstrap;
+  const auto draws = SampleParameters(model.fit, options);
+  if (!draws.ok()) return {};
+  IdentifiedModel fitted = ModelOf(model.fit);
+  fitted.by_unit.clear();  // no person of a formation is one of the fit
+  std::vector<std::vector<int>> onsets;
+  for (const ParameterSet<double>& draw : draws.value()) {
+    IdentifiedModel drawn = WithShared(fitted, draw);
+    if (SetValues(set, &drawn)) return {};
+    const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
+    onsets.emplace_back();
+    if (!prediction.status.ok) continue;
+    for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
+  }
+  return onsets;
+}
+
+OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double dt) {
+  std::vector<double> seconds;
+  for (const std::vector<int>& onsets : draws) {
+    if (!onsets.empty() && onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
+  }
+  if (seconds.empty()) return {};
+  return {Quantile(seconds, kLower), Quantile(seconds, kUpper),
+          static_cast<double>(seconds.size()) / static_cast<double>(draws.size())};
+}
+
+SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& scene) {
+  std::vector<double> speeds;
+  for (const std::vector<int>& onsets : draws) {
+    if (onsets.empty()) continue;
+    if (const auto wave = SpeedOfWave(scene, onsets)) speeds.push_back(wave->MetresPerSecond());
+  }
+  SpeedBand band{0.0, 0.0, static_cast<int>(speeds.size()), static_cast<int>(draws.size())};
+  if (band.known()) band.from = Quantile(speeds, kLower), band.to = Quantile(speeds, kUpper);
+  return band;
+}
+
+}  // namespace
+
+WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
+  const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
+  WaveBands bands;
+  if (draws.empty()) return bands;
+  bands.failed = static_cast<int>(std::count_if(
+      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
+  const Scene& scene = run.recording.scene;
+  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
+  bands.speed = BandOfSpeed(draws, scene);
+  return bands;
 }
 
 }  // namespace pushid

@@ -16,12 +16,12 @@
 #include <string>
 #include <vector>
 
-#include "ident/figures/metric.h"
+#include "ident/figures/text_table.h"
 #include "ident/prediction/online_predictor.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
 #include "ident/prediction/score_clusters.h"
-#include "ident/prediction/step_score.h"
 
 namespace pushid {
 
@@ -94,14 +94,6 @@ struct ScoreSummary {
 
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
                         int observed = 0);
-
-// observed: frames seen first; 0: until the last push ends for constant velocity, frame 0 for the
-// static one.
-HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
-HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
-// The model on from the state of the last frame seen.
-Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
-                             int observed);
 
 // Errors: --observed below 1, or no frame left to predict in a recording, which is named.
 MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int observed);

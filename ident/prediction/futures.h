@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/figures/metric.h"
+#include "ident/figures/text_table.h"
 #include "ident/prediction/predictive_bands.h"
 
 namespace pushid {

@@ -2,8 +2,13 @@
 #include "ident/prediction/predicted_steps.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
 
 #include "datasets/files/number_text.h"
+#include "ident/problem/behaviour.h"
+#include "ident/uncertainty/median.h"
 
 namespace pushid {
 namespace {
@@ -70,6 +75,153 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
     text += "\n";
   }
   return text;
+}
+
+namespace {
+
+constexpr int kFifths = 5;
+
+double Brier(const std::vector<StepPrediction>& predictions) {
+  double sum = 0.0;
+  for (const StepPrediction& p : predictions) {
+    const double error = p.probability - (p.stepped ? 1.0 : 0.0);
+    sum += error * error;
+  }
+  return predictions.empty() ? 0.0 : sum / static_cast<double>(predictions.size());
+}
+
+// Mann and Whitney's count, ties by half.
+double AreaUnderCurve(const std::vector<StepPrediction>& predictions) {
+  double wins = 0.0, pairs = 0.0;
+  for (const StepPrediction& a : predictions) {
+    if (!a.stepped) continue;
+    for (const StepPrediction& b : predictions) {
+      if (b.stepped) continue;
+      pairs += 1.0;
+      wins += a.probability > b.probability ? 1.0 : a.probability == b.probability ? 0.5 : 0.0;
+    }
+  }
+  return pairs > 0.0 ? wins / pairs : 0.5;
+}
+
+double JackknifeError(const std::vector<StepPrediction>& predictions,
+                      const std::set<std::string>& people,
+                      const std::function<double(const std::vector<StepPrediction>&)>& score) {
+  std::vector<double> left_out;
+  for (const std::string& person : people) {
+    std::vector<StepPrediction> others;
+    for (const StepPrediction& p : predictions) {
+      if (p.person != person) others.push_back(p);
+    }
+    left_out.push_back(score(others));
+  }
+  const double n = static_cast<double>(left_out.size());
+  if (n < 2.0) return 0.0;
+  double mean = 0.0, sum = 0.0;
+  for (double value : left_out) mean += value / n;
+  for (double value : left_out) sum += (value - mean) * (value - mean);
+  return std::sqrt((n - 1.0) / n * sum);
+}
+
+std::vector<StepFifth> Fifths(std::vector<StepPrediction> predictions) {
+  std::stable_sort(predictions.begin(), predictions.end(),
+                   [](const auto& a, const auto& b) { return a.probability < b.probability; });
+  const size_t total = predictions.size();
+  const size_t groups = std::clamp<size_t>(total / 2, 1, kFifths);
+  std::vector<StepFifth> fifths(groups);
+  for (size_t i = 0; i < total; ++i) {
+    StepFifth& fifth = fifths[i * groups / total];
+    ++fifth.tracks;
+    fifth.predicted += predictions[i].probability;
+    fifth.observed += predictions[i].stepped ? 1.0 : 0.0;
+  }
+  for (StepFifth& fifth : fifths) {
+    if (fifth.tracks == 0) continue;
+    fifth.predicted /= fifth.tracks;
+    fifth.observed /= fifth.tracks;
+  }
+  return fifths;
+}
+
+LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
+  std::vector<double> errors;
+  LiftOffError result;
+  for (const StepPrediction& p : predictions) {
+    if (!p.timing || !p.timing->lift_off || !p.timing->recorded_lift_off) continue;
+    errors.push_back(*p.timing->lift_off - *p.timing->recorded_lift_off);
+    result.mean_absolute += std::abs(errors.back());
+  }
+  if (errors.empty()) return result;
+  result.people = static_cast<int>(errors.size());
+  result.mean_absolute /= result.people;
+  result.median = Median(errors);
+  return result;
+}
+
+}  // namespace
+
+double StepScore::WorstCalibration() const {
+  double worst = 0.0;
+  for (const StepFifth& fifth : fifths) {
+    worst = std::max(worst, std::abs(fifth.predicted - fifth.observed));
+  }
+  return worst;
+}
+
+StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
+  StepScore score;
+  score.tracks = static_cast<int>(predictions.size());
+  if (predictions.empty()) return score;
+  std::set<std::string> people;
+  for (const StepPrediction& p : predictions) {
+    score.stepped += p.stepped ? 1 : 0;
+    people.insert(p.person);
+  }
+  score.people = static_cast<int>(people.size());
+  score.brier = Brier(predictions);
+  score.auc = AreaUnderCurve(predictions);
+  score.brier_error = JackknifeError(predictions, people, Brier);
+  score.auc_error = JackknifeError(predictions, people, AreaUnderCurve);
+  score.fifths = Fifths(predictions);
+  score.lift_off = LiftOffErrorOf(predictions);
+  return score;
+}
+
+namespace {
+
+constexpr double kDurations[] = {0.1, 0.2, 0.3, 0.5, 0.7, 1.0};                              // s
+constexpr double kImpulses[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8};  // m/s
+constexpr double kWatched = 1.5;  // s after the push's end
+
+double ProbabilityAfter(const IdentifiedModel& model, double impulse, double duration) {
+  Scene scene = SettlingScene(kSettlingMass, 0.0);
+  const Body& body = scene.people[0].body;
+  const int rows = static_cast<int>(std::lround(duration / scene.dt));
+  scene.pushes = {MakeScenePush(0, 0, PushKind::kExternal,
+                                HalfSinePush(body, impulse * body.mass, rows, scene.dt))};
+  const int frames = rows + static_cast<int>(std::lround(kWatched / scene.dt));
+  RolloutPath<double> path;
+  const RolloutStatus status = Rollout<double>(scene, model.options, {model.parameters},
+                                               InitialVelocities(scene), frames, &path);
+  if (!status.ok) return 1.0;
+  return model.step_probability->At(
+      StepMargin(model.options, model.parameters, scene.people[0], path, 0));
+}
+
+}  // namespace
+
+StepMap ComputeStepMap(const IdentifiedModel& model) {
+  StepMap map;
+  if (!model.step_probability) return map;
+  map.duration_s.assign(std::begin(kDurations), std::end(kDurations));
+  map.impulse_per_mass.assign(std::begin(kImpulses), std::end(kImpulses));
+  for (double impulse : kImpulses) {
+    map.probability.emplace_back();
+    for (double duration : kDurations) {
+      map.probability.back().push_back(ProbabilityAfter(model, impulse, duration));
+    }
+  }
+  return map;
 }
 
 }  // namespace pushid

@@ -1,13 +1,17 @@
 // ident: rollouts of an identified model.
 #include "ident/prediction/prediction.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "datasets/files/atomic_file.h"
-#include "ident/prediction/median_prediction.h"
-#include "ident/results/model_rollout.h"
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/results/push_range.h"
+#include "ident/uncertainty/median.h"
 #include "models/learned_terms.h"
+#include "models/scene_forces.h"
 
 namespace pushid {
 namespace {
@@ -125,6 +129,130 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
     }
   }
   return WriteFileAtomically(path, text);
+}
+
+namespace {
+
+// The median of what `value` picks from each of them.
+template <typename Pick>
+double MedianOf(const std::vector<Prediction>& predictions, const Pick& value) {
+  std::vector<double> values;
+  for (const Prediction& prediction : predictions) values.push_back(value(prediction));
+  return Median(std::move(values));
+}
+
+template <typename Vector, typename Pick>
+Vector MedianVector(const std::vector<Prediction>& predictions, const Pick& vector) {
+  Vector median;
+  for (int i = 0; i < median.size(); ++i) {
+    median[i] = MedianOf(predictions, [&](const Prediction& p) { return vector(p)[i]; });
+  }
+  return median;
+}
+
+NetForce<double> MedianForce(const std::vector<Prediction>& predictions, int frame, int person) {
+  NetForce<double> median;
+  for (ForcePart part : kForceParts) {
+    median[part] = MedianVector<Vector4<double>>(
+        predictions, [&](const Prediction& p) { return p.forces.At(frame, person)[part]; });
+  }
+  return median;
+}
+
+}  // namespace
+
+Prediction MedianPrediction(const PendulumRecording& recording,
+                            const std::vector<Prediction>& predictions) {
+  Prediction median = predictions.front();
+  for (int n = 0; n < static_cast<int>(median.rod_lift.size()); ++n) {
+    median.rod_lift[n] = MedianOf(predictions, [n](const Prediction& p) { return p.Lift(n); });
+  }
+  for (int t = 0; t < median.path.num_frames(); ++t) {
+    for (int n = 0; n < recording.scene.num_people(); ++n) {
+      PendulumState<double>& state = median.path.At(t, n);
+      state.q = MedianVector<Vector4<double>>(
+          predictions, [&](const Prediction& p) { return p.path.At(t, n).q; });
+      state.qd = MedianVector<Vector4<double>>(
+          predictions, [&](const Prediction& p) { return p.path.At(t, n).qd; });
+      state.rod = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).rod; });
+      state.step = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).step; });
+      median.hip[n][t] = HipPosition(median.BodyAt(recording.scene, t, n), state.q);
+      median.forces.At(t, n) = MedianForce(predictions, t, n);
+    }
+  }
+  return median;
+}
+
+HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
+  HipPaths paths;
+  for (const auto& hip : recording.hip) {
+    HipPath path(hip.begin(), hip.begin() + std::max(1, observed));
+    path.resize(hip.size(), Vector3<double>(path.back()));
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
+  HipPaths paths;
+  const int known = observed > 0 ? observed - 1 : recording.scene.LastPushEnd();
+  const int last = std::min(known, recording.num_frames() - 1);
+  for (const auto& hip : recording.hip) {
+    std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
+    const Vector3<double> step =
+        last > 0 ? Vector3<double>(hip[last] - hip[last - 1]) : Vector3<double>::Zero();
+    while (path.size() < hip.size()) path.push_back(path.back() + step);
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                             int observed) {
+  Prediction prediction = Predict(model, recording);
+  if (!prediction.status.ok || observed <= 1) return prediction;
+  const int people = recording.num_people(), from = observed - 1;
+  for (int n = 0; n < people; ++n) {
+    for (int t = 1; t <= from; ++t) {
+      PendulumState<double>& state = prediction.path.At(t, n);
+      state.q = recording.states[n][t].q;
+      state.qd = recording.states[n][t].qd;
+    }
+  }
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  SceneForces<double> forces(recording.scene, model.options, parameters);
+  prediction.status =
+      RollOn<double>(recording.scene, model.options, &forces, from, &prediction.path);
+  if (!prediction.status.ok) return prediction;
+  for (int n = 0; n < people; ++n) {
+    // From where the hip was seen, which the rod of frame 0 puts elsewhere.
+    const auto tip = [&](int t) {
+      return HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q);
+    };
+    const Vector3<double> off = recording.hip[n][from] - tip(from);
+    for (int t = 1; t < recording.num_frames(); ++t) {
+      prediction.hip[n][t] = t <= from ? recording.hip[n][t] : Vector3<double>(tip(t) + off);
+    }
+  }
+  return prediction;
+}
+
+std::vector<std::string> InputWarnings(const IdentifiedModel& model,
+                                       const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::string> warnings = UnitWarnings(recordings);
+  const bool together =
+      std::any_of(recordings.begin(), recordings.end(),
+                  [](const PendulumRecording& r) { return r.scene.num_people() > 1; });
+  if (together && !model.options.interaction.Any()) {
+    warnings.push_back(
+        (model.source.empty() ? "the model" : model.source) +
+        " was fitted without interaction: people will not affect each other; fit recordings of "
+        "groups with an interaction (pushid-fit --setting=groups --interaction=contact)");
+  }
+  for (const std::string& warning : ExtrapolationWarnings(model, recordings)) {
+    warnings.push_back(warning);
+  }
+  return warnings;
 }
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: what a model says will happen in a scene.
+// ident: what a model says will happen in a scene, and the predictions that ask no model.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/results/fit_result.h"
 #include "ident/results/identified_model.h"
+#include "ident/results/model_rollout.h"
 #include "ident/results/recording_effect.h"
 #include "models/rollout.h"
 
@@ -58,5 +59,24 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 // after a failure, the frames before it.
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
+
+// Baselines. observed: frames seen first; 0: until the last push ends for constant velocity, frame
+// 0 for the static one.
+HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
+// The model on from the state of the last frame seen.
+Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
+                             int observed);
+
+// The predictions of an ensemble put together by their median, frame by frame, person by person; at
+// least one of them, all of them whole and equally long.
+Prediction MedianPrediction(const PendulumRecording& recording,
+                            const std::vector<Prediction>& predictions);
+
+// What is odd about recordings that a model is to predict: recordings in other units than they say,
+// people who stand together under a model without contact, pushes beyond those of the fit.
+// Sentences for GroupedWarnings.
+std::vector<std::string> InputWarnings(const IdentifiedModel& model,
+                                       const std::vector<PendulumRecording>& recordings);
 
 }  // namespace pushid

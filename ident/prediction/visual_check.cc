@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "datasets/files/random.h"
-#include "ident/prediction/hip_distribution.h"
+#include "ident/prediction/online_predictor.h"
 #include "ident/results/push_range.h"
 #include "ident/uncertainty/bootstrap.h"
 

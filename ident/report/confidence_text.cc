@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "datasets/files/number_text.h"
 #include "datasets/loading/recording_warnings.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
+#include "ident/problem/time_series.h"
 #include "ident/results/interval_agreement.h"
 
 namespace pushid {
@@ -130,6 +133,142 @@ std::string ResamplingText(const Bootstrap& b) {
   if (b.drawn_from > 0 && b.drawn_from < kFewUnits) {
     text += "; of " + number + what + " only " + Rounded(DistinctResamples(b.drawn_from), 3) +
             " distinct resamples exist: its intervals are rough, and usually too narrow";
+  }
+  return text;
+}
+
+namespace {
+
+bool Ended(const SolveStart& start) { return start.usable && start.failed.empty(); }
+
+// A likelihood's cost is known but for a constant: its differences count, not its shares.
+constexpr double kSameLogLikelihood = 0.5;
+
+bool OfLikelihood(const FitResult& result) {
+  return result.options.likelihood != Likelihood::kTrajectory;
+}
+
+std::vector<const SolveStart*> AsGood(const FitResult& result) {
+  std::vector<const SolveStart*> as_good;
+  const double same = OfLikelihood(result) ? kSameLogLikelihood : kSameCost * result.cost;
+  for (const SolveStart& start : result.starts) {
+    if (Ended(start) && start.cost <= result.cost + same) as_good.push_back(&start);
+  }
+  return as_good;
+}
+
+}  // namespace
+
+std::string AcrossStartsNote(const FitResult& result) {
+  if (result.starts.size() < 2) return "";
+  double worst = result.cost;
+  for (const SolveStart& start : result.starts) {
+    if (Ended(start)) worst = std::max(worst, start.cost);
+  }
+  return std::to_string(AsGood(result).size()) + " of " + std::to_string(result.starts.size()) +
+         " starts end within " + (OfLikelihood(result) ? "0.5" : "1 %") + " of the lowest cost, " +
+         Rounded(result.cost, 6) + "; the highest is " + Rounded(worst, 6) + "\n";
+}
+
+TextTable AcrossStartsTable(const FitResult& result) {
+  TextTable table({"across these starts", "lowest", "highest", "unit", "in standard errors"},
+                  {true, false, false, true, false});
+  const std::vector<const SolveStart*> as_good = AsGood(result);
+  if (result.starts.size() < 2 || as_good.empty()) return table;
+  size_t index = 0;
+  for (Parameter id : result.options.table.Free()) {
+    const ParameterSpec& spec = result.options.table[id];
+    double low = INFINITY, high = -INFINITY;
+    for (const SolveStart* start : as_good) {
+      const double value = ToNatural(spec.transform, start->to.shared[index]);
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+    const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
+                                       [&spec](const Estimate& e) { return e.name == spec.name; });
+    const bool known = estimate != result.estimates.end() && estimate->standard_error > 0.0;
+    table.Add({spec.name, Rounded(low, 4), Rounded(high, 4), spec.unit,
+               known ? Rounded((high - low) / estimate->standard_error, 2) : "-"});
+    ++index;
+  }
+  return table;
+}
+
+std::string AcrossStartsText(const FitResult& result) {
+  const TextTable table = AcrossStartsTable(result);
+  return AcrossStartsNote(result) + (table.rows().size() > 1 ? table.ToString() : "");
+}
+
+namespace {
+
+using Pick = std::string EffectOfRecording::*;
+
+void AddGroups(const RecordingEffect& effect, const char* title, Pick pick, TextTable* table) {
+  std::map<std::string, std::vector<double>> groups;
+  for (const EffectOfRecording& r : effect.recordings) groups[r.*pick].push_back(r.mean);
+  if (groups.size() < 2) return;
+  for (const auto& [name, effects] : groups) {
+    const MeanAndError mean = MeanOf(effects);
+    table->Add({title + (name.empty() ? "none" : name), std::to_string(effects.size()),
+                Rounded(mean.mean, 2),
+                effects.size() > 1 ? "+- " + Rounded(mean.error, 2) : std::string(),
+                Rounded(std::exp(mean.mean), 3)});
+  }
+}
+
+}  // namespace
+
+std::string PopulationSentence(const RecordingEffect& effect) {
+  const std::string scale = "the error of a rollout is " + Rounded(effect.error_scale, 3) +
+                            " m half a second after a push of 0.2 m/s";
+  if (effect.recordings.empty()) {
+    return "No recording effect: it needs people who are pushed alone and a model with a push "
+           "tail. " +
+           scale + ".";
+  }
+  return "Recordings differ by a factor exp(b) on tail_gain, b ~ N(0, w^2): w = " +
+         Rounded(effect.spread, 3) + " +- " + Rounded(effect.spread_error, 2) + " (" +
+         std::to_string(effect.clusters) +
+         " clusters, left out one at a time). Each recording's own b removes " +
+         Rounded(100.0 * effect.explained, 2) +
+         " % of the mean squared error of the hip, divided by the push's speed; without it " +
+         scale +
+         ". Effects are shrunk towards 0 where a recording contains little information; alone: the "
+         "estimate without shrinkage.";
+}
+
+std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect) {
+  std::vector<EffectOfRecording> sorted = effect.recordings;
+  std::sort(sorted.begin(), sorted.end(),
+            [](const EffectOfRecording& a, const EffectOfRecording& b) {
+              return std::tie(a.person, a.condition, a.mean, a.id) <
+                     std::tie(b.person, b.condition, b.mean, b.id);
+            });
+  return sorted;
+}
+
+TextTable EffectGroupsTable(const RecordingEffect& effect) {
+  TextTable table({"effect of", "recordings", "mean b", "", "factor"},
+                  {true, false, false, true, false});
+  AddGroups(effect, "person ", &EffectOfRecording::person, &table);
+  AddGroups(effect, "condition ", &EffectOfRecording::condition, &table);
+  return table;
+}
+
+TextTable EffectsTable(const RecordingEffect& effect) {
+  TextTable table({"recording", "person", "condition", "b", "", "factor", "alone"},
+                  {true, true, true, false, true, false, false});
+  for (const EffectOfRecording& r : SortedEffects(effect)) {
+    table.Add({r.id, r.person, r.condition, Rounded(r.mean, 2), "+- " + Rounded(r.error, 2),
+               Rounded(std::exp(r.mean), 3), Rounded(r.alone, 2)});
+  }
+  return table;
+}
+
+std::string PopulationText(const RecordingEffect& effect) {
+  std::string text = PopulationSentence(effect) + "\n";
+  for (const TextTable& table : {EffectGroupsTable(effect), EffectsTable(effect)}) {
+    if (table.rows().size() > 1) text += table.ToString();
   }
   return text;
 }

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "ident/figures/text_table.h"
+#include "ident/results/fit_result.h"
 #include "ident/results/fitted_model.h"
+#include "ident/results/recording_effect.h"
 
 namespace pushid {
 
@@ -19,5 +22,34 @@ std::string ResamplingText(const Bootstrap& bootstrap);
 // What was noted before the solve, the recordings that fit worst or move most, whether residuals
 // are white, and what to try next.
 std::string DiagnosticsText(const FittedModel& model);
+
+// What the starts of a multi-start agree on.
+
+// Starts whose cost is within this of the best one share its basin, or one as good.
+inline constexpr double kSameCost = 0.01;  // relative
+
+// How many starts ended as well as the best one, and over which range their parameters spread
+// beside the best one's standard errors; empty for a single start.
+std::string AcrossStartsText(const FitResult& result);
+
+// The same in parts: a sentence, and a table (only a header when none is as good).
+std::string AcrossStartsNote(const FitResult& result);
+TextTable AcrossStartsTable(const FitResult& result);
+
+// How recordings differ from what the same push does to the mean person, in words and
+// tables.
+
+// "b ~ N(0, w^2) on the log of tail_gain: w 0.43 +- 0.08 (4 clusters) ..."
+std::string PopulationSentence(const RecordingEffect& effect);
+
+// Means of the effects of each person and each condition.
+TextTable EffectGroupsTable(const RecordingEffect& effect);
+// One row a recording, by person, condition and effect: as shrunk, and alone.
+TextTable EffectsTable(const RecordingEffect& effect);
+// The rows' order.
+std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect);
+
+// All of it.
+std::string PopulationText(const RecordingEffect& effect);
 
 }  // namespace pushid

@@ -6,6 +6,7 @@
 #include "datasets/files/error.h"
 #include "ident/figures/text_table.h"
 #include "ident/validation/experiment_design.h"
+#include "ident/validation/study_plan.h"
 
 namespace pushid {
 
@@ -17,5 +18,17 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
 // With a heading and the present error below it; then what a force sensor and more people would
 // tell. Errors: no such parameter.
 Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
+
+// What a force sensor and more people would tell, as tables and in words.
+
+// Of one parameter, or of "all"; only a header where there is nothing to tell.
+TextTable SensorTable(const StudyPlan& plan, const std::string& parameter);
+TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter);
+
+// Both with headings, or why there is none.
+std::string StudiesText(const StudyPlan& plan, const std::string& parameter);
+
+// What the table of sizes does not say: what the spread between people is and how well it is known.
+std::string StudySizesNote(const StudyPlan& plan);
 
 }  // namespace pushid

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
-#include "ident/push/push_errors.h"
-#include "ident/push/push_variants.h"
+#include "ident/push/push_check.h"
 #include "ident/uncertainty/horizon_check.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 
 namespace pushid {
 
-// Parameter, value, standard error, push error and total error (push/push_errors.h).
+// Parameter, value, standard error, push error and total error (push/push_check.h).
 TextTable PushErrorTable(const RefitTable& check);
 
 // A row for each refit: by how much it moves every parameter.

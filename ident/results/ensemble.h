@@ -1,5 +1,5 @@
 // ident: ensembles: networks trained from several seeds, whose predictions are put together by
-// their median (prediction/median_prediction.h), so that one bad seed does no harm. Members that
+// their median (prediction/prediction.h), so that one bad seed does no harm. Members that
 // leave the model's domain do not count while most of them stay in it.
 #pragma once
 

@@ -13,7 +13,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/hip_group_metrics.h"
+#include "ident/validation/group_metrics.h"
 
 namespace pushid {
 

@@ -8,7 +8,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/validation/error_parts.h"
+#include "ident/validation/study_plan.h"
 #include "models/decompositions.h"
 
 namespace pushid {

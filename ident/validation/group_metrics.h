@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/loading/pendulum_recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/results/model_rollout.h"
 #include "models/restoration/social_states.h"
@@ -90,5 +91,25 @@ TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows);
 // The same as text, with what the measures can see and what they cannot.
 std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
 const char* GroupMetricsLegend();
+
+// What groups do where hips alone are predicted, as pendulums do.
+//
+// Who begins to move when is told by the hips. The measures of what people do (sscp, sscp_changes,
+// ndms) need bodies: each recorded first pose is carried by the predicted hip and never steps, as
+// `rigid` bodies do (bodies/body_evaluation.h). Where recordings have no bodies they have no value.
+
+// [recording][person]; empty where bodies are not known.
+using RecordedBodies = std::vector<std::vector<BodyMotion>>;
+
+// Of one recording, which may be predicted several times.
+struct PredictedGroup {
+  int recording = 0;
+  HipPaths hips;  // [person][frame], m
+};
+
+// Nothing where nothing was predicted.
+std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
+                                        const RecordedBodies& bodies,
+                                        const std::vector<PredictedGroup>& predicted);
 
 }  // namespace pushid

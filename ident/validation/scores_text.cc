@@ -6,7 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
-#include "ident/validation/step_score_report.h"
+#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {

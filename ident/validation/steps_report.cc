@@ -1,6 +1,7 @@
 // ident: the steps that people took in recordings, in words and as JSON.
 #include "ident/validation/steps_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -90,6 +91,148 @@ void AddStepsJson(const std::vector<PendulumRecording>& recordings, Json* json) 
                       {"people_who_step", summary.stepping},
                       {"first_lift_off_median_s", MedianJson(summary.lift_off)},
                       {"first_length_median_m", MedianJson(summary.length)}};
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFewForAuc = 3;
+
+std::string FifthText(const StepFifth& fifth) {
+  return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);
+}
+
+// "+0.05 s, mean |.| 0.11 s, 23 people"
+std::string LiftOffText(const LiftOffError& error) {
+  return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
+         Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people";
+}
+
+// Nothing where no model has step states.
+void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
+  std::vector<std::string> row = {"first lift-off, predicted - recorded: median"};
+  bool any = false;
+  for (const auto& [name, score] : scores) {
+    const LiftOffError& error = score->lift_off;
+    any = any || error.people > 0;
+    row.push_back(error.people == 0 ? std::string() : LiftOffText(error));
+  }
+  if (any) table->Add(row);
+}
+
+}  // namespace
+
+std::string StepProbabilityText(const StepProbability& p) {
+  const double a = p.coefficients[0], b = p.coefficients[1];
+  std::string text =
+      "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
+      " margin))), margin in m: how far the capture point gets beyond the feet's "
+      "support (negative: stays within; in any direction as if in front); errors +- " +
+      Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
+      Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " + std::to_string(p.clusters) +
+      " people, of " + std::to_string(p.tracks) + " tracks with " + std::to_string(p.stepped) +
+      " who step";
+  if (b > 0.0) text += "; half of all people step at a margin of " + Rounded(-a / b, 2) + " m";
+  return text + ".";
+}
+
+TextTable StepScoresTable(const NamedStepScores& scores) {
+  std::vector<std::string> header = {"who steps"};
+  std::vector<bool> left = {true};
+  NamedStepScores known;
+  size_t fifths = 0;
+  for (const auto& [name, score] : scores) {
+    if (!score->known()) continue;
+    known.emplace_back(name, score);
+    header.push_back(name);
+    left.push_back(true);
+    fifths = std::max(fifths, score->fifths.size());
+  }
+  TextTable table(header, left);
+  if (known.empty()) return table;
+  const auto add = [&](const std::string& title, const auto& cell) {
+    std::vector<std::string> row = {title};
+    for (const auto& [name, score] : known) row.push_back(cell(*score));
+    table.Add(row);
+  };
+  add("tracks with a step / tracks", [](const StepScore& s) {
+    return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
+  });
+  // Of one who steps, or one who does not, it says who stands where, no more.
+  add("AUC", [](const StepScore& s) {
+    return std::min(s.stepped, s.tracks - s.stepped) < kFewForAuc ? std::string("- (too few)")
+                                                                  : WithError(s.auc, s.auc_error);
+  });
+  add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
+  for (size_t i = 0; i < fifths; ++i) {
+    const std::string title = "group " + std::to_string(i + 1) + " by P(step): mean -> share";
+    add(title, [i](const StepScore& s) {
+      return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
+    });
+  }
+  AddLiftOff(known, &table);
+  return table;
+}
+
+std::string StepScoresText(const NamedStepScores& scores) {
+  const TextTable table = StepScoresTable(scores);
+  if (table.rows().size() < 2) return "";
+  int people = 0;
+  for (const auto& [name, score] : scores) people = std::max(people, score->people);
+  return table.ToString() + "+-: standard errors by leaving out each of " + std::to_string(people) +
+         " people\n";
+}
+
+Json ToJson(const StepScore& score) {
+  Json json = {{"tracks", score.tracks},           {"stepped", score.stepped},
+               {"people", score.people},           {"brier", score.brier},
+               {"brier_error", score.brier_error}, {"auc", score.auc},
+               {"auc_error", score.auc_error},     {"fifths", Json::array()}};
+  for (const StepFifth& fifth : score.fifths) {
+    json["fifths"].push_back(
+        {{"tracks", fifth.tracks}, {"predicted", fifth.predicted}, {"observed", fifth.observed}});
+  }
+  if (score.lift_off.people > 0) {
+    json["lift_off"] = {{"people", score.lift_off.people},
+                        {"median_error_s", score.lift_off.median},
+                        {"mean_absolute_error_s", score.lift_off.mean_absolute}};
+  }
+  return json;
+}
+
+StepScore StepScoreFromJson(const Json& json) {
+  StepScore score;
+  score.tracks = json.at("tracks");
+  score.stepped = json.at("stepped");
+  score.people = json.at("people");
+  score.brier = json.at("brier");
+  score.brier_error = json.at("brier_error");
+  score.auc = json.at("auc");
+  score.auc_error = json.at("auc_error");
+  if (json.contains("lift_off")) {
+    const Json& error = json.at("lift_off");
+    score.lift_off = {error.at("people"), error.at("median_error_s"),
+                      error.at("mean_absolute_error_s")};
+  }
+  for (const Json& fifth : json.at("fifths")) {
+    score.fifths.push_back({fifth.at("tracks"), fifth.at("predicted"), fifth.at("observed")});
+  }
+  return score;
+}
+
+Chart ReliabilityChart(const StepScore& score) {
+  Chart chart;
+  chart.title = "who steps: share over probability";
+  chart.x_label = "predicted probability of a step";
+  chart.y_from = 0.0;
+  chart.y_to = 1.0;
+  ChartPoints shares;
+  for (const StepFifth& fifth : score.fifths) shares.emplace_back(fifth.predicted, fifth.observed);
+  chart.lines.push_back({{{0.0, 0.0}, {1.0, 1.0}}, kLimitLook, false});
+  chart.lines.push_back({shares, kPredictedLook, false});
+  chart.lines.push_back({shares, kPredictedLook, true});
+  return chart;
 }
 
 }  // namespace pushid

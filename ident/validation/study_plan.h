@@ -34,13 +34,15 @@
 // fit as it is with the tail held, where every recording's own tail would go on scattering the
 // rest; T from V - N by moments, which a dozen recordings do not determine. Left out: what a sensor
 // tells while the push lasts, where the rows of a `net` push replace all other forces; and the
-// sensor's own errors (push_variants.h). Good to about a factor of two (study_plan_test.cc).
+// sensor's own errors (push_check.h). Good to about a factor of two (study_plan_test.cc).
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
 #include "ident/problem/fit_point.h"
+#include "ident/problem/jacobian_blocks.h"
 
 namespace pushid {
 
@@ -73,5 +75,19 @@ StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const
 
 // The standard error that `people` with `pushes` each would leave of a plan's parameter.
 double ExpectedError(const StudyPlan& plan, size_t parameter, double people, double pushes);
+
+// N, V_R and V_P: what the errors of a fit are made of; covariances on the fitted scale, in the
+// order of FitPoint::Flat, whatever the fit's own clusters are.
+struct ErrorParts {
+  JacobianBlocks score;  // by recording
+  double sigma = 0.0;
+  Eigen::MatrixXd naive;
+  Eigen::MatrixXd by_recording;  // empty with a single recording
+  Eigen::MatrixXd by_person;     // by who is pushed; empty with a single person
+  std::vector<int> person;       // of each recording, from 0
+
+  int num_recordings() const { return static_cast<int>(person.size()); }
+};
+ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate);
 
 }  // namespace pushid

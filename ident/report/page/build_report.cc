@@ -7,7 +7,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/page/sections.h"
-#include "ident/validation/error_parts.h"
+#include "ident/validation/study_plan.h"
 
 namespace pushid {
 namespace {
@@ -74,6 +74,73 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
                      AdviceSection(model),
                      ProvenanceSection(model)};
   return report;
+}
+
+namespace {
+
+constexpr int kBandSamples = 100;
+
+std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
+                   const Prediction& prediction) {
+  const auto fitted =
+      std::find_if(result.recordings.begin(), result.recordings.end(),
+                   [&recording](const FittedRecording& r) { return r.id == recording.id; });
+  std::string note;
+  if (fitted == result.recordings.end()) {
+    note = "not among the recordings that were fitted";
+  } else if (fitted->content_hash != recording.content_hash) {
+    note = "its files have changed since the fit";
+  }
+  if (prediction.status.ok) return note;
+  return note + (note.empty() ? "" : "; ") + std::string(prediction.status.quantity) +
+         " of person " + std::to_string(prediction.status.person) +
+         " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
+}
+
+}  // namespace
+
+std::vector<RecordingView> ViewRecordings(const FitResult& result,
+                                          const std::vector<Recording>& recordings, int num_threads,
+                                          const JobProgress& progress) {
+  const IdentifiedModel model = ModelOf(result);
+  std::vector<RecordingView> views(recordings.size());
+  std::vector<PendulumRecording> fitted;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    RecordingView& view = views[i];
+    view.recording = &recordings[i];
+    view.run.recording = MakePendulumRecording(recordings[i], model.mapping);
+    view.run.prediction = Predict(model, view.run.recording);
+    view.note = NoteOf(result, view.run.recording, view.run.prediction);
+    if (view.note.empty()) fitted.push_back(view.run.recording);
+  }
+  BandOptions options;
+  options.samples = kBandSamples;
+  const Result<std::vector<ParameterSet<double>>> samples = SampleParameters(result, options);
+  if (!samples.ok()) return views;
+  const std::vector<ErrorPath> errors = ErrorPaths(result, fitted);
+  ParallelFor(
+      static_cast<int>(views.size()), num_threads,
+      [&](int i) {
+        if (!views[i].run.prediction.status.ok) return;
+        views[i].bands =
+            ComputeBands(result, samples.value(), errors, views[i].run.recording, options.seed);
+      },
+      progress);
+  return views;
+}
+
+PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views) {
+  const IdentifiedModel model = ModelOf(result);
+  std::vector<PropagationScore> scores;
+  for (const RecordingView& view : views) {
+    const FormationRun& run = view.run;
+    if (run.recording.num_people() < 2 || !run.prediction.status.ok) continue;
+    scores.push_back(ScorePropagation(run.recording, run.prediction.hip));
+    AddContactFigures(model, run.recording, run.prediction, &scores.back());
+  }
+  std::vector<const PropagationScore*> all;
+  for (const PropagationScore& score : scores) all.push_back(&score);
+  return SummarizePropagation(all);
 }
 
 }  // namespace pushid

@@ -6,7 +6,6 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
-#include "ident/figures/heat_map.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/sections.h"
 

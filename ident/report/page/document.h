@@ -1,11 +1,12 @@
 // ident: a report as sections of sentences, tables and figures, whatever it is shown on: a page
-// (page.h), a terminal (document_text.h) or a folder of numbers (document_csv.h).
+// of HTML, a terminal or a folder of numbers.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "datasets/files/error.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
@@ -42,5 +43,21 @@ struct Report {
   std::string title, subtitle;
   std::vector<ReportSection> sections;
 };
+
+// A report for a terminal, and the numbers behind its figures as CSV files.
+
+// All sentences and tables; of a figure its caption and the name of its file of numbers.
+std::string ToText(const Report& report);
+
+// Rows of a table; fields with a comma or a quote are quoted.
+std::string CsvOf(const TextTable& table);
+
+// One file <name>.csv for each figure, in a folder that is made where it is missing.
+MaybeError WriteNumbers(const Report& report, const std::string& folder);
+
+// A report as one HTML page that needs nothing else: no network, no other file. Sections
+// without anything in them are left out.
+
+std::string ToPage(const Report& report);
 
 }  // namespace pushid

@@ -1,11 +1,11 @@
 // ident: the sections of a report, each a pure function of the result and, where motion is shown,
-// of the recordings seen through it (recording_view.h). A section with nothing to say is empty.
+// of the recordings seen through it (build_report.h). A section with nothing to say is empty.
 #pragma once
 
 #include <vector>
 
+#include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
-#include "ident/report/page/recording_view.h"
 #include "ident/results/fitted_model.h"
 #include "ident/validation/experiment_design.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/figures/svg.h"
-#include "ident/formations/formation_bodies.h"
+#include "ident/formations/formation_run.h"
 #include "models/formation.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"

@@ -1,8 +1,7 @@
 // Bodies of formations by a generator of diffusion, with networks of random weights.
-#include "ident/formations/formation_bodies.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/formations/formation_run.h"
 #include "ident/generators/push_particles.h"
 #include "tests/ident/formation_samples.h"
 #include "tests/models/generators/diffusion_samples.h"

@@ -1,10 +1,9 @@
 // The contact energy balance: a spring gives back what it took, damping does not, energy adds up.
-#include "ident/prediction/contact_work.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "ident/prediction/force_story.h"
 #include "ident/prediction/propagation.h"
 
 namespace pushid {

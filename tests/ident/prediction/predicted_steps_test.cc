@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/prediction/step_score.h"
-
 namespace pushid {
 namespace {
 

@@ -1,7 +1,7 @@
 // Brier score, AUC and calibration against values worked out by hand.
-#include "ident/prediction/step_score.h"
-
 #include <gtest/gtest.h>
+
+#include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
 namespace {

@@ -1,13 +1,10 @@
 // What pushes might as well have been: windows, smoothing, noise and clocks; and what that adds to
 // the errors of a fit.
-#include "ident/push/push_variants.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "ident/push/push_check.h"
-#include "ident/push/push_errors.h"
 #include "ident/push/push_estimation.h"
 #include "ident/results/fit.h"
 #include "models/stance.h"

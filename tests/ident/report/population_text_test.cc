@@ -1,8 +1,7 @@
 // What is said of the effects of recordings.
-#include "ident/report/population_text.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/report/confidence_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,8 +1,7 @@
 // What a report says of several starts.
-#include "ident/report/starts_text.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/report/confidence_text.h"
 #include "ident/report/report_text.h"
 #include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"

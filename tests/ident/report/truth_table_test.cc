@@ -1,10 +1,9 @@
 // The truth beside the estimates: what is compared, and what counts as covered.
-#include "ident/report/truth_table.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/validation/error_parts.h"
+#include "ident/validation/study_plan.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

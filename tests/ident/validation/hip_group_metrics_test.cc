@@ -1,10 +1,9 @@
 // Groups of which hips alone are predicted: a case by hand, and cross-validation.
-#include "ident/validation/hip_group_metrics.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "ident/validation/group_metrics.h"
 #include "ident/validation/predictors.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"

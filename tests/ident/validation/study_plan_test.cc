@@ -9,7 +9,6 @@
 
 #include "ident/results/fit.h"
 #include "ident/solver/solver.h"
-#include "ident/validation/error_parts.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

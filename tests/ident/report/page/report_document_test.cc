@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "ident/figures/chart.h"
-#include "ident/report/page/document_files.h"
-#include "ident/report/page/page.h"
+#include "ident/report/page/document.h"
 #include "tests/test_support.h"
 
 namespace pushid {
