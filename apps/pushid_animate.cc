@@ -8,7 +8,7 @@
 #include "apps/flags/what_if_flags.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/prediction.h"

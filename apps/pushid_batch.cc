@@ -9,7 +9,7 @@
 #include "apps/flags/batch_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/support/child_process.h"
-#include "datasets/manifest/merged_manifest.h"
+#include "datasets/manifest/select_recordings.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/document.h"
 

@@ -7,8 +7,8 @@
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/exchange/bids_dataset.h"
-#include "datasets/exchange/hip_trajectories.h"
-#include "datasets/files/folders.h"
+#include "datasets/exchange/crowd.h"
+#include "datasets/files/atomic_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/manifest_flags.h"
 #include "apps/support/overwrite_check.h"
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/inspection/plausibility.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 
 namespace {

@@ -12,7 +12,6 @@
 #include "apps/support/interruption.h"
 #include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/folders.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"

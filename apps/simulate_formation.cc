@@ -13,7 +13,7 @@
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/recording_warnings.h"
+#include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_pictures.h"

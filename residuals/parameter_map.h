@@ -21,7 +21,7 @@
 namespace pushid {
 
 // What pooled parameters may differ by: the unit that a deviation belongs to.
-// The person, or recordings of one label (datasets/manifest/recording_labels.h): setting,
+// The person, or recordings of one label (datasets/manifest/recording.h): setting,
 // condition, or any other key; the setting of a recording without the label.
 inline constexpr char kSubjectUnit[] = "subject";
 // Whether all people in a recording belong to one unit.

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/support/app_support.h"
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "datasets/manifest/select_recordings.h"
 #include "ident/validation/crossvalidation.h"
 

@@ -13,7 +13,6 @@
 #include "apps/support/folder_lock.h"
 #include "apps/support/signal_reader.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/folders.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {

@@ -17,9 +17,8 @@
 #include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/meant_name.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/text_ends.h"
 
 DEFINE_bool(quiet, false, "suppress progress on stderr");
 

@@ -10,7 +10,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_output_flags.h"
-#include "datasets/exchange/crowd_places.h"
+#include "datasets/exchange/crowd.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 

@@ -8,7 +8,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/diffusion_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/exchange/hip_trajectories.h"
+#include "datasets/exchange/crowd.h"
 #include "ident/formations/formation_pictures.h"
 
 DEFINE_string(csv_out, "", "formation: trajectories, one row per frame and person (CSV)");

@@ -5,7 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 
 DEFINE_string(folder, "", "the folder of the recordings, searched with its subfolders");
 DEFINE_string(pattern, "",

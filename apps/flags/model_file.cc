@@ -8,7 +8,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
-#include "datasets/manifest/merged_manifest.h"
+#include "datasets/manifest/select_recordings.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

@@ -8,9 +8,9 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
-#include "datasets/files/folders.h"
-#include "datasets/manifest/merged_manifest.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/manifest/recording.h"
+#include "datasets/manifest/select_recordings.h"
 
 namespace {
 constexpr char kAuto[] = "auto";

@@ -7,7 +7,7 @@
 #include "apps/support/grouped_warnings.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/inspection/plausibility.h"
-#include "datasets/manifest/merged_manifest.h"
+#include "datasets/manifest/select_recordings.h"
 
 DEFINE_string(recordings, "", "manifest.json of the recordings, or several, comma-separated");
 DEFINE_string(setting, pushid::LoadOptions{}.setting,

@@ -6,7 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 #include "ident/parameters/option_names.h"
 
 DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");

@@ -1,7 +1,7 @@
 // apps: recordings from NumPy arrays, with the checks of those from files.
 #include "apps/python/bindings.h"
 #include "datasets/loading/recording_from_tracks.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "apps/python/bindings.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 
 namespace pushid {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 #include "ident/fit.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/support/app_support.h"
-#include "datasets/loading/recording_warnings.h"
+#include "datasets/loading/load_recordings.h"
 
 namespace pushid {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/files/text_ends.h"
-#include "datasets/manifest/merged_manifest.h"
+#include "datasets/files/names.h"
+#include "datasets/manifest/select_recordings.h"
 
 namespace pushid {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/text_ends.h"
+#include "datasets/files/names.h"
 
 namespace pushid {
 

@@ -7,7 +7,6 @@
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/folders.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_bids.h"

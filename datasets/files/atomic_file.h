@@ -48,4 +48,12 @@ MaybeError WriteFileAtomically(const std::string& path, std::string_view content
 // For use before a long computation whose result shall go there; leaves the target untouched.
 MaybeError CheckWritable(const std::string& path);
 
+// Folders that outputs need.
+
+// With all folders above it; one that is there already is no error.
+MaybeError MakeFolder(const std::string& folder);
+
+// The folder in which a file is to be written.
+MaybeError MakeFolderOf(const std::string& file);
+
 }  // namespace pushid

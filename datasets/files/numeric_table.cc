@@ -9,7 +9,6 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/table_cells.h"
 
 namespace pushid {
 namespace {

@@ -6,7 +6,7 @@
 #include <unordered_set>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 namespace {

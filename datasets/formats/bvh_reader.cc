@@ -3,11 +3,10 @@
 #include <charconv>
 #include <cmath>
 
-#include "datasets/files/meant_name.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/bvh_header.h"
-#include "datasets/formats/bvh_kinematics.h"
 
 namespace pushid {
 namespace {

@@ -19,8 +19,11 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/point_motion.h"
 
 namespace pushid {
+
+class C3dBytes;  // c3d_parameters.h
 
 // The numbers are those in the file.
 enum class C3dProcessor { kIntel = 84, kDec = 85, kMips = 86 };
@@ -98,5 +101,25 @@ Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options =
 // scaled to the largest value of the points and of each channel. Names longer than 127 bytes,
 // tracks of unequal length, samples that are not finite and more than 65535 frames are Errors.
 MaybeError WriteC3d(const std::string& path, const C3dFile& file);
+
+// The points of a C3D file.
+
+// Errors are those of ReadC3d (c3d.h).
+Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOptions& options = {});
+
+// The poses of segments in a C3D file (group ROTATION, as Theia3D and Visual3D write
+// them).
+//
+// From the block ROTATION:DATA_START on stand, for every frame, ROTATION:RATIO times (once, where
+// it is not said) ROTATION:USED poses of 17 floats each: a 4 x 4 matrix by columns, segment to
+// world, whose last column is the segment's origin in POINT:UNITS, and its reliability, negative
+// where the segment was not seen.
+
+bool HasC3dRotations(const C3dFile& file);
+
+// Adds the origins as points, by the names of ROTATION:LABELS without Theia3D's ending _4X4; of
+// several poses in a frame the first. What is no rotation was not seen. Errors: poses that the file
+// ends before.
+MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file);
 
 }  // namespace pushid

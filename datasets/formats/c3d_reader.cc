@@ -3,13 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/c3d_bytes.h"
 #include "datasets/formats/c3d_parameters.h"
-#include "datasets/formats/c3d_rotations.h"
 
 namespace pushid {
 namespace {

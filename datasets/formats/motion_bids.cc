@@ -9,11 +9,11 @@
 #include <set>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/json_file.h"
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/table_points.h"
+#include "datasets/formats/point_motion.h"
 
 namespace pushid {
 namespace {

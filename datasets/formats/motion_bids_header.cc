@@ -5,15 +5,12 @@
 #include <set>
 #include <sstream>
 
-#include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/json_file.h"
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/table_cells.h"
-#include "datasets/files/text_ends.h"
-#include "datasets/formats/frame_rate.h"
 #include "datasets/formats/motion_bids.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 namespace {

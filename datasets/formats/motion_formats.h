@@ -12,10 +12,9 @@
 #include <string_view>
 
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/c3d_points.h"
+#include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/formats/table_points.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/trc.h"
 

@@ -5,12 +5,10 @@
 #include <memory>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/frame_rate.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/formats/trajectory_rows.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 namespace {

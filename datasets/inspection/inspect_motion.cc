@@ -5,9 +5,8 @@
 #include <algorithm>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/axes.h"
-#include "datasets/formats/frame_rate.h"
-#include "datasets/inspection/inspect_steps.h"
+#include "datasets/formats/units.h"
+#include "datasets/inspection/facing_and_steps.h"
 
 namespace pushid {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "datasets/formats/point_motion.h"
-#include "datasets/inspection/facing.h"
+#include "datasets/inspection/facing_and_steps.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/joint_choice.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
@@ -13,9 +13,7 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
-#include "datasets/inspection/inspect_crowd.h"
-#include "datasets/inspection/inspect_forces.h"
-#include "datasets/inspection/inspect_manifest.h"
+#include "datasets/inspection/inspect_contents.h"
 #include "datasets/inspection/inspect_motion.h"
 #include "datasets/manifest/role_choice.h"
 #include "datasets/sensors/sensor_csv.h"

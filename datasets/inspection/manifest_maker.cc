@@ -6,15 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "datasets/files/found_files.h"
-#include "datasets/files/list_of_names.h"
-#include "datasets/files/meant_name.h"
 #include "datasets/files/name_pattern.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/axes.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
+#include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
 
 namespace pushid {

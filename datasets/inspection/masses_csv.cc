@@ -3,7 +3,6 @@
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/table_cells.h"
 #include "datasets/inspection/manifest_maker.h"
 
 namespace pushid {

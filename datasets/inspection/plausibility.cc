@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/length_unit.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
 #include "datasets/manifest/recording.h"

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/axes.h"
-#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/units.h"
 #include "datasets/loading/file_motion.h"
-#include "datasets/loading/motion_checks.h"
-#include "datasets/loading/track_gaps.h"
+#include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/tracks.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/content_hash.h"  // HashFile
 #include "datasets/files/error.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/files/input_file.h"  // HashFile
+#include "datasets/formats/units.h"
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
@@ -56,5 +56,12 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
                                 const LoadOptions& options = {},
                                 std::vector<std::string>* warnings = nullptr);
+
+// Warnings about many recordings, said once.
+
+// Warnings that differ only in the recording, "recording 'a': a.bvh has ...", become one: "in 32
+// recordings (a, b, c, ...): the file has ...". Equal ones become one with how often. In the order
+// of their first.
+std::vector<std::string> GroupedWarnings(const std::vector<std::string>& warnings);
 
 }  // namespace pushid

@@ -4,7 +4,7 @@
 #include <regex>
 
 #include "datasets/files/json_fields.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 #include "datasets/loading/mocap_folder.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 
 namespace pushid {
 namespace {

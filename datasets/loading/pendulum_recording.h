@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "datasets/loading/foot_steps.h"
-#include "datasets/loading/foot_support.h"
 #include "datasets/manifest/recording.h"
 #include "models/scene.h"
 #include "models/skeleton_mapping.h"

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/frame_rate.h"
-#include "datasets/loading/motion_checks.h"
-#include "datasets/loading/track_gaps.h"
+#include "datasets/formats/units.h"
+#include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/tracks.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {

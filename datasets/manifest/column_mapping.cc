@@ -3,9 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/formats/axes.h"
-#include "datasets/formats/frame_rate.h"
-#include "datasets/manifest/mapping_json.h"
+#include "datasets/formats/units.h"
+#include "datasets/manifest/body_roles.h"
 
 namespace pushid {
 namespace {
@@ -63,6 +62,102 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   }
   if (fields.error()) return *fields.error();
   return mapping;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kHighestIndex = 1 << 30;
+
+std::optional<JointReference> ReadOne(const Json& value) {
+  JointReference joint;
+  if (value.is_string() && !value.get<std::string>().empty()) {
+    joint.name = value.get<std::string>();
+    return joint;
+  }
+  if (value.is_number_integer() && value.get<double>() >= 0 &&
+      value.get<double>() < kHighestIndex) {
+    joint.index = value.get<int>();
+    return joint;
+  }
+  return std::nullopt;
+}
+
+std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
+  if (!fields->Has(key)) return std::nullopt;
+  const Json& value = fields->At(key);
+  std::optional<JointReference> joint = ReadOne(value);
+  if (value.is_array() && !value.empty()) {
+    joint.emplace();
+    for (const Json& item : value) {
+      const std::optional<JointReference> one = ReadOne(item);
+      if (!one) {
+        joint.reset();
+        break;
+      }
+      joint->mean_of.push_back(*one);
+    }
+  }
+  if (!joint) {
+    fields->Fail(
+        key, "must be a joint's name or its index from 0, or a list of those, not " + Shown(value));
+  }
+  return joint;
+}
+
+}  // namespace
+
+std::optional<JointReference> JointMapping::Of(int role) const {
+  if (role == kBodyHip) return hip;
+  if (role == kLeftAnkle) return left_ankle;
+  if (role == kRightAnkle) return right_ankle;
+  const auto found = others.find(role);
+  return found == others.end() ? std::nullopt : std::optional(found->second);
+}
+
+void JointMapping::Set(int role, const JointReference& joint) {
+  if (role == kBodyHip) {
+    hip = joint;
+  } else if (role == kLeftAnkle) {
+    left_ankle = joint;
+  } else if (role == kRightAnkle) {
+    right_ankle = joint;
+  } else {
+    others[role] = joint;
+  }
+}
+
+JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) {
+  JointMapping mapping;
+  if (!fields->Has("joints")) return mapping;
+  JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
+                    fields->label() + ", joints");
+  joints.Only(RoleNames());
+  for (int role = 0; role < kBodyJoints; ++role) {
+    const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
+    if (joint) mapping.Set(role, *joint);
+  }
+  fields->Add(joints);
+  return mapping;
+}
+
+std::optional<double> ReadLengthScale(JsonFields* fields) {
+  constexpr const char* kKey = "length_scale";
+  if (!fields->Has(kKey)) return std::nullopt;
+  const double metres = fields->Number(kKey, "the metres in one of the file's lengths");
+  if (fields->failed()) return std::nullopt;
+  const std::string problem = LengthScaleProblem(metres);
+  if (!problem.empty()) fields->Fail(kKey, problem);
+  if (fields->Has("length_unit")) {
+    fields->Fail(kKey, "is given together with length_unit; give one of them");
+  }
+  return metres;
+}
+
+std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {
+  if (!fields->Has(key)) return std::nullopt;
+  return fields->Choice(key, &LengthUnitFromName, LengthUnit::kMillimetre, "mm, cm or m");
 }
 
 }  // namespace pushid

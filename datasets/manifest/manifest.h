@@ -9,7 +9,7 @@
 // Required per recording: id, setting, subjects (id, mass_kg), pushed_person, bvh; all
 // that are missing are told of in one error. fps may be left out where the motion's file says its
 // rate (BVH's frame time, C3D's and TRC's rate, a column of times) or a mapping gives it; a file's
-// rate is read as the whole number that it most likely means (frame_rate.h). A given fps wins over
+// rate is read as the whole number that it most likely means (units.h). A given fps wins over
 // the file, with a warning where they differ by more than 0.1 %.
 // Optional: push_csv (none: no push known), push_kind (net, net_without_friction, external; default
 // external), joints {hip, left_ankle, right_ankle and other roles of body_roles.h} by name or
@@ -36,9 +36,9 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/kept_json.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/files/json_file.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/units.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
@@ -130,5 +130,12 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest);
 
 // "push/a.csv" as named by the manifest at `manifest_path`: relative to its folder unless absolute.
 std::string ResolvePath(const std::string& manifest_path, const std::string& file);
+
+// Of a recording, known to this program.
+const std::vector<std::string>& ManifestKeys();
+
+// "has the key 'push_scv', which is not known and not used; is push_csv meant?" for each. Keys that
+// are like no known one are a user's own, and fine.
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry);
 
 }  // namespace pushid

@@ -7,13 +7,12 @@
 
 #include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/axes.h"
-#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/units.h"
+#include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/manifest/manifest_keys.h"
-#include "datasets/manifest/mapping_json.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {
@@ -174,7 +173,34 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   return recording;
 }
 
+std::vector<std::string> KnownKeys() {
+  std::vector<std::string> keys = {
+      "id",          "setting",     "fps",         "subjects",  "pushed_person",
+      "mapping",     "push_csv",    "push_kind",   "magnitude", "joints",
+      "up",          "forward",     "length_unit", "pushes",    "initial_velocity",
+      "frames",      "first_frame", "end_frame",   "condition", kOldConditionKey,
+      "length_scale"};
+  for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
+  return keys;
+}
+
 }  // namespace
+
+const std::vector<std::string>& ManifestKeys() {
+  static const std::vector<std::string> keys = KnownKeys();
+  return keys;
+}
+
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
+  std::vector<std::string> found;
+  if (!entry.json->is_object()) return found;
+  for (const auto& [key, value] : entry.json->items()) {
+    if (MeantBy(key, ManifestKeys()).empty()) continue;
+    found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
+                    MeantText(key, ManifestKeys()));
+  }
+  return found;
+}
 
 Result<Manifest> ReadManifest(const std::string& path) {
   Result<JsonDocument> read = ReadJsonDocument(path);

@@ -7,7 +7,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

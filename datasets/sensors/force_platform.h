@@ -19,7 +19,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 

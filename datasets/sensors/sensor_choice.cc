@@ -4,13 +4,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/axes.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/units.h"
 #include "datasets/sensors/force_platform.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "datasets/files/folders.h"
+#include "datasets/files/atomic_file.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "datasets/files/list_of_names.h"
+#include "datasets/files/names.h"
 #include "ident/prediction/predicted_steps.h"
 
 namespace pushid {

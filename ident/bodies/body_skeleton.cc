@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "datasets/formats/bvh_kinematics.h"
+#include "datasets/formats/bvh.h"
 
 namespace pushid {
 namespace {

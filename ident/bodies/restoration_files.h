@@ -7,7 +7,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "datasets/files/kept_json.h"
+#include "datasets/files/json_file.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/restoration_kind.h"
 #include "models/restoration/tensors.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/content_hash.h"
-#include "datasets/files/folders.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/json_fields.h"
 #include "datasets/files/npy.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "datasets/files/kept_json.h"
+#include "datasets/files/json_file.h"
 #include "models/restoration/tensors.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 #include "ident/figures/moving_page.h"
 #include "ident/forecasts/forecast_scene.h"
 

@@ -4,7 +4,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 #include "ident/bodies/body_files.h"
 #include "ident/forecasts/forecast_scene.h"
 

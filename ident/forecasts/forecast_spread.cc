@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/length_unit.h"
+#include "datasets/formats/units.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {

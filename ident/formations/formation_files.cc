@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "datasets/exchange/hip_trajectories.h"
+#include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/folders.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/manifest/manifest.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh_kinematics.h"
+#include "datasets/formats/bvh.h"
 #include "datasets/synthetic/synthetic_skeleton.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/generators/push_particles.h"

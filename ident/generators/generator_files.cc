@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/generators/generator_kinds.h"
 #include "ident/parameters/option_names.h"

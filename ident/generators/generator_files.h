@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "datasets/files/error.h"
-#include "datasets/files/kept_json.h"
+#include "datasets/files/json_file.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 #include "models/push.h"

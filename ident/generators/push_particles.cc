@@ -6,7 +6,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/recording_names.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 

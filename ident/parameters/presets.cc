@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/manifest/recording_labels.h"
+#include "datasets/manifest/recording.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "models/parameter_facts.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "datasets/files/meant_name.h"
+#include "datasets/files/names.h"
 #include "ident/parameters/parameter_table.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/recording_warnings.h"
+#include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/time_series.h"

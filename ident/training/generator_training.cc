@@ -1,7 +1,7 @@
 // ident: seeds trained one after the other.
 #include "ident/training/generator_training.h"
 
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/training/restoration_training_checkpoint.h"
 

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
 #include "ident/problem/parallel.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "ident/parameters/fit_options_json.h"
 #include "ident/problem/fit_problem.h"
 

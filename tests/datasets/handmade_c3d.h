@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/c3d_bytes.h"
+#include "datasets/formats/c3d_parameters.h"
 
 namespace pushid {
 

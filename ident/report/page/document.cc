@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/folders.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
 #include "ident/report/page/page_parts.h"

@@ -1,8 +1,7 @@
 // Where a crowd's people stand in one frame.
-#include "datasets/exchange/crowd_places.h"
-
 #include <gtest/gtest.h>
 
+#include "datasets/exchange/crowd.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -9,10 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/content_hash.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/json_file.h"
-#include "datasets/formats/axes.h"
+#include "datasets/formats/units.h"
 #include "tests/test_support.h"
 
 namespace pushid {

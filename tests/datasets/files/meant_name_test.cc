@@ -1,7 +1,7 @@
 // Names that are nearly right.
-#include "datasets/files/meant_name.h"
-
 #include <gtest/gtest.h>
+
+#include "datasets/files/names.h"
 
 namespace pushid {
 namespace {

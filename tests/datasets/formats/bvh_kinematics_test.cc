@@ -1,12 +1,12 @@
 // Forward kinematics against cases worked out by hand and against a plain product of rotations.
-#include "datasets/formats/bvh_kinematics.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <random>
+
+#include "datasets/formats/bvh.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "tests/test_support.h"
 
 namespace pushid {

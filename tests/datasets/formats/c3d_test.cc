@@ -8,7 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "datasets/formats/c3d_bytes.h"
+#include "datasets/formats/c3d_parameters.h"
 #include "datasets/sensors/force_platform.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/test_support.h"

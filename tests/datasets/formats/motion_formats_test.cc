@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/frame_rate.h"
+#include "datasets/formats/units.h"
 #include "tests/test_support.h"
 
 namespace pushid {

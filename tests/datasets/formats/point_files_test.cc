@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/table_points.h"
+#include "datasets/formats/point_motion.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/column_mapping.h"
 #include "tests/datasets/c3d_samples.h"

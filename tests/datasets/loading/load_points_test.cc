@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "datasets/loading/foot_support.h"
+#include "datasets/loading/foot_steps.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/manifest/joint_choice.h"
 #include "tests/datasets/points_folder.h"

@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "datasets/loading/low_pass.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/resample.h"
-#include "datasets/loading/track_gaps.h"
+#include "datasets/loading/tracks.h"
 #include "tests/datasets/points_folder.h"
 #include "tests/test_support.h"
 

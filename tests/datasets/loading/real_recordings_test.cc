@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/formats/bvh.h"
-#include "datasets/loading/foot_support.h"
+#include "datasets/loading/foot_steps.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/test_support.h"
 

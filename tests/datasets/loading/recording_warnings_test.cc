@@ -1,7 +1,7 @@
 // Warnings about many recordings: once, with a count.
-#include "datasets/loading/recording_warnings.h"
-
 #include <gtest/gtest.h>
+
+#include "datasets/loading/load_recordings.h"
 
 namespace pushid {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/manifest_keys.h"
+#include "datasets/manifest/manifest.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "datasets/formats/bvh_kinematics.h"
+#include "datasets/formats/bvh.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "tests/test_support.h"

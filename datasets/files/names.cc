@@ -1,0 +1,64 @@
+// datasets: names of a file's parts, as messages list them.
+#include "datasets/files/names.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+
+namespace pushid {
+
+std::string ListOfNames(const std::vector<std::string>& names) {
+  constexpr std::size_t kListed = 60;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kListed, names.size()); ++i) {
+    text += (i > 0 ? ", " : "") + names[i];
+  }
+  return text + (names.size() > kListed ? ", ... (" + std::to_string(names.size()) + ")" : "");
+}
+
+namespace {
+
+// Letters to put in, take out or replace (Levenshtein), hyphens and capitals aside.
+std::size_t Distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0u);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t replaced = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replaced, row[k] + 1, row[k + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string Plain(std::string key) {
+  for (char& c : key) c = c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(c));
+  return key;
+}
+
+}  // namespace
+
+std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
+  if (std::find(known.begin(), known.end(), word) != known.end()) return "";
+  std::string nearest;
+  std::size_t least = 3;
+  for (const std::string& one : known) {
+    // Short words are near to too much.
+    const std::size_t most = one.size() < 5 ? 0 : 2;
+    const std::size_t distance = Distance(Plain(word), Plain(one));
+    if (distance > most || distance >= least) continue;
+    nearest = one;
+    least = distance;
+  }
+  return nearest;
+}
+
+std::string MeantText(const std::string& word, const std::vector<std::string>& known) {
+  const std::string meant = MeantBy(word, known);
+  return meant.empty() ? "" : "; is " + meant + " meant?";
+}
+
+}  // namespace pushid

@@ -1,0 +1,32 @@
+// datasets: names of a file's parts, as messages list them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pushid {
+
+// "a, b, c, ... (75)": the first sixty names, and how many there are.
+std::string ListOfNames(const std::vector<std::string>& names);
+
+// What a misspelt name was meant to be.
+
+// The known word that another one is most likely a misspelling of; empty where it is known itself
+// or like none of them.
+std::string MeantBy(const std::string& word, const std::vector<std::string>& known);
+
+// "; is hip meant?", or nothing.
+std::string MeantText(const std::string& word, const std::vector<std::string>& known);
+
+// The end of a name, and what stands in a text.
+
+inline bool EndsWith(std::string_view text, std::string_view end) {
+  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+inline bool Holds(std::string_view text, std::string_view word) {
+  return text.find(word) != std::string_view::npos;
+}
+
+}  // namespace pushid

@@ -1,0 +1,185 @@
+// datasets: trajectories as text.
+#include "datasets/formats/trajectories.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/units.h"
+
+namespace pushid {
+namespace {
+
+// The first number of the comment's words.
+double NumberIn(std::string_view comment) {
+  for (std::string_view word = NextToken(&comment); !word.empty(); word = NextToken(&comment)) {
+    double number = 0.0;
+    if (ParseDouble(word, &number)) return number;
+  }
+  return 0.0;
+}
+
+void ReadComment(std::string_view comment, PointMotion* motion) {
+  if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
+  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
+    const std::string name = Name(unit);
+    if (Holds(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
+        Holds(comment, "x(" + name + ")") || Holds(comment, "in " + name)) {
+      motion->unit = unit;
+      return;
+    }
+  }
+}
+
+MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRows* rows) {
+  std::int64_t id[2] = {0, 0};
+  for (int i = 0; i < 2; ++i) {
+    const std::string_view token = NextToken(&line);
+    double number = 0.0;
+    if (!ParseDouble(token, &number) || number != std::floor(number) || std::fabs(number) > 1e15) {
+      return reader.ErrorHere(std::string(i == 0 ? "the id" : "the frame") +
+                              " must be a whole number, not " + Quoted(token) +
+                              "; a row is: id frame x y z");
+    }
+    id[i] = static_cast<std::int64_t>(number);
+  }
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string_view token = NextToken(&line);
+    if (axis == 2 && token.empty()) break;
+    if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
+    if (!ParseDouble(token, &position[axis])) {
+      return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
+    }
+  }
+  if (rows->Add(id[0], id[1], position)) return std::nullopt;
+  return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
+                          std::to_string(id[1]) + " before");
+}
+
+}  // namespace
+
+Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
+  LineReader reader;
+  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+  PointMotion motion;
+  motion.path = path;
+  motion.unit = LengthUnit::kMetre;
+  TrajectoryRows rows;
+  std::string_view line;
+  while (reader.NextNonBlank(&line)) {
+    line = Trimmed(line);
+    if (line.front() == '#') {
+      ReadComment(line.substr(1), &motion);
+    } else if (MaybeError failed = ReadRow(reader, line, &rows)) {
+      return *std::move(failed);
+    }
+  }
+  if (reader.error()) return *reader.error();
+  const std::string problem = FrameRateProblem(motion.rate_hz);
+  if (!problem.empty()) {
+    return Error{
+        "no comment gives the frames per second as a number; there must be a line such as '# "
+        "framerate: 16'",
+        path};
+  }
+  if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);
+  motion.content_hash = reader.HashHex();
+  return motion;
+}
+
+std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
+  std::vector<std::int64_t> ids(names.size());
+  std::set<std::int64_t> seen;
+  bool numbers = true;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
+  }
+  for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
+    ids[i] = static_cast<std::int64_t>(i) + 1;
+  }
+  return ids;
+}
+
+MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion) {
+  AtomicFile file;
+  if (MaybeError failed = file.Open(path)) return failed;
+  const std::vector<std::int64_t> ids = TrajectoryIds(motion.names);
+  // PedPy takes the rate from the word after framerate, and the unit from x/m.
+  std::string text = "# framerate: " + DoubleText(motion.rate_hz) + "\n";
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (std::to_string(ids[i]) == motion.names[i]) continue;
+    text += "# person " + std::to_string(ids[i]) + ": " + motion.names[i] + "\n";
+  }
+  text += "# id\tframe\tx/m\ty/m\tz/m\n";
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    for (int frame = 0; frame < motion.num_frames(); ++frame) {
+      const Eigen::Vector3d& position = motion.positions[i][frame];
+      if (!position.allFinite()) continue;
+      text += std::to_string(ids[i]) + '\t' + std::to_string(frame);
+      for (int axis = 0; axis < 3; ++axis) {
+        text += '\t';
+        AppendDouble(position[axis], &text);
+      }
+      text += '\n';
+    }
+    file.Append(text);
+    text.clear();
+  }
+  return file.Commit();
+}
+
+namespace {
+
+// People are there for a part of the time; a file of a few rows does not fill the memory.
+constexpr double kMostFramesPerRow = 1000.0, kFewFrames = 1e6;
+
+}  // namespace
+
+bool TrajectoryRows::Add(std::int64_t person, std::int64_t frame, const Eigen::Vector3d& position) {
+  const bool first = last_ < first_;
+  first_ = first ? frame : std::min(first_, frame);
+  last_ = first ? frame : std::max(last_, frame);
+  return people_[person].emplace(frame, position).second;
+}
+
+MaybeError TrajectoryRows::Fill(const PointReadOptions& options, PointMotion* motion) const {
+  if (people_.empty()) return Error{"the file contains no positions", motion->path};
+  std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
+  for (const auto& [id, track] : people_) {
+    motion->chosen.push_back(static_cast<int>(motion->names.size()));
+    motion->names.push_back(std::to_string(id));
+    tracks.push_back(&track);
+  }
+  if (options.choose) {
+    Result<std::vector<int>> chosen = options.choose(motion->names);
+    if (!chosen.ok()) return chosen.error();
+    motion->chosen = std::move(chosen.value());
+  }
+  // Differences of whole numbers as text has them may overflow.
+  const double frames = static_cast<double>(last_) - static_cast<double>(first_) + 1.0;
+  std::size_t rows = 0;
+  for (const auto* track : tracks) rows += track->size();
+  if (frames * static_cast<double>(motion->chosen.size()) >
+      kFewFrames + kMostFramesPerRow * static_cast<double>(rows)) {
+    return Error{"frames go from " + std::to_string(first_) + " to " + std::to_string(last_) +
+                     ", which is too many for " + std::to_string(rows) + " rows",
+                 motion->path};
+  }
+  motion->first_time_s = static_cast<double>(first_) / motion->rate_hz;
+  const Eigen::Vector3d unseen =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (int person : motion->chosen) {
+    std::vector<Eigen::Vector3d> track(static_cast<std::size_t>(frames), unseen);
+    for (const auto& [frame, position] : *tracks[person]) track[frame - first_] = position;
+    motion->positions.push_back(std::move(track));
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,127 @@
+// datasets: the unit of lengths in a file.
+#include "datasets/formats/units.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
+#include "datasets/files/number_text.h"
+
+namespace pushid {
+namespace {
+
+// Integers, so that conversions round once: x / 1000 is the double nearest to the true quotient.
+double UnitsPerMetre(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::kMillimetre:
+      return 1000.0;
+    case LengthUnit::kCentimetre:
+      return 100.0;
+    case LengthUnit::kMetre:
+      break;
+  }
+  return 1.0;
+}
+
+}  // namespace
+
+double MetresPer(LengthUnit unit) { return 1.0 / UnitsPerMetre(unit); }
+
+std::string Name(LengthUnit unit) {
+  switch (unit) {
+    case LengthUnit::kMillimetre:
+      return "mm";
+    case LengthUnit::kCentimetre:
+      return "cm";
+    case LengthUnit::kMetre:
+      break;
+  }
+  return "m";
+}
+
+std::optional<LengthUnit> LengthUnitFromName(std::string_view name) {
+  name = Trimmed(name);
+  const std::pair<const char*, LengthUnit> prefixes[] = {{"milli", LengthUnit::kMillimetre},
+                                                         {"centi", LengthUnit::kCentimetre},
+                                                         {"", LengthUnit::kMetre}};
+  for (const auto& [prefix, unit] : prefixes) {
+    if (EqualsIgnoringCase(name, Name(unit))) return unit;
+    for (const char* metre : {"meter", "metre", "meters", "metres"}) {
+      if (EqualsIgnoringCase(name, std::string(prefix) + metre)) return unit;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string LengthScaleProblem(double metres) {
+  constexpr double kSmallest = 1e-6, kLargest = 1e3;  // m; a micrometre, a kilometre
+  if (metres >= kSmallest && metres <= kLargest) return "";
+  return "is " + Rounded(metres) + "; it must be the metres of one file unit, from " +
+         Rounded(kSmallest) + " to " + Rounded(kLargest);
+}
+
+std::string LengthText(double metres_per_unit) {
+  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
+    if (metres_per_unit == MetresPer(unit)) return Name(unit);
+  }
+  return Rounded(metres_per_unit) + " m each";
+}
+
+double ConvertLength(double value, LengthUnit from, LengthUnit to) {
+  if (from == to) return value;
+  // The ratio is a power of ten: multiply or divide by whichever is a whole number.
+  const double ratio = UnitsPerMetre(to) / UnitsPerMetre(from);
+  return ratio >= 1.0 ? value * ratio : value / (UnitsPerMetre(from) / UnitsPerMetre(to));
+}
+
+namespace {
+
+// The unit vector of "z", "+x", "-Y"; zero when the text is no axis.
+Eigen::Vector3d AxisVector(const std::string& text) {
+  const bool has_sign = !text.empty() && (text[0] == '+' || text[0] == '-');
+  const std::string letter = has_sign ? text.substr(1) : text;
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (EqualsIgnoringCase(letter, std::string(1, "xyz"[i]))) axis[i] = text[0] == '-' ? -1.0 : 1.0;
+  }
+  return axis;
+}
+
+}  // namespace
+
+Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& forward) {
+  const Eigen::Vector3d z = AxisVector(up);
+  const Eigen::Vector3d x = AxisVector(forward);
+  if (z.isZero() || x.isZero()) {
+    return Error{(z.isZero() ? "up is " + Quoted(up) : "forward is " + Quoted(forward)) +
+                     ", not an axis like z, +x or -y",
+                 "", 0};
+  }
+  if (std::abs(z.dot(x)) > 0.5) {
+    return Error{"up (" + up + ") and forward (" + forward +
+                     ") lie along the same axis; give both, up and forward",
+                 "", 0};
+  }
+  Eigen::Matrix3d rotation;
+  rotation.row(0) = x;
+  rotation.row(1) = z.cross(x);
+  rotation.row(2) = z;
+  return rotation;
+}
+
+std::string FrameRateProblem(double fps) {
+  if (fps >= kMinFramesPerSecond && fps <= kMaxFramesPerSecond) return "";
+  return "is " + Rounded(fps) + "; accepted are " + Rounded(kMinFramesPerSecond) + " to " +
+         Rounded(kMaxFramesPerSecond) + " frames per second";
+}
+
+double WholeFrameRate(double fps) {
+  constexpr double kRounding = 1e-3;
+  constexpr double kVideo = 1.0 / 1.001;
+  const double whole = std::round(fps);
+  if (!(whole > 0.0) || std::fabs(fps / whole - 1.0) > kRounding) return fps;
+  const bool is_video = std::fabs(fps - kVideo * whole) < std::fabs(fps - whole);
+  return is_video ? fps : whole;
+}
+
+}  // namespace pushid

@@ -1,0 +1,58 @@
+// datasets: the unit of lengths in a file. Inside the program lengths are metres; other units live
+// only in readers and writers.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "datasets/files/error.h"
+
+namespace pushid {
+
+// In a metre. A float is exact here, and scales floats as floats, doubles as doubles.
+inline constexpr float kMillimetres = 1e3f;
+
+enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
+
+// Metres in one unit: 0.001, 0.01 or 1.
+double MetresPer(LengthUnit unit);
+
+// "mm", "cm" or "m", as manifests and --length_unit spell them.
+std::string Name(LengthUnit unit);
+
+// The inverse of Name; also of longer and capital spellings ("Metres"). nullopt for other texts.
+std::optional<LengthUnit> LengthUnitFromName(std::string_view name);
+
+// What is wrong with a length_scale, the metres that a file's 1 stands for, where that is no unit:
+// "is 0; it must ..."; empty where it is fine.
+std::string LengthScaleProblem(double metres);
+
+// "mm", or "0.0564 m each" where it is no unit.
+std::string LengthText(double metres_per_unit);
+
+// `value` given in `from`, expressed in `to`; exact (no rounding at all) when the two are the same.
+double ConvertLength(double value, LengthUnit from, LengthUnit to);
+
+// Axes of a file turned to the project's: x forward, y left, z up.
+
+// The rotation that takes a file's coordinates to the project's, from the file's axes that point up
+// and forward ("z", "+x", "-y", upper or lower case). Its rows are forward, up x forward and up.
+// Error (without a place): not an axis, or both along the same line.
+Result<Eigen::Matrix3d> AxesRotation(const std::string& up, const std::string& forward);
+
+// Frame rates that files and manifests may give.
+
+constexpr double kMinFramesPerSecond = 1.0;
+constexpr double kMaxFramesPerSecond = 10000.0;
+
+// "is 0; accepted are 1 to 10000 frames per second", or "" where the rate is accepted.
+std::string FrameRateProblem(double fps);
+
+// What a file's rate most likely is: the next whole number within 0.1 %, for files round their
+// frame time (0.016667 s is meant to be 1/60 s). Rates of video, which lie 0.1 % below a whole
+// number (60/1.001), and all others stay as they are.
+double WholeFrameRate(double fps);
+
+}  // namespace pushid
