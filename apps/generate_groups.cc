@@ -12,10 +12,10 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/fit/model_rollout.h"
 #include "ident/forecasts/long_forecast.h"
+#include "ident/model/model_json.h"
 #include "ident/prediction/online_predictor.h"
-#include "ident/results/model_rollout.h"
-#include "ident/results/result_json.h"
 
 namespace pushid {
 namespace {

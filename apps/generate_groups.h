@@ -6,7 +6,7 @@
 
 #include "apps/flags/generate_flags.h"
 #include "ident/forecasts/group_spread.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/identified_model.h"
 
 namespace pushid {
 

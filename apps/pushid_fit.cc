@@ -14,12 +14,12 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_data.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/fit/fit.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/parameter_glossary.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
-#include "ident/results/fit.h"
-#include "ident/results/result_json.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace {

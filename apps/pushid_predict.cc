@@ -10,11 +10,11 @@
 #include "apps/predict_bodies.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/number_text.h"
+#include "ident/fit/model_rollout.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/model_rollout.h"
 
 namespace {
 

@@ -5,10 +5,10 @@
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/report_flags.h"
 #include "datasets/files/atomic_file.h"
+#include "ident/model/model_json.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
-#include "ident/results/result_json.h"
 
 namespace {
 

@@ -10,8 +10,9 @@
 #include "apps/simulate_formation.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/fit/push_range.h"
 #include "ident/parameters/option_names.h"
-#include "ident/results/fit_setup.h"
 
 namespace {
 

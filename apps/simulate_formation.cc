@@ -19,8 +19,8 @@
 #include "ident/formations/formation_pictures.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
+#include "ident/model/model_json.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/result_json.h"
 #include "models/learned_terms.h"
 
 namespace pushid {

@@ -31,7 +31,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
     {"residuals", {"kernels", "", "sensitivities", "lockstep", "cost_functions", "adjoint"}},
     {"ident",
-     {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "results",
+     {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "model", "fit",
       "prediction", "validation", "push", "bodies", "generators", "forecasts", "training",
       "formations", "report", "report/page", ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},

@@ -5,7 +5,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
-#include "ident/results/result_json.h"
+#include "ident/model/model_json.h"
 #include "ident/validation/scores_json.h"
 
 namespace pushid {

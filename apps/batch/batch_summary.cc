@@ -10,8 +10,8 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/model/json_pieces.h"
 #include "ident/report/page/document.h"
-#include "ident/results/json_pieces.h"
 
 namespace pushid {
 namespace {

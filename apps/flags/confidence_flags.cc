@@ -12,11 +12,11 @@
 #include "apps/support/interruption.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/fit/confidence.h"
 #include "ident/parameters/option_names.h"
 #include "ident/push/push_check.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/design_text.h"
-#include "ident/results/confidence.h"
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "

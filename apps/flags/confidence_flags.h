@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "ident/results/fitted_model.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/problem/folds.h"
-#include "ident/results/fit_setup.h"
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "datasets/files/error.h"
-#include "ident/results/fit_setup.h"
+#include "ident/fit/fit_setup.h"
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/identified_model.h"
 
 namespace pushid {
 

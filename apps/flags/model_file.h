@@ -4,7 +4,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "ident/results/result_json.h"
+#include "ident/model/model_json.h"
 
 namespace pushid {
 

@@ -4,7 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
-#include "ident/results/result_json.h"
+#include "ident/model/model_json.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(set, "", "what-if: replace parameters, name=value comma-separated, as in mu=20");

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 
 namespace pushid {
 

@@ -6,8 +6,8 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/scheme_flags.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"
-#include "ident/results/result_json.h"
 
 namespace {
 const pushid::TrainGeneratorFlags kFlags;

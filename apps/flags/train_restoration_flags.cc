@@ -7,8 +7,8 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/scheme_flags.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"
-#include "ident/results/result_json.h"
 #include "models/learned_terms.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");

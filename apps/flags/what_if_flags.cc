@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "apps/flags/model_flags.h"
-#include "ident/results/result_json.h"
+#include "ident/model/model_json.h"
 
 namespace pushid {
 Result<std::vector<WhatIf>> LoadWhatIfs() {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/results/identified_model.h"
+#include "ident/model/identified_model.h"
 
 namespace pushid {
 

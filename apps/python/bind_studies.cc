@@ -3,11 +3,11 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/python/model.h"
+#include "ident/fit/confidence.h"
+#include "ident/model/json_pieces.h"
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
 #include "ident/report/design_text.h"
-#include "ident/results/confidence.h"
-#include "ident/results/json_pieces.h"
 
 namespace pushid {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "ident/fit/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
-#include "ident/results/model_rollout.h"
 
 namespace pushid {
 

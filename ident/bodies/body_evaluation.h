@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "ident/bodies/body_metrics.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 

@@ -8,7 +8,7 @@
 
 namespace pushid {
 
-// Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (result_json.h): to the
+// Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (model_json.h): to the
 // means, groups and recordings at the top (of the restoration, or of the generator), to
 // baselines.static and baselines.constant_velocity, and as new entries baselines.rigid (and
 // peers'), true_pendulum and recorded.

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/identified_model.h"
 #include "models/rollout.h"
 
 namespace pushid {

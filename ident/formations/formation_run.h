@@ -8,9 +8,9 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/generators/generator_files.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
 #include "models/restoration/postprocess.h"
 #include "models/rollout.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ident/formations/formation_run.h"
-#include "ident/results/fitted_model.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

@@ -91,7 +91,7 @@ struct FitOptions {
   double effective_weight = 0.0;
   ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
-  // contradict (results/weighted_solve.h): 0 where nobody need settle.
+  // contradict (fit/weighted_solve.h): 0 where nobody need settle.
   double settling_weight = 0.0;
   // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
   // for models with no term that could feed a mode.

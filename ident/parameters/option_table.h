@@ -15,7 +15,7 @@
 
 namespace pushid {
 
-// When a row is applied (results/fit_setup.h).
+// When a row is applied (fit/fit_setup.h).
 enum class OptionStage {
   kPreset,      // first, and before anything else is known
   kModel,       // before the parameters of the chosen terms are freed

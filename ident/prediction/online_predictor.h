@@ -6,7 +6,7 @@
 //     const Prediction prediction = predictor.value().Predict(); // one rollout
 //   }
 //
-// What is learned and how stands in results/recording_effect.h. Frames that were seen are in the
+// What is learned and how stands in fit/recording_effect.h. Frames that were seen are in the
 // prediction as they were. From then on hips are forecast, angles come back to the rollout's as an
 // error of velocity dies out, and the cart is where the rod puts it; forces, steps and a moving rod
 // are the rollout's. Before anything is seen the prediction is that of Predict, to the bit.
@@ -18,8 +18,8 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/random.h"
+#include "ident/fit/recording_filter.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/recording_filter.h"
 
 namespace pushid {
 

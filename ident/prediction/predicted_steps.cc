@@ -7,6 +7,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/step_probability.h"
 #include "ident/problem/behaviour.h"
 #include "ident/uncertainty/median.h"
 

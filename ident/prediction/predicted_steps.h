@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/identified_model.h"
 
 namespace pushid {
 

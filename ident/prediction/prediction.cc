@@ -8,7 +8,8 @@
 
 #include "datasets/files/atomic_file.h"
 #include "ident/diagnostics/diagnostics.h"
-#include "ident/results/push_range.h"
+#include "ident/fit/push_range.h"
+#include "ident/fit/step_probability.h"
 #include "ident/uncertainty/median.h"
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
-#include "ident/results/model_rollout.h"
-#include "ident/results/recording_effect.h"
+#include "ident/fit/model_rollout.h"
+#include "ident/fit/recording_effect.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 #include "models/rollout.h"
 
 namespace pushid {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "ident/fit/push_range.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "models/decompositions.h"
 

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
+#include "ident/model/fitted_model.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
-#include "ident/results/fit_result.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {

@@ -8,8 +8,8 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "datasets/files/random.h"
+#include "ident/fit/push_range.h"
 #include "ident/prediction/online_predictor.h"
-#include "ident/results/push_range.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {

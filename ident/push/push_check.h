@@ -8,7 +8,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/results/fitted_model.h"
+#include "ident/model/fitted_model.h"
 #include "ident/uncertainty/refit_table.h"
 
 namespace pushid {

@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/interval_agreement.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
-#include "ident/results/interval_agreement.h"
 
 namespace pushid {
 namespace {

@@ -9,9 +9,9 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
+#include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/time_series.h"
-#include "ident/results/interval_agreement.h"
 
 namespace pushid {
 namespace {

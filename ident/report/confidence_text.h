@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "ident/figures/text_table.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/fitted_model.h"
-#include "ident/results/recording_effect.h"
+#include "ident/fit/recording_effect.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

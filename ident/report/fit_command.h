@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ident/results/provenance.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "ident/figures/text_table.h"
-#include "ident/results/fit_result.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

@@ -4,8 +4,7 @@
 #include <map>
 #include <string>
 
-#include "ident/results/fit_result.h"
-#include "ident/results/fitted_model.h"
+#include "ident/model/fitted_model.h"
 
 namespace pushid {
 

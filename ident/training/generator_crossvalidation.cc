@@ -3,9 +3,9 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
+#include "ident/fit/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
-#include "ident/results/model_rollout.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {

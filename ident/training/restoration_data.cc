@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/fit/fit.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/fit.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {

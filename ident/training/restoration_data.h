@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 
 namespace pushid {
 

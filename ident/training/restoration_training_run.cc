@@ -7,9 +7,9 @@
 
 #include "ident/bodies/body_data.h"
 #include "ident/bodies/peer_files.h"
+#include "ident/fit/recording_effect.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
-#include "ident/results/recording_effect.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {

@@ -4,11 +4,11 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/fit/fit.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
-#include "ident/results/fit.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {

@@ -22,7 +22,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/results/fit_result.h"
+#include "ident/model/fitted_model.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "ident/validation/study_plan.h"
 

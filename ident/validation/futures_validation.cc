@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/figures/text_table.h"
+#include "ident/fit/fit.h"
+#include "ident/model/json_pieces.h"
 #include "ident/prediction/score_clusters.h"
 #include "ident/problem/time_series.h"
-#include "ident/results/fit.h"
-#include "ident/results/json_pieces.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {

@@ -20,7 +20,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/figures/text_table.h"
-#include "ident/results/model_rollout.h"
+#include "ident/fit/model_rollout.h"
 #include "models/restoration/social_states.h"
 
 namespace pushid {

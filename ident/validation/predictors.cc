@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/results/fit.h"
+#include "ident/fit/fit.h"
 
 namespace pushid {
 

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
+#include "ident/model/json_pieces.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/fit_options_json.h"
 #include "ident/parameters/option_names.h"
-#include "ident/results/json_pieces.h"
-#include "ident/results/result_json.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {

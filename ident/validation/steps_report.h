@@ -10,8 +10,8 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
+#include "ident/fit/step_probability.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/results/step_probability.h"
 
 namespace pushid {
 

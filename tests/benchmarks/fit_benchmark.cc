@@ -5,12 +5,12 @@
 
 #include <memory>
 
+#include "ident/fit/fit.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/fit/weighted_solve.h"
+#include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/results/fit.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/fit_setup.h"
-#include "ident/results/weighted_solve.h"
 #include "ident/solver/solver.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "tests/benchmarks/benchmark_recordings.h"

@@ -1,8 +1,8 @@
 // Models and interaction networks in JSON: what is read can be reported, written and read again.
 #include "datasets/files/json_file.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/network_json.h"
 #include "ident/report/report_text.h"
-#include "ident/results/result_json.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,10 +6,10 @@
 #include <optional>
 
 #include "datasets/files/json_file.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/presets.h"
-#include "ident/results/result_json.h"
 
 namespace pushid {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "datasets/files/random.h"
+#include "ident/fit/push_range.h"
 #include "ident/prediction/online_predictor.h"
-#include "ident/results/push_range.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -24,7 +24,7 @@ struct PlantedEffects {
   uint64_t seed = 1;
 };
 
-// The law of results/error_process.h drawn step by step, on the scale of a recording: along the
+// The law of fit/error_process.h drawn step by step, on the scale of a recording: along the
 // push, across and upwards.
 inline std::vector<Vector3<double>> DrawnErrors(int frames, double dt, double scale,
                                                 Random* random) {

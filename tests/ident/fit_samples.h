@@ -12,10 +12,10 @@
 #include "datasets/files/random.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/results/fit_result.h"
-#include "ident/results/identified_model.h"
 
 namespace pushid {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "ident/fit/fit.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -19,10 +19,10 @@
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/figures/text_table.h"
+#include "ident/fit/fit.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
-#include "ident/results/fit.h"
-#include "ident/results/fit_setup.h"
 
 DEFINE_int32(studies, 200, "synthetic studies");
 DEFINE_int32(only, -1, "the one study to run");

@@ -9,11 +9,11 @@
 
 #include "datasets/manifest/recording.h"
 #include "ident/formations/formation_run.h"
+#include "ident/model/fitted_model.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/page/document.h"
-#include "ident/results/fitted_model.h"
 
 namespace pushid {
 

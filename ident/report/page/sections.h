@@ -4,9 +4,9 @@
 
 #include <vector>
 
+#include "ident/model/fitted_model.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
-#include "ident/results/fitted_model.h"
 #include "ident/validation/experiment_design.h"
 
 namespace pushid {

@@ -5,11 +5,11 @@
 
 #include <numeric>
 
+#include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/fit_command.h"
-#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/fit/fit.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
-#include "ident/results/fit.h"
-#include "ident/results/result_json.h"
 #include "residuals/autodiff_force_law.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

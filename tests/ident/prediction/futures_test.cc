@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/results/fit_setup.h"
+#include "ident/fit/fit_setup.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

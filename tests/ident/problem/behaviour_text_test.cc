@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "ident/model/fitted_model.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_tables.h"
-#include "ident/results/fit_result.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,7 +1,7 @@
 // One fit, its Jacobian by sensitivities and by Jets through the whole rollout.
 #include <gtest/gtest.h>
 
-#include "ident/results/fit.h"
+#include "ident/fit/fit.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "tests/ident/fit_samples.h"
 

@@ -6,7 +6,7 @@
 
 #include <atomic>
 
-#include "ident/results/fit.h"
+#include "ident/fit/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

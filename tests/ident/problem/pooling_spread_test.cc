@@ -5,9 +5,9 @@
 
 #include <Eigen/LU>
 
+#include "ident/fit/fit.h"
+#include "ident/fit/weighted_solve.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/results/fit.h"
-#include "ident/results/weighted_solve.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

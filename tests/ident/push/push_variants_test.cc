@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "ident/fit/fit.h"
 #include "ident/push/push_check.h"
 #include "ident/push/push_estimation.h"
-#include "ident/results/fit.h"
 #include "models/stance.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

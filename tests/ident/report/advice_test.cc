@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "ident/results/confidence.h"
-#include "ident/results/fit.h"
+#include "ident/fit/confidence.h"
+#include "ident/fit/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

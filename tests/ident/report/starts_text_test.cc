@@ -1,9 +1,9 @@
 // What a report says of several starts.
 #include <gtest/gtest.h>
 
+#include "ident/fit/fit.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/report_text.h"
-#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

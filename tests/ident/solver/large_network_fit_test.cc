@@ -2,9 +2,9 @@
 // point is kept, and the same start gives the same bits.
 #include "ident/solver/large_network_fit.h"
 
+#include "ident/fit/fit.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
-#include "ident/results/fit.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "datasets/loading/load_recordings.h"
+#include "ident/fit/fit.h"
+#include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/results/fit.h"
-#include "ident/results/fit_result.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -8,11 +8,11 @@
 #include <numeric>
 #include <set>
 
+#include "ident/fit/confidence.h"
+#include "ident/fit/fit.h"
+#include "ident/fit/interval_agreement.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/confidence_text.h"
-#include "ident/results/confidence.h"
-#include "ident/results/fit.h"
-#include "ident/results/interval_agreement.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -1,7 +1,7 @@
 // What the data weigh comes from the data.
 #include "ident/uncertainty/data_weight.h"
 
-#include "ident/results/weighted_solve.h"
+#include "ident/fit/weighted_solve.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "tests/ident/fit_samples.h"
 

@@ -6,9 +6,9 @@
 
 #include <limits>
 
+#include "ident/fit/confidence.h"
+#include "ident/fit/fit.h"
 #include "ident/report/refits_text.h"
-#include "ident/results/confidence.h"
-#include "ident/results/fit.h"
 #include "ident/uncertainty/prior_check.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -8,8 +8,8 @@
 
 #include <array>
 
-#include "ident/results/confidence.h"
-#include "ident/results/fit.h"
+#include "ident/fit/confidence.h"
+#include "ident/fit/fit.h"
 #include "ident/solver/solver.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "tests/ident/fit_samples.h"

@@ -5,8 +5,8 @@
 
 #include <Eigen/Dense>
 
+#include "ident/fit/fit.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/results/fit.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
 #include "tests/ident/fit_samples.h"

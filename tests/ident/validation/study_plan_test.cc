@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "ident/results/fit.h"
+#include "ident/fit/fit.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

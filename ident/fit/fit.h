@@ -1,0 +1,38 @@
+// ident: a whole fit: prepared, solved, judged.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/solver/solution.h"
+
+namespace pushid {
+
+// Makes options fit for these recordings: holds what can have no effect on any of them (the tail,
+// where every push is measured whole), and pools nothing where all belong to one unit. Errors:
+// invalid options, nothing left to fit, a free parameter without effect. warnings (may be null):
+// people who touch without any term between them; masses, rods, pushes and motions that no person
+// has. Every fit begins with it: of the programs, of cross-validation, of users of the library.
+MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                      std::vector<std::string>* warnings = nullptr);
+
+// Fits and judges prepared options. A fit without a usable optimum is not ok(), and its message
+// says why.
+FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+              const SolveProgress& progress = nullptr);
+
+// A fit that is not judged: for folds, whose models only predict. It prepares the options itself.
+// Errors: those of PrepareFit; no usable optimum.
+struct SolvedModel {
+  IdentifiedModel model;
+  Behaviour behaviour;
+};
+Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
+                               FitOptions options);
+
+}  // namespace pushid

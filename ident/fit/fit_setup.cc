@@ -1,0 +1,189 @@
+// ident: named options put together.
+#include "ident/fit/fit_setup.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "ident/model/model_json.h"
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/option_table.h"
+#include "ident/parameters/presets.h"
+
+namespace pushid {
+namespace {
+
+// The value of an option, or null.
+const std::string* Find(const GivenOptions& given, const std::string& name) {
+  for (const auto& [known, value] : given) {
+    if (known == name) return &value;
+  }
+  return nullptr;
+}
+
+// Takes over what a person does alone; the terms between people stay as they are.
+MaybeError TakeSelfFrom(const std::string& path, Stance stance, ParameterTable* table) {
+  const Result<FittedModel> read = ReadFittedModel(path);
+  if (!read.ok()) return read.error();
+  const FitResult& source = read.value().fit;
+  if (const auto& network = source.options.model.learned) {
+    return Error{"has learned " + LearnedName(*network) +
+                     ", which --self_from cannot take over; fit one without",
+                 path};
+  }
+  if (source.options.model.stance != stance) {
+    return Error{"was fitted with --stance=" + NameOf(source.options.model.stance) +
+                     ", which --self_from cannot take into a fit with --stance=" + NameOf(stance),
+                 path};
+  }
+  for (ParameterSpec& spec : table->specs) {
+    if (spec.id >= kFirstPairParameter && spec.id < kSupportFront) continue;
+    if (IsNoiseParameter(spec.id)) continue;  // of this fit
+    spec.nominal = source.parameters[spec.id];
+    spec.free = false;
+  }
+  return std::nullopt;
+}
+
+MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* options) {
+  for (const FitOptionRow& row : FitOptionRows()) {
+    const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
+    if (value == nullptr) continue;
+    if (stage == OptionStage::kOtherModel) {
+      if (MaybeError error = TakeSelfFrom(*value, options->model.stance, &options->table))
+        return error;
+    } else if (MaybeError error = row.apply(*value, options)) {
+      return error;
+    }
+  }
+  return std::nullopt;
+}
+
+// Options that were given but act on nothing: an error that says what is missing.
+MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
+  const auto& network = options.model.learned;
+  for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+    if (network != nullptr || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  }
+  if (network != nullptr && Find(given, "takeover_weight") != nullptr &&
+      !MayTakeOver(options.model)) {
+    return Error{NothingToTakeOver()};
+  }
+  for (const char* name :
+       {"horizons", "recording_weight", "effective_weight", "sigma_hip", "sigma_velocity",
+        "sigma_angle", "sigma_rate", "sigmas", "marker_noise", "robust", "loss", "settling_weight",
+        "mode_weight", "stability_weight", "body_weight"}) {
+    if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
+                 NameOf(options.likelihood) + " fits single steps and does not use it"};
+  }
+  if (const std::string* noise = Find(given, "process_noise");
+      options.likelihood != Likelihood::kTrajectory && noise != nullptr && *noise == "none") {
+    return Error{"--likelihood=" + NameOf(options.likelihood) +
+                 " needs process noise, and --process_noise is none"};
+  }
+  for (const char* name : {"pool_by", "pooling_sigma"}) {
+    if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
+    return Error{std::string("--") + name +
+                 " applies to pooled parameters, but there are none; name some with --pool"};
+  }
+  return std::nullopt;
+}
+
+// What the preset pools by name may have been fixed since, or not act any more; and the members of
+// an ensemble share all parameters.
+void PoolOnlyFree(FitOptions* options) {
+  if (PoolsAllOrNone(options->pool)) return;
+  std::string free;
+  if (options->ensemble > 1) options->pool.clear();
+  std::stringstream names(options->pool);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;
+  }
+  options->pool = free.empty() ? "none" : free;
+}
+
+Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& given,
+                              const GivenOptions& must_act) {
+  Result<FitOptions> made = StartPreset(preset);
+  if (!made.ok()) return made.error();
+  FitOptions o = std::move(made.value());
+  if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
+  FreeTerms(&o);
+  for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
+    if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
+  }
+  // Its shape is known now, and so is the seed.
+  if (const auto network = o.model.learned) {
+    o.model.learned = InitialNetwork(network->shape, o.seed, network->rod, network->pair);
+  }
+  if (Find(given, "pool") == nullptr) PoolOnlyFree(&o);
+  if (MaybeError error = PoolParameters(&o)) return *error;
+  std::string invalid;
+  if (!o.IsValid(&invalid)) return Error{invalid};
+  if (MaybeError error = CheckGivenAct(must_act, o)) return *error;
+  return o;
+}
+
+}  // namespace
+
+GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
+  for (const auto& option : more) {
+    const auto same = std::find_if(given.begin(), given.end(),
+                                   [&](const auto& one) { return one.first == option.first; });
+    if (same == given.end()) {
+      given.push_back(option);
+    } else {
+      same->second = option.second;
+    }
+  }
+  return given;
+}
+
+Result<GivenOptions> ParseOptionWords(const std::string& words) {
+  GivenOptions given;
+  std::stringstream list(words);
+  for (std::string word; list >> word;) {
+    const size_t equals = word.find('=');
+    if (word.rfind("--", 0) != 0 || equals == std::string::npos ||
+        FindFitOption(word.substr(2, equals - 2)) == nullptr) {
+      return Error{"'" + word + "' is not --flag=value of a fit; see pushid-fit --help"};
+    }
+    given.emplace_back(word.substr(2, equals - 2), word.substr(equals + 1));
+  }
+  return given;
+}
+
+Result<FitOptions> MakeFitOptions(const GivenOptions& given,
+                                  const std::vector<PendulumRecording>* recordings,
+                                  const GivenOptions& must_act) {
+  const std::string* named = Find(given, "preset");
+  const std::string preset = named != nullptr ? *named : kAutoPreset;
+  if (recordings != nullptr) return OverPreset(PresetFor(preset, *recordings), given, must_act);
+  if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
+  const Result<FitOptions> single = OverPreset("tail", given, must_act);
+  if (single.ok()) return single;
+  const Result<FitOptions> group = OverPreset("group", given, must_act);
+  return group.ok() ? group : single;
+}
+
+std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {
+  std::vector<std::string> warnings;
+  const std::string* fixed = Find(given, "fix");
+  std::stringstream list(fixed != nullptr ? *fixed : "");
+  for (std::string item; std::getline(list, item, ',');) {
+    const ParameterSpec* spec = options.table.Find(item.substr(0, item.find('=')));
+    if (spec == nullptr || Acts(spec->id, options.model)) continue;
+    warnings.push_back("--fix=" + item + " does nothing: " + spec->name +
+                       " does not act under this model");
+  }
+  if (options.model.interaction.ldp_discrete) {
+    warnings.push_back(
+        "--interaction=ldp_discrete is discontinuous, so it can be evaluated but not fitted; fit "
+        "ldp (potential,lean), its smooth form");
+  }
+  return warnings;
+}
+
+}  // namespace pushid

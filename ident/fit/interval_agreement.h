@@ -1,0 +1,34 @@
+// ident: the three kinds of intervals of a fit side by side.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ident/model/fitted_model.h"
+
+namespace pushid {
+
+struct Interval {
+  double standard_error = 0.0;  // a profile has none: half its width over Student's t
+  double lower = 0.0, upper = 0.0;
+};
+
+// One number as clustered covariance, profile and bootstrap see it.
+struct Agreement {
+  std::string name, unit;
+  double value = 0.0;
+  double freedom = 1.0;  // of the clustered interval's and the profile's Student's t
+  Interval clustered;
+  std::optional<Interval> profile, bootstrap;
+  std::optional<ProfileClass> classification, by_data_alone;
+  // Largest width over smallest, of those that are finite; infinite when only some are.
+  double ratio = 1.0;
+};
+
+inline constexpr double kDisagreement = 1.5;  // a ratio that is worth a word
+
+// Every free parameter and moving combination that a profile or the bootstrap speaks of.
+std::vector<Agreement> CompareIntervals(const FittedModel& model);
+
+}  // namespace pushid

@@ -1,0 +1,29 @@
+// ident: what all need who roll an identified model out on a recording's scene.
+#pragma once
+
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/model/identified_model.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+// One person's hip, frame by frame, m; and everybody's.
+using HipPath = std::vector<Vector3<double>>;
+using HipPaths = std::vector<HipPath>;
+
+// One set for each person of the recording. effect: log factor on the tail's gain
+// (recording_effect.h).
+std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
+                                                    const PendulumRecording& recording,
+                                                    double effect = 0.0);
+
+// Everybody's hips in a rollout; empty where it leaves the model's domain.
+HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
+                       double effect, int frames);
+
+// "theta of person 0 leaves the model's domain at frame 31"
+std::string OutsideText(const RolloutStatus& status);
+
+}  // namespace pushid

@@ -1,0 +1,232 @@
+// ident: options made fit for recordings.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "datasets/files/number_text.h"
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/fit/fit.h"
+#include "ident/parameters/presets.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/large_network_stage.h"
+#include "ident/uncertainty/median.h"
+#include "residuals/cost_functions/body_residual.h"
+
+namespace pushid {
+namespace {
+
+// A bootstrap's replica holds a recording several times, under one id.
+bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
+  if (a.id == b.id) return false;
+  if (!a.content_hash.empty() && a.content_hash == b.content_hash) return true;
+  return a.num_frames() > 0 && a.hip == b.hip;
+}
+
+// A copy adds nothing that was not known, and narrows every interval as if it did.
+std::vector<std::string> DuplicateWarnings(const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::string> warnings;
+  std::vector<bool> told(recordings.size(), false);
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    std::string copies;
+    for (size_t j = i + 1; j < recordings.size(); ++j) {
+      if (told[i] || told[j] || !SameMotion(recordings[i], recordings[j])) continue;
+      told[j] = true;
+      copies += (copies.empty() ? "" : ",") + recordings[j].id;
+    }
+    if (copies.empty()) continue;
+    warnings.push_back("the motion of '" + recordings[i].id + "' is repeated in " + copies +
+                       ": copies count as independent data, so intervals are too narrow; leave "
+                       "them out (--leave_out=" +
+                       copies + ")");
+  }
+  return warnings;
+}
+
+std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& recordings,
+                                        const FitOptions& options) {
+  std::vector<std::string> warnings = UnitWarnings(recordings);
+  const bool groups =
+      std::any_of(recordings.begin(), recordings.end(),
+                  [](const PendulumRecording& recording) { return recording.num_people() > 1; });
+  if (groups && !options.model.interaction.Any()) {
+    warnings.push_back(
+        "recordings contain several people, but the model has no interaction between them "
+        "(--preset=group or --interaction=contact adds one)");
+  }
+  for (const std::string& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
+  return warnings;
+}
+
+// Where all share one unit, its deviation and the shared value would be one number. That is worth
+// a word only where it was asked for.
+void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                   std::vector<std::string>* warnings) {
+  if (!AnyPooled(options->table)) return;
+  std::set<std::string> units;
+  for (const PendulumRecording& recording : recordings) {
+    for (const std::string& unit : PoolingUnits(recording, options->pool_by)) units.insert(unit);
+  }
+  if (units.size() > 1) return;
+  for (ParameterSpec& spec : options->table.specs) spec.pooled = false;
+  const Result<FitOptions> preset = StartPreset(options->preset);
+  if (!preset.ok()) return;
+  const bool asked =
+      preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
+  if (!asked) return;
+  warnings->push_back("--pool=" + options->pool + " does nothing: all recordings share one " +
+                      options->pool_by + ", '" + *units.begin() + "'");
+}
+
+// A label that no recording has pools by nothing; that of the presets may be absent.
+MaybeError CheckPoolingLabel(const std::vector<PendulumRecording>& recordings,
+                             const FitOptions& options) {
+  const std::string& key = options.pool_by;
+  if (key == kSubjectUnit || key == kSettingLabel || key == kConditionLabel) return std::nullopt;
+  std::set<std::string> known = {kSubjectUnit};
+  for (const PendulumRecording& recording : recordings) {
+    for (const std::string& own : recording.labels.Keys()) known.insert(own);
+  }
+  if (known.count(key) > 0) return std::nullopt;
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  return Error{"--pool_by is '" + key + "', a label that no recording has; there are " + names};
+}
+
+MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
+                       const FitOptions& options) {
+  if (options.body_weight <= 0.0) return std::nullopt;
+  if (options.body == nullptr) {
+    return Error{
+        "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
+        "--kind=window wrote, and is available only in pushid-fit and pushid-train-restoration"};
+  }
+  for (const PendulumRecording& recording : recordings) {
+    if (options.body->motions.count(recording.id) > 0) continue;
+    return Error{"--body_weight: recording " + recording.id + " has no whole bodies"};
+  }
+  return std::nullopt;
+}
+
+// Stepping feet get their speed within 20 ms: longer steps of the rollout lag behind.
+MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
+                           const FitOptions& options) {
+  constexpr double kLeastRate = 29.0;  // 1/s
+  if (options.model.stance == Stance::kSlide) return std::nullopt;
+  for (const PendulumRecording& recording : recordings) {
+    const double rate = 1.0 / recording.scene.dt;
+    if (rate >= kLeastRate) continue;
+    return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
+                 " frames per second, too few for --stance=threshold; resample it "
+                 "(--resample_fps=60), or let feet slide"};
+  }
+  return std::nullopt;
+}
+
+// A likelihood of single steps knows the state [q, qd] of everybody and nothing else.
+MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
+                           const FitOptions& options) {
+  const ModelOptions& model = options.model;
+  if (options.likelihood == Likelihood::kTrajectory && !model.process_noise.Any()) {
+    return std::nullopt;
+  }
+  if (const std::string what = MemoryOf(model); !what.empty()) {
+    return Error{
+        "process noise and the likelihoods of single steps require a model whose state is position "
+        "and velocity; " +
+        what +
+        (model.learned != nullptr ? " has weights, which they cannot fit"
+                                  : " has internal memory") +
+        ": leave one of them out"};
+  }
+  bool told_by_pushes = false;
+  for (const PendulumRecording& r : recordings) {
+    if (r.num_frames() < 3) {
+      return Error{"recording " + r.id + " has too few frames for a likelihood of single steps"};
+    }
+    for (const ScenePush& push : r.scene.pushes) {
+      told_by_pushes = told_by_pushes || push.kind == PushKind::kExternal;
+    }
+    if (r.initial_velocity != InitialVelocity::kFree) continue;
+    return Error{"recording " + r.id +
+                 " has free initial velocities, which likelihoods of single steps and process "
+                 "noise cannot fit; set initial_velocity to zero or estimated in the manifest"};
+  }
+  if (model.process_noise.push && !told_by_pushes) {
+    return Error{
+        "--process_noise includes push, but every push is a net force computed from the same "
+        "motion by inverse dynamics, so the motion during a push contains no information on the "
+        "noise; leave push out"};
+  }
+  return std::nullopt;
+}
+
+// Holds the support at what the recorded feet have.
+MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
+                               FitOptions* options, std::vector<std::string>* told) {
+  if (options->support != SupportSource::kFromFeet) return std::nullopt;
+  if (options->model.stance != Stance::kThreshold) {
+    return Error{"--support=feet is for feet that hold; add --stance=threshold"};
+  }
+  std::vector<double> forward, back, side;
+  // The capture point counts from where it rests, which need not be over the ankles.
+  const bool initial = options->model.posture == Posture::kInitial;
+  for (const PendulumRecording& recording : recordings) {
+    for (size_t n = 0; n < recording.foot_support.size(); ++n) {
+      const FootSupport& feet = recording.foot_support[n];
+      const double rest = initial ? recording.hip[n][0].x() - recording.states[n][0].q[0] : 0.0;
+      if (feet.forward && *feet.forward > rest) forward.push_back(*feet.forward - rest);
+      if (feet.back && *feet.back > -rest) back.push_back(*feet.back + rest);
+      if (feet.side > 0.0) side.push_back(feet.side);
+    }
+  }
+  if (forward.empty()) {
+    return Error{
+        "--support=feet, but no toes are recorded; name them in the mapping, or leave "
+        "it out"};
+  }
+  const auto hold = [options](Parameter id, const std::vector<double>& values) {
+    ParameterSpec& spec = options->table[id];
+    if (!values.empty()) spec.nominal = std::clamp(Median(values), spec.lower, spec.upper);
+    spec.free = spec.pooled = false;
+  };
+  hold(kSupportFront, forward);
+  hold(kSupportBack, back);
+  hold(kSupportSide, side);
+  options->table[kAnkleReach].nominal = 1.0;
+  told->push_back("--support=feet: held at the medians of " + std::to_string(forward.size()) +
+                  " people with toes: support_front " +
+                  DoubleText(std::round(1e3 * options->table[kSupportFront].nominal) / 1e3) +
+                  " m, support_side " +
+                  DoubleText(std::round(1e3 * options->table[kSupportSide].nominal) / 1e3) + " m" +
+                  (back.empty() ? "; no heels: support_back as in the table" : ""));
+  return std::nullopt;
+}
+
+}  // namespace
+
+MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                      std::vector<std::string>* warnings) {
+  if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
+  if (MaybeError error = CheckBodies(recordings, *options)) return error;
+  if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
+  if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
+  std::vector<std::string> told;
+  if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
+  UnpoolOneUnit(recordings, options, &told);
+  std::string invalid;
+  if (!options->IsValid(&invalid)) return Error{invalid};
+  HoldUnusedTail(recordings, options);
+  if (options->table.Free().empty()) {
+    return Error{"every parameter that acts on these recordings is fixed: nothing is left to fit"};
+  }
+  if (warnings != nullptr) {
+    *warnings = WarningsBefore(recordings, *options);
+    warnings->insert(warnings->end(), told.begin(), told.end());
+  }
+  // A large network has no force yet and no Jacobian at all: the physical model is what is checked.
+  const FitOptions checked = NeedsGradientTraining(*options) ? PhysicsAlone(*options) : *options;
+  return CheckEffects(FitProblem(recordings, checked));
+}
+
+}  // namespace pushid

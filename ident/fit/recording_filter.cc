@@ -1,0 +1,168 @@
+// ident: nodes of the effect, filtered frame by frame.
+#include "ident/fit/recording_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ident/fit/push_range.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kReferenceSpeed = 0.2;  // m/s
+constexpr double kLeastUnit = 0.05;      // of a push that moves nobody: errors are not nothing
+const Vector3<double> kAxisScale(1.0, 0.3, 0.3);
+constexpr double kFailed = std::numeric_limits<double>::infinity();
+
+Eigen::Matrix3d AxesOf(const PendulumRecording& recording) {
+  const Eigen::Vector2d along = PushDirection(recording);
+  Eigen::Matrix3d axes;
+  axes << along.x(), -along.y(), 0.0, along.y(), along.x(), 0.0, 0.0, 0.0, 1.0;
+  return axes;
+}
+
+}  // namespace
+
+SeenHips HipsAt(const PendulumRecording& recording, int frame) {
+  SeenHips hips;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    hips.hip.push_back(recording.hip[n][frame]);
+    hips.seen.push_back(recording.Weight(n, frame) > 0.0);
+  }
+  return hips;
+}
+
+HipPaths Forecast::Blended(double l) const {
+  HipPaths blended = model;
+  if (l == 0.0) return blended;
+  for (size_t n = 0; n < model.size(); ++n) {
+    for (size_t t = 0; t < model[n].size(); ++t)
+      blended[n][t] += l * (going_on[n][t] - model[n][t]);
+  }
+  return blended;
+}
+
+RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRecording& recording,
+                                 int frames)
+    : dt_(recording.scene.dt),
+      unit_(std::max(kLeastUnit, PushSpeed(recording) / kReferenceSpeed)),
+      frames_(frames),
+      axes_(AxesOf(recording)),
+      process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),
+      nodes_(EffectActs(model, recording) ? kEffectNodes : 1),
+      misfit_(nodes_.size(), 0.0) {
+  for (size_t j = 0; j < nodes_.size(); ++j) {
+    Node& node = nodes_[j];
+    node.hip =
+        HipsOfRollout(model, recording, acts() ? EffectNode(static_cast<int>(j)) : 0.0, frames);
+    node.error.resize(node.hip.size());
+    if (node.hip.empty()) misfit_[j] = kFailed;
+  }
+}
+
+bool RecordingFilter::ok() const {
+  return std::any_of(misfit_.begin(), misfit_.end(), [](double m) { return m < kFailed; });
+}
+
+void RecordingFilter::Update(const Vector3<double>& error, const ErrorProcess::Gains& gains,
+                             Axis3* state, double* misfit) const {
+  const Vector3<double> scaled = (axes_.transpose() * error).cwiseQuotient(kAxisScale) / unit_;
+  for (int i = 0; i < 3; ++i) {
+    ErrorProcess::State& now = (*state)[i];
+    now = process_[0].Predicted(now);
+    if (gains.variance == 0.0) continue;  // not seen
+    const double innovation = scaled[i] - now.position;
+    now.position += gains.position * innovation;
+    now.velocity += gains.velocity * innovation;
+    if (misfit != nullptr) *misfit += innovation * innovation / gains.variance;
+  }
+}
+
+void RecordingFilter::Observe(const SeenHips& frame) {
+  const int t = observed_++;
+  Seen seen{frame, {}};
+  for (size_t n = 0; n < process_.size(); ++n) {
+    const bool sees = frame.Sees(static_cast<int>(n));
+    seen.gains.push_back(process_[n].Next(sees));
+    if (sees) residuals_ += 3;
+  }
+  for (size_t j = 0; j < nodes_.size(); ++j) {
+    Node& node = nodes_[j];
+    for (size_t n = 0; n < node.hip.size(); ++n) {
+      Update(frame.hip[n] - node.hip[n][t], seen.gains[n], &node.error[n], &misfit_[j]);
+    }
+  }
+  seen_.push_back(std::move(seen));
+}
+
+EffectEstimate RecordingFilter::Effect(const RecordingEffect& effect) const {
+  if (!acts()) return {};
+  if (observed_ == 1) return {0.0, effect.spread};
+  return MeanEffect(EffectWeights(misfit_, effect.spread, effect.error_scale));
+}
+
+Forecast RecordingFilter::ForecastOf(const HipPaths& hips) const {
+  Forecast forecast;
+  const int now = observed_ - 1;
+  for (size_t n = 0; n < hips.size(); ++n) {
+    Axis3 state{};
+    for (int t = 1; t <= now; ++t) {
+      const Seen& seen = seen_[t - 1];
+      Update(seen.hips.hip[n] - hips[n][t], seen.gains[n], &state, nullptr);
+    }
+    const auto in_world = [&](const auto& value) {
+      const Vector3<double> scaled(value(state[0]), value(state[1]), value(state[2]));
+      return Vector3<double>(axes_ * (unit_ * kAxisScale.cwiseProduct(scaled)));
+    };
+    using State = ErrorProcess::State;
+    const Vector3<double> error = in_world([](const State& s) { return s.position; });
+    const Vector3<double> step =
+        in_world([this](const State& s) { return dt_ * s.velocity; }) +
+        (now > 0 ? Vector3<double>(hips[n][now] - hips[n][now - 1]) : Vector3<double>::Zero());
+    HipPath model, going_on;
+    for (int t = observed_; t < frames_; ++t) {
+      const double reach = process_[n].Reach(t - now);
+      model.push_back(hips[n][t] + in_world([reach](const State& s) {
+                        return s.position + reach * s.velocity;
+                      }));
+      going_on.push_back(hips[n][now] + error + (t - now) * step);
+    }
+    forecast.model.push_back(std::move(model));
+    forecast.going_on.push_back(std::move(going_on));
+  }
+  return forecast;
+}
+
+std::vector<std::vector<MixturePoint>> RecordingFilter::Mixture(
+    const RecordingEffect& effect, std::vector<double>* weights) const {
+  *weights =
+      acts() ? EffectWeights(misfit_, effect.spread, effect.error_scale) : std::vector<double>{1.0};
+  std::vector<std::vector<MixturePoint>> mixture(process_.size());
+  for (size_t n = 0; n < process_.size(); ++n) {
+    const std::vector<double> variances = process_[n].VariancesAhead(frames_ - observed_);
+    for (int t = observed_; t < frames_; ++t) {
+      const double reach = process_[n].Reach(t - observed_ + 1);
+      MixturePoint point;
+      point.deviation =
+          effect.error_scale * unit_ * std::sqrt(variances[t - observed_]) * kAxisScale;
+      for (const Node& node : nodes_) {
+        if (node.hip.empty()) {
+          point.mean.push_back(Vector3<double>::Zero());  // of no weight
+          continue;
+        }
+        Vector3<double> error;
+        for (int i = 0; i < 3; ++i) {
+          const ErrorProcess::State& now = node.error[n][i];
+          error[i] = now.position + reach * now.velocity;
+        }
+        point.mean.push_back(axes_.transpose() * node.hip[n][t] +
+                             unit_ * kAxisScale.cwiseProduct(error));
+      }
+      mixture[n].push_back(std::move(point));
+    }
+  }
+  return mixture;
+}
+
+}  // namespace pushid

@@ -1,0 +1,95 @@
+// ident: one recording seen frame by frame: what it tells of its effect, and of what comes
+// (recording_effect.h has the model).
+//
+//   RecordingFilter filter(model, recording, recording.num_frames());
+//   for (int t = 1; t < k; ++t) filter.Observe(HipsAt(recording, t));
+//   const EffectEstimate b = filter.Effect(*model.recording_effect);
+//   filter.ForecastOf(hips of a rollout with b.mean).Blended(model.recording_effect->Blend(s));
+//
+// All nodes are rolled out once; a frame then costs two multiplications a node and axis, and its
+// sums are never looked at again.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "ident/fit/error_process.h"
+#include "ident/fit/model_rollout.h"
+#include "ident/fit/recording_effect.h"
+
+namespace pushid {
+
+// Where people's hips are at one frame.
+struct SeenHips {
+  std::vector<Vector3<double>> hip;  // m
+  std::vector<bool> seen = {};       // by person; empty: all of them
+  bool Sees(int person) const { return seen.empty() || seen[person]; }
+};
+SeenHips HipsAt(const PendulumRecording& recording, int frame);
+
+// The frames to come, from the first unseen one on.
+struct Forecast {
+  HipPaths model;     // rollout plus what is left of the error
+  HipPaths going_on;  // constant velocity
+  // (1 - l) model + l going_on
+  HipPaths Blended(double l) const;
+};
+
+// Hips to come as a mixture of normal distributions, a component for each node, on the axes of
+// Axes(): by [person][frame].
+struct MixturePoint {
+  std::vector<Vector3<double>> mean;  // of the components
+  Vector3<double> deviation;          // the same for all of them
+};
+
+class RecordingFilter {
+ public:
+  // Of the recording only people, pushes and frame 0 are looked at. `frames`: how far to look.
+  RecordingFilter(const IdentifiedModel& model, const PendulumRecording& recording, int frames);
+
+  // The next frame; the first is frame 1. Not more than there are.
+  void Observe(const SeenHips& frame);
+  int observed() const { return observed_; }  // with frame 0
+  int frames() const { return frames_; }
+  double seconds() const { return (observed_ - 1) * dt_; }
+
+  bool acts() const { return nodes_.size() > 1; }  // of the effect
+  bool ok() const;                                 // whether any node stayed in the domain
+  const std::vector<double>& misfit() const { return misfit_; }
+  int residuals() const { return residuals_; }  // that each misfit is a sum over
+  double error_unit() const { return unit_; }   // g
+  // Columns: along the push, across, upwards.
+  const Eigen::Matrix3d& Axes() const { return axes_; }
+
+  // Before anything is seen both are exactly the prior's.
+  EffectEstimate Effect(const RecordingEffect& effect) const;
+  // hips: a rollout's, over all frames.
+  Forecast ForecastOf(const HipPaths& hips) const;
+  // By [person][frame - observed()]; weights as in EffectWeights.
+  std::vector<std::vector<MixturePoint>> Mixture(const RecordingEffect& effect,
+                                                 std::vector<double>* weights) const;
+
+ private:
+  using Axis3 = std::array<ErrorProcess::State, 3>;
+  struct Node {
+    HipPaths hip;  // empty after a failure
+    std::vector<Axis3> error;
+  };
+  struct Seen {
+    SeenHips hips;
+    std::vector<ErrorProcess::Gains> gains;  // by person
+  };
+  // One person's error after all frames seen; misfit may be null.
+  void Update(const Vector3<double>& error, const ErrorProcess::Gains& gains, Axis3* state,
+              double* misfit) const;
+
+  double dt_, unit_;
+  int frames_, observed_ = 1, residuals_ = 0;
+  Eigen::Matrix3d axes_;
+  std::vector<ErrorProcess> process_;  // by person
+  std::vector<Node> nodes_;
+  std::vector<double> misfit_;
+  std::vector<Seen> seen_;
+};
+
+}  // namespace pushid

@@ -1,0 +1,118 @@
+// ident: logistic regression of stepping on the predicted margin.
+#include "ident/fit/step_probability.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ident/fit/model_rollout.h"
+#include "ident/uncertainty/clusters.h"
+#include "models/stance.h"
+
+namespace pushid {
+namespace {
+
+// Half a foot's length tells standing from stepping: slopes beyond ten times its inverse are not
+// known from any data there is.
+constexpr double kPriorIntercept = 10.0, kPriorSlope = 200.0;  // standard deviations; 1/m
+constexpr int kMostIterations = 50;
+
+double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+Eigen::Vector2d Features(const StepOutcome& outcome) { return {1.0, outcome.margin}; }
+
+// Newton's method on the log posterior, which is concave.
+Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
+                                       Eigen::Matrix2d* hessian) {
+  const Eigen::Vector2d precision(1.0 / (kPriorIntercept * kPriorIntercept),
+                                  1.0 / (kPriorSlope * kPriorSlope));
+  Eigen::Vector2d coefficients = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kMostIterations; ++i) {
+    Eigen::Vector2d gradient = -precision.cwiseProduct(coefficients);
+    *hessian = precision.asDiagonal();
+    for (const StepOutcome& outcome : outcomes) {
+      const Eigen::Vector2d x = Features(outcome);
+      const double p = Logistic(coefficients.dot(x));
+      gradient += ((outcome.stepped ? 1.0 : 0.0) - p) * x;
+      *hessian += p * (1.0 - p) * x * x.transpose();
+    }
+    Eigen::Vector2d step = hessian->ldlt().solve(gradient);
+    // Far from the optimum the curvature says too little.
+    step *= std::min(1.0, 50.0 / std::max(std::abs(step[0]) * 10.0, std::abs(step[1])));
+    coefficients += step;
+    if (step.norm() < 1e-10 * (1.0 + coefficients.norm())) break;
+  }
+  return coefficients;
+}
+
+}  // namespace
+
+double StepMargin(const ModelOptions& options, const ParameterSet<double>& parameters,
+                  const ScenePerson& person, const RolloutPath<double>& path, int index) {
+  const SelfForce self(options, person.body, person.start.q, 1.0);
+  const StanceParameters<double> p([&parameters](Parameter id) { return parameters[id]; });
+  double most = 0.0;
+  for (int t = 0; t < path.num_frames(); ++t) {
+    const PendulumState<double>& state = path.At(t, index);
+    const Eigen::Vector2d capture = CaptureOffset(self, Angles<double>(state.q), state.qd);
+    most = std::max(most, SupportRatio<double>(p, capture));
+  }
+  return p.front * (most - 1.0);
+}
+
+std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
+                                      const PendulumRecording& recording) {
+  if (!recording.StepsKnown()) return {};
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  RolloutPath<double> path;
+  const RolloutStatus status =
+      Rollout(recording.scene, model.options, parameters, InitialVelocities(recording.scene),
+              recording.num_frames(), &path);
+  std::vector<StepOutcome> outcomes;
+  if (!status.ok) return outcomes;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    outcomes.push_back(
+        {StepMargin(model.options, parameters[n], recording.scene.people[n], path, n),
+         recording.Stepped(n), PersonKey(recording, n)});
+  }
+  return outcomes;
+}
+
+std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes) {
+  StepProbability fitted;
+  fitted.tracks = static_cast<int>(outcomes.size());
+  std::map<std::string, Eigen::Vector2d> scores;
+  for (const StepOutcome& outcome : outcomes) {
+    fitted.stepped += outcome.stepped ? 1 : 0;
+    scores.try_emplace(outcome.person, Eigen::Vector2d::Zero());
+  }
+  if (outcomes.empty()) return std::nullopt;
+  fitted.clusters = static_cast<int>(scores.size());
+  Eigen::Matrix2d hessian;
+  fitted.coefficients = MostLikelyCoefficients(outcomes, &hessian);
+  if (!fitted.coefficients.allFinite()) return std::nullopt;  // no support, no margin
+  for (const StepOutcome& outcome : outcomes) {
+    const double error = (outcome.stepped ? 1.0 : 0.0) - fitted.At(outcome.margin);
+    scores[outcome.person] += error * Features(outcome);
+  }
+  Eigen::Matrix2d meat = Eigen::Matrix2d::Zero();
+  for (const auto& [person, score] : scores) meat += score * score.transpose();
+  if (fitted.clusters > 1) meat *= fitted.clusters / (fitted.clusters - 1.0);
+  const Eigen::Matrix2d inverse = hessian.inverse();
+  fitted.covariance = inverse * meat * inverse;
+  return fitted;
+}
+
+std::optional<StepProbability> FitStepProbability(
+    const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings) {
+  std::vector<StepOutcome> outcomes;
+  for (const PendulumRecording& recording : recordings) {
+    for (StepOutcome& outcome : StepOutcomes(model, recording)) {
+      outcomes.push_back(std::move(outcome));
+    }
+  }
+  return FitStepProbability(outcomes);
+}
+
+}  // namespace pushid

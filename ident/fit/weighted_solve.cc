@@ -1,0 +1,235 @@
+// ident: solving and weighing in turn.
+#include "ident/fit/weighted_solve.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <unsupported/Eigen/SpecialFunctions>
+
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/problem/behaviour.h"
+#include "ident/problem/pooling_spread.h"
+#include "ident/solver/large_network_stage.h"
+#include "ident/solver/likelihood_solve.h"
+#include "ident/uncertainty/data_weight.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kSettled = 0.01;  // relative change
+constexpr int kMostRounds = 12;
+constexpr int kMostChanges = 2;     // of which start is the best
+constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
+constexpr double kRough = 1e-3;     // function tolerance on the way
+constexpr double kContradicted = 0.05;
+// The demand joins in two steps: all of it at once outweighs everything else where people are far
+// from settled, and the solver creeps along its edge.
+constexpr double kFirstStep = 0.1;
+
+double Change(double from, double to) {
+  return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
+}
+
+// Estimates anew; the largest relative change.
+double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* options) {
+  double change = 0.0;
+  const ResidualSigmas before = options->sigmas;
+  if (options->sigma_source == SigmaSource::kEstimate) {
+    options->sigmas = EstimateSigmas(problem, point);
+    const ResidualSigmas& now = options->sigmas;
+    for (const auto& [a, b] : {std::pair(before.hip, now.hip),
+                               {before.velocity, now.velocity},
+                               {before.angle, now.angle},
+                               {before.rate, now.rate}}) {
+      change = std::max(change, Change(a, b));
+    }
+  }
+  if (options->recording_weight == RecordingWeight::kEffective) {
+    const double weight = options->effective_weight;
+    options->effective_weight = EstimateEffectiveWeight(problem, point);
+    change = std::max(change, Change(weight, options->effective_weight));
+  }
+  return std::max(change, UpdatePoolingSpread(problem, point, &options->table));
+}
+
+// On the way an optimum need not be exact; a network that stops learning in time must not be
+// stopped before.
+FitOptions Roughly(FitOptions options) {
+  if (options.early_stopping > 0.0 && !options.hold_network) return options;
+  options.function_tolerance = std::max(kRough, options.function_tolerance);
+  return options;
+}
+
+// From the optimum under other weights to that under these.
+void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+             SolveStart* start) {
+  const FitProblem problem(recordings, options);
+  const bool hold_network = options.early_stopping > 0.0;
+  SolveStart again = Refit(problem, start->to, hold_network, options.num_threads);
+  start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
+  start->iterations += again.iterations;
+  start->to = std::move(again.to);
+  start->cost = again.cost;
+  start->converged = again.converged;
+  start->failed = problem.Failures(start->to, 0);
+  start->message = std::move(again.message);
+}
+
+// Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
+// False where they do not stay.
+bool Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+           SolveStart* start) {
+  bool exact = false;
+  for (int round = 0; round < kMostRounds; ++round) {
+    FitOptions now = *options;
+    const bool settled = Reweigh(FitProblem(recordings, *options), start->to, &now) < kSettled;
+    if (settled && exact) return true;
+    exact = exact || settled;
+    if (!settled) *options = now;
+    SolveOn(recordings, exact ? *options : Roughly(*options), start);
+  }
+  if (!exact) SolveOn(recordings, *options, start);
+  return false;
+}
+
+// In which the slowest of those whom the demand is put to settle.
+double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
+  double slowest = 0.0;
+  for (const std::string& unit : problem.SettlingUnits(point)) {
+    slowest =
+        std::max(slowest, SettlingSeconds(problem.ModelAt(point), problem.Parameters(point, unit)));
+  }
+  return slowest;
+}
+
+// A fit that meets the demand, from one that does not. Where simulated people fall or run out of
+// the domain there, Ceres cannot see them: then on the way from the start, where they need not.
+SolveStart SolveHeld(const std::vector<PendulumRecording>& recordings, const FitOptions& demanding,
+                     const SolveStart& free) {
+  FitOptions first = Roughly(demanding);
+  first.settling_weight = kFirstStep * demanding.settling_weight;
+  SolveStart held = free;
+  const FitProblem with(recordings, first);
+  if (std::isinf(CostAt(with, free.to))) {
+    held = SolveFrom(with, with.NominalPoint(), "nominal", "", nullptr);
+  } else {
+    SolveOn(recordings, first, &held);
+  }
+  SolveOn(recordings, demanding, &held);
+  return held;
+}
+
+// Step 2 of the header, from the optimum without the demand.
+void Demand(const std::vector<PendulumRecording>& recordings, double weight, FitOptions* options,
+            WeightedSolution* solved) {
+  SolveStart& best = solved->solution.starts[solved->solution.best];
+  const FitOptions freed = *options;
+  options->settling_weight = weight;
+  const FitProblem with(recordings, *options), without(recordings, freed);
+  if (CostAt(with, best.to) == CostAt(without, best.to)) return;
+  SolveStart held = SolveHeld(recordings, *options, best);
+
+  SettlingDemand& settling = solved->settling;
+  settling.binds = true;
+  settling.free_seconds = SlowestSeconds(without, best.to);
+  settling.unmet = !held.converged || held.failed.size() > best.failed.size() ||
+                   !std::isfinite(CostAt(with, held.to));
+  if (!settling.unmet) {
+    settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
+    const double units = static_cast<double>(without.SettlingUnits(best.to).size());
+    settling.contradicted =
+        Eigen::numext::igammac(0.5 * units, 0.5 * settling.rise) < kContradicted;
+  }
+  if (!settling.holds()) {
+    *options = freed;
+    return;
+  }
+  solved->free = best.to;
+  best = std::move(held);
+}
+
+// The other starts, by the weights and demands of the best, so that their costs compare. Whether
+// one of them is better, which is then the best.
+bool SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                 Solution* solution) {
+  const int found = solution->best;
+  for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
+    SolveStart& start = solution->starts[i];
+    if (i == found || !start.usable) continue;
+    SolveOn(recordings, options, &start);
+    const SolveStart& best = solution->Best();
+    const bool better = start.converged && start.failed.size() <= best.failed.size() &&
+                        start.cost < best.cost - kSameCost * std::abs(best.cost);
+    if (better) solution->best = i;
+  }
+  return solution->best != found;
+}
+
+}  // namespace
+
+WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
+                               FitOptions* options, const SolveProgress& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  const double weight = options->settling_weight;
+  options->settling_weight = 0.0;
+  const FitOptions roughly = Roughly(*options);
+  WeightedSolution solved;
+  Solution& solution = solved.solution;
+  solution = Solve(FitProblem(recordings, roughly), progress);
+  bool again = solution.best >= 0;
+  for (int change = 0; again && change <= kMostChanges; ++change) {
+    options->settling_weight = 0.0;
+    solved.settling = {};
+    solved.free.reset();
+    solved.weights_settled = Weigh(recordings, options, &solution.starts[solution.best]);
+    Demand(recordings, weight, options, &solved);
+    again = SolveOthers(recordings, *options, &solution);
+  }
+  if (again) solved.free.reset();  // that of another start
+  if (solution.best < 0) options->settling_weight = weight;
+  solution.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solved;
+}
+
+WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                              const SolveProgress& progress) {
+  if (options->likelihood == Likelihood::kTrajectory) {
+    return SolveWeighted(recordings, options, progress);
+  }
+  LikelihoodSolution by_steps = SolveByLikelihood(recordings, options, progress);
+  WeightedSolution solved;
+  solved.solution = std::move(by_steps.solution);
+  solved.weights_settled = by_steps.stays;
+  return solved;
+}
+
+Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
+                                           const FitOptions& options,
+                                           const SolveProgress& progress) {
+  if (!NeedsGradientTraining(options)) return options;
+  FittedPhysics physics{PhysicsAlone(options), {}};
+  const Solution solution = SolveAsAsked(recordings, &physics.options, progress).solution;
+  if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
+  physics.point = solution.Best().to;
+  return TrainLargeNetwork(recordings, options, physics, progress);
+}
+
+std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
+                                          const FitOptions& options) {
+  std::vector<EnsembleMember> members;
+  for (int k = 1; k < options.ensemble; ++k) {
+    FitOptions seeded = options;
+    seeded.seed = options.seed + k;
+    const LearnedTerms& network = *options.model.learned;
+    seeded.model.learned = InitialNetwork(network.shape, seeded.seed, network.rod, network.pair);
+    const FitProblem problem(recordings, seeded);
+    const Solution solution = Solve(problem);
+    if (solution.best < 0) continue;
+    const FitPoint& point = solution.Best().to;
+    members.push_back({problem.Parameters(point, ""), problem.ModelAt(point).learned});
+  }
+  return members;
+}
+
+}  // namespace pushid

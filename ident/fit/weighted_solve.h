@@ -1,0 +1,58 @@
+// ident: a solve whose data weigh as much as they know, and in which the demand to settle is
+// tested.
+//
+// 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/data_weight.h)
+//    and the spread of pooled units (problem/pooling_spread.h) are estimated at its optimum and the
+//    fit solved on from there, until none changes by more than 1 %: the demand shall not make the
+//    data look worse than they are.
+// 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
+//    on with the demand, by the same weights. Twice what the rest of the cost rises by is a
+//    likelihood ratio (composite, adjusted; priors included) of as many constraints as units have
+//    people of their own to settle. Beyond the 95 % point of chi-squared with so many degrees of
+//    freedom the data contradict the demand: it is dropped, and the result says so. A constraint
+//    that need not bind has less than one degree of freedom, so this keeps the demand too often
+//    rather than too seldom. Where no fit that meets the demand is found, it is dropped as well.
+// With several starts the others are solved by the same weights and demand, so that their costs
+// compare; where one of them turns out better, it is weighed in turn.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "ident/model/identified_model.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/uncertainty.h"
+
+namespace pushid {
+
+struct WeightedSolution {
+  Solution solution;
+  bool weights_settled = false;  // within 1 %
+  SettlingDemand settling;
+  std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
+};
+
+// options: on return with what was estimated, and without a demand that was dropped.
+WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
+                               FitOptions* options, const SolveProgress& progress = nullptr);
+
+// By rollouts as above, or by a likelihood of single steps (solver/likelihood_solve.h), as options
+// say.
+WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                              const SolveProgress& progress = nullptr);
+
+// Where a network is too large for Gauss-Newton (solver/large_network_stage.h): the physical model
+// solved alone as above, and then the network trained. Returns the options with the network held,
+// to be solved as above; for any other network the options as they are.
+Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
+                                           const FitOptions& options,
+                                           const SolveProgress& progress = nullptr);
+
+// The fits of all seeds but the first (options.seed), one by one; a seed without a usable optimum
+// is left out.
+std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
+                                          const FitOptions& options);
+
+}  // namespace pushid

@@ -1,0 +1,93 @@
+// ident: a fit with everything that was found out about it, as data: what a model's file holds
+// (model_json.h), and what reports are a function of.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ident/diagnostics/diagnostics.h"
+#include "ident/model/identified_model.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/problem/behaviour.h"
+#include "ident/solver/likelihood_score.h"
+#include "ident/solver/solution.h"
+#include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/profile.h"
+#include "ident/uncertainty/refit_table.h"
+#include "ident/uncertainty/uncertainty.h"
+#include "residuals/cost_functions/takeover.h"
+
+namespace pushid {
+
+struct SubjectParameters {
+  double mass_kg = 0.0;
+  std::map<std::string, Estimate> pooled;  // value of each pooled parameter for this subject
+};
+
+struct FittedRecording {
+  std::string id;
+  std::string content_hash;
+  int frames = 0;
+  int people = 1;
+  double cost = 0.0;    // robust cost in the objective
+  std::string failure;  // empty, or where its rollout left the domain
+};
+
+struct FitResult {
+  FitOptions options;
+  // As they act: fixed ones too. Indexed by Parameter.
+  ParameterSet<double> parameters{};
+  std::optional<Takeover> takeover;                 // by the network, where there is one
+  std::optional<ContactTakeover> contact_takeover;  // by a learned interaction beside contact
+  std::vector<EnsembleMember> others;               // of an ensemble, besides the one reported
+  std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
+  std::vector<Estimate> nuisance;    // units' deviations and initial velocities
+  std::vector<Combination> derived;  // c_x, c_y and per-mass gains
+  std::map<std::string, SubjectParameters> subjects;
+  // Value of each pooled parameter in each setting or condition, where these differ.
+  std::map<std::string, std::map<std::string, Estimate>> settings;
+  std::optional<PushRange> push_range;  // none in files that are older than it
+  // None where nobody stepped or everybody did, and in older files.
+  std::optional<StepProbability> step_probability;
+  std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
+  // None without a push tail, and in older files.
+  std::optional<RecordingEffect> recording_effect;
+  Uncertainty uncertainty;
+  Diagnostics diagnostics;
+  Behaviour behaviour;
+  std::vector<FittedRecording> recordings;
+
+  bool converged = false;
+  double cost = 0.0;
+  std::vector<SolveStart> starts;
+  int best_start = -1;
+  std::string message;
+  std::vector<std::string> warnings;
+  double solve_seconds = 0.0;
+
+  bool ok() const { return best_start >= 0; }
+};
+
+// Where a fit came from.
+struct Provenance {
+  std::string version;                               // of pushid
+  std::map<std::string, std::string> configuration;  // effective flags
+  std::vector<std::string> changed_flags;            // those of them that are not at their defaults
+  std::string manifest, manifest_hash;
+  std::string setting;  // as --setting
+};
+
+struct FittedModel {
+  FitResult fit;
+  std::vector<Profile> profiles;       // empty unless asked for (confidence.h)
+  std::optional<Bootstrap> bootstrap;  // absent unless asked for
+  std::vector<Advice> advice;          // report/advice.h
+  Provenance provenance;
+  // Absent unless asked for: refits with other pushes (push_check.h), and of fewer frames
+  // (horizon_check.h).
+  std::optional<RefitTable> push_check{}, horizon_check{}, prior_check{};
+};
+
+}  // namespace pushid

@@ -1,0 +1,62 @@
+// ident: from a fit to a model that predicts.
+#include "ident/model/identified_model.h"
+
+#include <cmath>
+
+#include "ident/model/fitted_model.h"
+
+namespace pushid {
+
+double StepProbability::At(double margin) const {
+  return 1.0 / (1.0 + std::exp(-(coefficients[0] + coefficients[1] * margin)));
+}
+
+double StepProbability::ErrorAt(double margin) const {
+  const double p = At(margin);
+  const Eigen::Vector2d x(1.0, margin);
+  return p * (1.0 - p) * std::sqrt(std::max(0.0, x.dot(covariance * x)));
+}
+
+double RecordingEffect::Blend(double seconds) const { return std::min(1.0, blend_rate * seconds); }
+
+Vector3<double> RecordingEffect::Widening(double seconds) const {
+  return Vector3<double>::Ones() + seconds * seconds * widening;
+}
+
+IdentifiedModel ModelOf(const FitResult& result) {
+  IdentifiedModel model;
+  model.options = result.options.model;
+  model.mapping = result.options.mapping;
+  model.table = result.options.table;
+  model.parameters = result.parameters;
+  model.others = result.others;
+  model.pool_by = result.options.pool_by;
+  model.push_range = result.push_range;
+  model.step_probability = result.step_probability;
+  model.recording_effect = result.recording_effect;
+  const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
+    if (pooled.empty()) return;
+    ParameterSet<double>& own = model.by_unit[unit] = result.parameters;
+    for (const auto& [name, estimate] : pooled) own[model.table.Find(name)->id] = estimate.value;
+  };
+  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) add(setting, pooled);
+  return model;
+}
+
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
+  const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
+  if (!values.ok()) return values.error();
+  TableEdits edits;
+  edits.set = assignments;
+  if (MaybeError error = EditTable(edits, &model->table)) return error;
+  for (const NamedValue& named : values.value()) {
+    const Parameter id = model->table.Find(named.name)->id;
+    model->parameters[id] = named.value;
+    for (auto& [unit, own] : model->by_unit) own[id] = named.value;
+    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

@@ -1,0 +1,128 @@
+// ident: what a prediction needs of a fit, as data.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ident/parameters/fit_options.h"
+#include "models/ipm.h"
+#include "models/learned_terms.h"
+#include "models/parameters.h"
+#include "models/push.h"
+
+namespace pushid {
+
+// What one seed of an ensemble found. Predictions are put together by their median
+// (prediction/median_prediction.h), so that one bad seed does no harm; members that leave the
+// model's domain do not count while most of them stay in it.
+struct EnsembleMember {
+  ParameterSet<double> parameters{};
+  std::shared_ptr<const LearnedTerms> network;
+};
+
+struct ValueRange {
+  double lower = std::numeric_limits<double>::infinity(), upper = 0.0;
+
+  bool empty() const { return lower > upper; }
+  void Add(double value) {
+    lower = std::min(lower, value);
+    upper = std::max(upper, value);
+  }
+  // How far a value lies outside, as a factor; 1 inside, and where the range is empty.
+  double Beyond(double value) const {
+    return empty() ? 1.0 : std::max({1.0, value / upper, lower / value});
+  }
+};
+
+// The pushes that a model was fitted to (fit/push_range.h).
+struct PushRange {
+  ValueRange external_s, net_s;  // durations of the rows, s
+  ValueRange impulse_per_mass;   // m/s
+
+  ValueRange& Durations(PushKind kind) { return kind == PushKind::kExternal ? external_s : net_s; }
+  const ValueRange& Durations(PushKind kind) const {
+    return const_cast<PushRange*>(this)->Durations(kind);
+  }
+};
+
+// Under `push_range` in a model's JSON, each a pair.
+struct PushRangeRow {
+  const char* key;
+  ValueRange PushRange::*range;
+};
+inline constexpr PushRangeRow kPushRangeRows[] = {
+    {"external_duration_s", &PushRange::external_s},
+    {"net_duration_s", &PushRange::net_s},
+    {"impulse_per_mass_m_s", &PushRange::impulse_per_mass},
+};
+
+// How probable it is that a pushed person steps (fit/step_probability.h).
+struct StepProbability {
+  // a, and 1 / w in 1/m.
+  Eigen::Vector2d coefficients = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  int tracks = 0, stepped = 0, clusters = 0;
+
+  double At(double margin) const;
+  double ErrorAt(double margin) const;
+};
+
+// The effect b of one recording: with the spread of all (shrunk towards 0), and by itself.
+struct EffectOfRecording {
+  std::string id, person, condition;
+  double mean = 0.0, error = 0.0;
+  double alone = 0.0;
+};
+
+// How recordings differ from what the same push does to the mean person
+// (fit/recording_effect.h).
+struct RecordingEffect {
+  double spread = 0.0;                             // w
+  double spread_error = 0.0;                       // leaving out one cluster after the other
+  double error_scale = 0.1;                        // s, m
+  double explained = 0.0;                          // share of the squared error that b takes away
+  double blend_rate = 0.0;                         // r, 1/s
+  Vector3<double> widening{0.0, 0.0, 0.0};         // c, 1/s^2; along the push, across, upwards
+  int clusters = 0;                                // people, or recordings where nobody comes twice
+  std::vector<EffectOfRecording> recordings = {};  // those that b acts on
+
+  // l and 1 + c t^2, seconds after frame 0.
+  double Blend(double seconds) const;
+  Vector3<double> Widening(double seconds) const;
+};
+
+struct FitResult;
+
+// The model a prediction needs: options and parameters of each subject.
+struct IdentifiedModel {
+  std::string source;  // file, for messages
+  ModelOptions options;
+  SkeletonMapping mapping = SkeletonMapping::kExact;
+  ParameterTable table;  // names, units and bounds, for --set
+  ParameterSet<double> parameters{};
+  std::vector<EnsembleMember> others;  // of an ensemble
+  std::string pool_by = kSubjectUnit;
+  std::map<std::string, ParameterSet<double>> by_unit;  // options' pool_by; only where pooled
+  std::optional<PushRange> push_range;                  // that it was fitted to
+  std::optional<StepProbability> step_probability;      // of the people it was fitted to
+  std::optional<RecordingEffect> recording_effect;      // for what first frames tell
+
+  // A unit the model does not know gets the shared values.
+  const ParameterSet<double>& For(const std::string& unit) const {
+    const auto found = by_unit.find(unit);
+    return found == by_unit.end() ? parameters : found->second;
+  }
+};
+
+IdentifiedModel ModelOf(const FitResult& result);
+
+// A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
+MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
+
+}  // namespace pushid

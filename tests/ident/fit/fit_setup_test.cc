@@ -1,0 +1,342 @@
+// From named options to a fit: presets, edits, what acts on nothing, and what a fit is prepared
+// for.
+#include "ident/fit/fit_setup.h"
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+#include "ident/fit/fit.h"
+#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/option_table.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+std::string Complaint(const GivenOptions& given) {
+  const Result<FitOptions> options = MakeFitOptions(given, nullptr, given);
+  return options.ok() ? "" : options.error().ToString();
+}
+
+TEST(FitSetup, OptionsOverThePreset) {
+  const FitOptions plain = MakeFitOptions({}).value();
+  EXPECT_EQ(plain.preset, "tail");  // auto, and no recordings are known
+  const FitOptions o = MakeFitOptions({{"fix", "mu=30"},
+                                       {"self_force", "linear"},
+                                       {"preset_priors", "false"},
+                                       {"prior", "a_x:-9:3"},
+                                       {"horizons", "4,9"}})
+                           .value();
+  EXPECT_EQ(o.self_force, SelfForceKind::kLinear);
+  EXPECT_GT(o.mode_weight, 0.0);  // comes with the linear self force
+  EXPECT_FALSE(o.table[kMu].free);
+  EXPECT_EQ(o.table[kMu].nominal, 30.0);
+  EXPECT_TRUE(o.table[kBx].free);
+  EXPECT_FALSE(o.table[kBx].prior);
+  EXPECT_EQ(o.table[kAx].prior->mean, -9.0);  // an edit comes after the preset's priors went
+  EXPECT_EQ(o.horizons, (std::vector<int>{4, 9, 0}));
+  EXPECT_EQ(MakeFitOptions({{"self_force", "linear"}, {"mode_weight", "0"}}).value().mode_weight,
+            0.0);
+}
+
+TEST(FitSetup, PoolingFollowsTheTerms) {
+  const FitOptions group = MakeFitOptions({{"preset", "group"}}).value();
+  EXPECT_TRUE(group.table[kContactDistance].pooled);
+  const FitOptions drive =
+      MakeFitOptions({{"preset", "group"}, {"interaction", "contact,drive"}}).value();
+  EXPECT_TRUE(drive.table[kDriveGain].pooled);
+  const FitOptions none = MakeFitOptions({{"preset", "group"}, {"pool", "none"}}).value();
+  EXPECT_FALSE(AnyPooled(none.table));
+}
+
+// The preset's own pooling gives way to what else is asked for; that of a user does not.
+TEST(FitSetup, ThePresetPoolsWhatItCan) {
+  const FitOptions tail = MakeFitOptions({{"preset", "tail"}}).value();
+  EXPECT_TRUE(tail.table[kTailTime].pooled);
+  EXPECT_EQ(tail.pool_by, kConditionLabel);
+  EXPECT_FALSE(tail.pooling_sigma);
+  for (const GivenOptions& given :
+       {GivenOptions{{"fix", "tail_time"}}, GivenOptions{{"push_tail", "none"}},
+        GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}}}) {
+    const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    EXPECT_FALSE(AnyPooled(made.value().table)) << given[0].first;
+  }
+  // A large network is trained beside what units differ in.
+  for (const auto& [preset, option, value] :
+       {std::tuple("tail", "self_force", "lstm:64"),
+        {"group", "interaction", "spring,damping,network:64-64"}}) {
+    const Result<FitOptions> made = MakeFitOptions({{"preset", preset}, {option, value}});
+    ASSERT_TRUE(made.ok()) << made.error().ToString();
+    EXPECT_TRUE(NeedsGradientTraining(made.value()));
+    EXPECT_TRUE(AnyPooled(made.value().table)) << preset;
+  }
+  EXPECT_TRUE(Contains(
+      Complaint({{"preset", "group"}, {"interaction", "spring,damping,drive,network:64-64"}}),
+      "does not support --interaction=drive"));
+  EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
+}
+
+// Feet that hold bring what goes with them, and refuse what is for sliding feet.
+TEST(FitSetup, StanceBringsWhatGoesWithIt) {
+  const FitOptions slide = MakeFitOptions({{"preset", "tail"}}).value();
+  EXPECT_EQ(slide.model.stance, Stance::kSlide);
+  EXPECT_FALSE(slide.table[kStepOnset].free);
+  const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}}).value();
+  EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
+  EXPECT_EQ(holds.start, FitStart::kNominal);
+  for (Parameter id : {kMu, kAx, kTailGain, kSupportFront, kStepOnset, kStepRelease}) {
+    EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
+    EXPECT_TRUE(holds.table[id].prior.has_value()) << holds.table[id].name;
+  }
+  for (Parameter id : {kKpTheta, kTailTorque, kSupportBack}) {
+    EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
+  }
+  for (const auto& [flag, value] :
+       {std::pair("rod", "linear"), std::pair("start", "equation_error"),
+        std::pair("push", "added"),  // a net push holds the feet's reaction already
+        std::pair("cart_derivative", "backward"), std::pair("self_force", "lstm:64")}) {
+    EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "threshold"}, {flag, value}}),
+                         "is for feet that slide"))
+        << flag;
+  }
+  EXPECT_TRUE(Contains(Complaint({{"stance", "walk"}}), "--stance is 'walk'"));
+}
+
+TEST(PrepareFit, TakesTheSupportFromTheFeet) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitOptions options =
+      MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}, {"support", "feet"}}).value();
+  for (PendulumRecording& recording : recordings) {
+    recording.foot_support.assign(1, FootSupport{0.12, std::nullopt, std::nullopt});
+  }
+  FitOptions without = options;
+  const MaybeError no_toes = PrepareFit(recordings, &without);
+  ASSERT_TRUE(no_toes.has_value());
+  EXPECT_TRUE(Contains(no_toes->ToString(), "no toes are recorded"));
+  // From where the capture point rests.
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const double rest = recordings[i].hip[0][0].x() - recordings[i].states[0][0].q[0];
+    recordings[i].foot_support[0].forward = rest + 0.16 + 0.01 * static_cast<double>(i);
+  }
+  ASSERT_FALSE(PrepareFit(recordings, &options).has_value());
+  EXPECT_NEAR(options.table[kSupportFront].nominal, 0.185, 0.006);
+  EXPECT_EQ(options.table[kSupportSide].nominal, 0.12);
+  EXPECT_EQ(options.table[kAnkleReach].nominal, 1.0);
+  EXPECT_FALSE(options.table[kSupportFront].free);
+  recordings[2].scene.dt = 0.05;
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "20 frames per second"));
+  recordings[2].scene.dt = recordings[0].scene.dt;
+  FitOptions slide = MakeFitOptions({{"preset", "tail"}, {"support", "feet"}}).value();
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &slide)->ToString(), "--stance=threshold"));
+}
+
+TEST(FitSetup, PoolingSigmaIsANumberOrEstimated) {
+  const FitOptions given = MakeFitOptions({{"preset", "tail"}, {"pooling_sigma", "0.4"}}).value();
+  EXPECT_EQ(given.pooling_sigma, 0.4);
+  EXPECT_EQ(given.table[kTailTime].pooling_sigma, 0.4);
+  for (const char* text : {"0.4", "estimate"}) {
+    const FitOptions o = MakeFitOptions({{"preset", "group"}, {"pooling_sigma", text}}).value();
+    EXPECT_EQ(FindFitOption("pooling_sigma")->text(o), text);
+    EXPECT_EQ(OptionsFrom(OptionsJson(o)).pooling_sigma, o.pooling_sigma);
+  }
+}
+
+TEST(FitSetup, AutoLooksAtTheRecordings) {
+  const std::vector<PendulumRecording> single = MakePendulums(TinyStudy());
+  EXPECT_EQ(MakeFitOptions({}, &single).value().preset, "tail");
+  SyntheticOptions study = TinyStudy();
+  study.subjects = study.people_in_row = 3;
+  std::vector<PendulumRecording> groups = MakePendulums(study);
+  const FitOptions o = MakeFitOptions({}, &groups).value();
+  EXPECT_EQ(o.preset, "group");
+  EXPECT_TRUE(o.model.interaction.Contact());
+  groups.insert(groups.end(), single.begin(), single.end());
+  EXPECT_EQ(MakeFitOptions({{"preset", "auto"}}, &groups).value().preset, "group");
+  EXPECT_EQ(MakeFitOptions({{"preset", "tail"}}, &groups).value().preset, "tail");  // told so
+}
+
+TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {
+  const FitOptions o = MakeFitOptions({{"loss", "ldp"}, {"sigma_rate", "0.3"}}).value();
+  EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);
+  EXPECT_EQ(o.sigmas.hip, 0.1);
+  EXPECT_EQ(o.sigmas.velocity, 0.1);
+  EXPECT_EQ(o.sigmas.rate, 0.3);
+  EXPECT_EQ(o.sigma_source, SigmaSource::kFixed);
+  EXPECT_EQ(OptionsFrom(OptionsJson(o)).sigmas.loss, FrameLoss::kLdp);
+  EXPECT_EQ(MakeFitOptions({{"loss", "hip"}}).value().sigmas.hip, ResidualSigmas().hip);
+}
+
+TEST(FitSetup, WhatDoesNotGoTogetherIsNamed) {
+  const auto violation = [](FitOptions o) {
+    std::string error;
+    EXPECT_FALSE(o.IsValid(&error));
+    return error;
+  };
+  FitOptions o = MakeFitOptions({{"preset", "group"}}).value();
+  o.model.interaction.learned = true;  // without its network
+  EXPECT_TRUE(Contains(violation(o), "names a network to be fitted, but there is none"));
+  o = MakeFitOptions({{"loss", "ldp"}}).value();
+  o.sigma_source = SigmaSource::kEstimate;
+  EXPECT_TRUE(Contains(violation(o), "--sigmas must be fixed"));
+  o = MakeFitOptions({{"rod", "linear"}}).value();
+  o.body_weight = 1.0;
+  EXPECT_TRUE(Contains(violation(o), "does not go together with --rod"));
+}
+
+TEST(FitSetup, BadOptionsAreNamed) {
+  const std::pair<GivenOptions, std::string> cases[] = {
+      {{{"preset", "tial"}}, "--preset is 'tial'"},
+      {{{"posture", "flat"}}, "--posture is 'flat'; it must be one of upright, initial"},
+      {{{"sigma_hip", "wide"}}, "--sigma_hip is 'wide'; it must be positive"},
+      {{{"starts", "two"}}, "--starts is 'two'; it must be a whole number"},
+      {{{"starts", "0"}}, "--starts is 0; it must be positive"},
+      {{{"horizons", "8,x"}}, "--horizons: 'x'"},
+      {{{"seed", "-1"}}, "--seed is '-1'"},
+      {{{"fix", "nu"}}, "--fix names 'nu'"},
+      {{{"rod_input", "true"}}, "--rod_input is for a network"},
+      {{{"interaction", "network"}}, "--interaction_network must name"},
+      {{{"interaction_network", "n.json"}}, "--interaction does not name network"},
+      {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
+      {{{"ensemble", "2"}}, "--ensemble acts on networks"},
+      {{{"preset_priors", "of course"}},
+       "--preset_priors is 'of course'; it must be true or false"},
+      {{{"seed", "2x"}}, "--seed is '2x'"},
+      {{{"pooling_sigma", "guess"}},
+       "--pooling_sigma is 'guess'; it must be positive, or estimate"},
+      {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
+       "--pooling_sigma applies to pooled parameters"},
+      {{{"rod", "linear"}, {"takeover_weight", "1"}},
+       "a learned force beside gains or contact, but there is none"},
+      {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
+      {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
+       "--ensemble does not go together with --pool"},
+      {{{"self_from", "no/such.json"}}, "no/such.json"},
+  };
+  for (const auto& [given, says] : cases) EXPECT_TRUE(Contains(Complaint(given), says)) << says;
+  EXPECT_EQ(Complaint({{"self_force", "mlp:4"}, {"network_prior", "0.5"}}), "");
+}
+
+// Before the recordings are known auto may be either preset: what one of them takes is no error.
+TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
+  for (const GivenOptions& given :
+       {GivenOptions{{"pool", "contact_stiffness"}},
+        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
+    EXPECT_EQ(Complaint(given), "") << given[0].first;
+    EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
+  }
+}
+
+// What a candidate takes over from the flags given need not act in it; what it is given itself
+// must.
+TEST(FitSetup, OnlyACandidatesOwnOptionsMustAct) {
+  const GivenOptions given = {{"self_force", "mlp:2"}, {"network_prior", "0.5"}};
+  EXPECT_TRUE(MakeFitOptions(Merged(given, {{"self_force", "none"}})).ok());
+  const GivenOptions more = {{"self_force", "none"}, {"network_prior", "1"}};
+  EXPECT_FALSE(MakeFitOptions(Merged(given, more), nullptr, more).ok());
+  // An ensemble of nothing is no fit at all.
+  EXPECT_FALSE(
+      MakeFitOptions({{"self_force", "mlp:2"}, {"ensemble", "2"}, {"preset", "group"}}).ok());
+  EXPECT_FALSE(
+      MakeFitOptions(Merged({{"self_force", "mlp:2"}, {"ensemble", "2"}}, {{"self_force", "none"}}))
+          .ok());
+}
+
+TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
+  EXPECT_EQ(MakeFitOptions({{"seed", "18446744073709551615"}}).value().seed, UINT64_MAX);
+  for (const char* yes : {"true", "1", "yes"}) {
+    EXPECT_TRUE(MakeFitOptions({{"preset_priors", yes}}).value().preset_priors) << yes;
+  }
+  EXPECT_FALSE(MakeFitOptions({{"preset_priors", "0"}}).value().preset_priors);
+  EXPECT_EQ(MakeFitOptions({{"horizons", ""}}).value().horizons, std::vector<int>{0});
+}
+
+// The way of the library and that of the flags are one.
+TEST(FitSetup, TermsChangedByHandAreTheSameProblem) {
+  FitOptions by_hand = MakePreset("group").value();
+  by_hand.model.interaction.drive = true;
+  FreeTerms(&by_hand);
+  const FitOptions by_flags =
+      MakeFitOptions({{"preset", "group"}, {"interaction", "spring,damping,drive"}}).value();
+  EXPECT_EQ(SettingsJson(by_hand).dump(), SettingsJson(by_flags).dump());
+  by_hand.pool = "none";
+  FreeTerms(&by_hand);
+  EXPECT_FALSE(AnyPooled(by_hand.table));
+  FitOptions linear = MakePreset("tail").value();
+  SetSelfForce(SelfForceKind::kLinear, &linear);
+  FreeTerms(&linear);
+  EXPECT_EQ(
+      SettingsJson(linear).dump(),
+      SettingsJson(MakeFitOptions({{"preset", "tail"}, {"self_force", "linear"}}).value()).dump());
+}
+
+TEST(FitSetup, WordsOfACandidate) {
+  const GivenOptions words = ParseOptionWords(" --preset=ldp  --fix=mu=3 ").value();
+  EXPECT_EQ(words, (GivenOptions{{"preset", "ldp"}, {"fix", "mu=3"}}));
+  const GivenOptions both = Merged({{"preset", "tail"}, {"seed", "2"}}, words);
+  EXPECT_EQ(both, (GivenOptions{{"preset", "ldp"}, {"seed", "2"}, {"fix", "mu=3"}}));
+  for (const char* wrong : {"--model_out=x", "preset=ldp", "--preset"}) {
+    EXPECT_FALSE(ParseOptionWords(wrong).ok()) << wrong;
+  }
+}
+
+TEST(PrepareFit, HoldsWhatHasNoEffectAndSaysWhatIsLeft) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitOptions options = MakePreset("tail").value();
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  EXPECT_TRUE(options.table[kTailTime].free);
+  for (PendulumRecording& r : recordings) {
+    for (ScenePush& push : r.scene.pushes) push.kind = PushKind::kExternal;
+  }
+  std::vector<std::string> warnings;
+  ASSERT_FALSE(PrepareFit(recordings, &options, &warnings));
+  EXPECT_FALSE(options.table[kTailTime].free);
+  for (Parameter id : {kMu, kKpTheta, kAx}) options.table[id].free = false;
+  const MaybeError error = PrepareFit(recordings, &options);
+  ASSERT_TRUE(error);
+  EXPECT_TRUE(Contains(error->ToString(), "every parameter is fixed"));
+}
+
+// By content or by motion; a replica's copies go by one id and are meant.
+TEST(PrepareFit, WarnsOfIdenticalRecordings) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  const auto warnings = [&recordings] {
+    FitOptions options = MakePreset("tail").value();
+    std::vector<std::string> told;
+    EXPECT_FALSE(PrepareFit(recordings, &options, &told));
+    std::string text;
+    for (const std::string& warning : told) text += warning + "\n";
+    return text;
+  };
+  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
+  recordings.push_back(recordings[0]);
+  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
+  recordings.back().id = "copy";
+  recordings.push_back(recordings[1]);
+  recordings.back().id = "other";
+  recordings.back().content_hash = "another file";  // and yet the same motion
+  EXPECT_TRUE(
+      Contains(warnings(), "the motion of '" + recordings[0].id + "' is repeated in copy:"));
+  EXPECT_TRUE(Contains(warnings(), "'" + recordings[1].id + "' is repeated in other:"));
+  EXPECT_TRUE(Contains(warnings(), "--leave_out=other"));
+  recordings[6].content_hash = recordings[0].content_hash = "same";
+  for (auto& point : recordings[6].hip[0]) point[1] += 1e-9;
+  EXPECT_TRUE(Contains(warnings(), "is repeated in copy:"));
+}
+
+TEST(PrepareFit, RefusesWhatCannotBeFitted) {
+  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  FitOptions options = MakePreset("tail").value();
+  EXPECT_TRUE(Contains(PrepareFit({}, &options)->ToString(), "no recordings"));
+  options.table[kContactStiffness].free = true;
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(),
+                       "contact_stiffness has no effect on any of these recordings"));
+  options = MakePreset("tail").value();
+  options.sigmas.hip = -1.0;
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "--sigma_hip is -1"));
+}
+
+}  // namespace
+}  // namespace pushid

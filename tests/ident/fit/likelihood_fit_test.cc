@@ -1,0 +1,178 @@
+// Fits by likelihoods of single steps: planted noise and gains, scores, and what is refused.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ident/fit/fit.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/model/model_json.h"
+#include "models/parameter_facts.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+SyntheticOptions ProcessNoiseStudy(uint64_t seed) {
+  SyntheticOptions study = SmallStudy();
+  study.model.process_noise.diagonal = true;
+  study.parameters[kSigmaX] = 12.0, study.parameters[kSigmaY] = 9.0;
+  study.parameters[kSigmaTheta] = 6.0, study.parameters[kSigmaPhi] = 5.0;
+  study.joint_noise_m = 0.002;
+  study.noise_at_first_frame = false;
+  study.seed = seed;
+  return study;
+}
+
+FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likelihood) {
+  FitOptions options = MakeFitOptions({{"preset", "tail"},
+                                       {"pool", "none"},
+                                       {"process_noise", "diagonal"},
+                                       {"likelihood", likelihood}})
+                           .value();
+  for (ParameterSpec& spec : options.table.specs) {
+    if (!spec.free && !IsNoiseParameter(spec.id)) spec.nominal = study.parameters[spec.id];
+  }
+  options.model.gain_scaling = study.model.gain_scaling;
+  options.model.push = study.model.push;
+  return options;
+}
+
+// Whole rollouts; nobody has set the noise.
+FitOptions NoisyRollouts(const SyntheticOptions& study) {
+  FitOptions options = DefaultFit(study);
+  options.model.process_noise = {};
+  options.model.process_noise.diagonal = true;
+  for (ParameterSpec& spec : options.table.specs) {
+    if (IsNoiseParameter(spec.id)) spec.nominal = AllParameterFacts()[spec.id].nominal;
+  }
+  return options;
+}
+
+TEST(InnovationFit, FindsPlantedNoiseAndGains) {
+  int covered = 0, free = 0;
+  for (uint64_t seed : {1, 2, 3}) {
+    const SyntheticOptions study = ProcessNoiseStudy(seed);
+    const std::vector<PendulumRecording> recordings = MakePendulums(study);
+    FitOptions options = ByLikelihood(study, "innovation");
+    ASSERT_FALSE(PrepareFit(recordings, &options));
+    const FitResult result = Fit(recordings, options);
+    ASSERT_TRUE(result.ok() && result.converged) << result.message;
+    for (const Estimate& e : result.estimates) {
+      const Parameter id = result.options.table.Find(e.name)->id;
+      if (!result.options.table[id].free) continue;
+      // Two millimetres on hip and each of two ankles, of which the cart is the middle.
+      const double truth = id == kMeasuredCart  ? 0.002 / std::sqrt(2.0)
+                           : id == kMeasuredHip ? 0.002
+                                                : study.parameters[id];
+      ++free;
+      covered += e.lower95 <= truth && truth <= e.upper95;
+      if (IsNoiseParameter(id)) {
+        EXPECT_NEAR(e.value, truth, 0.15 * truth) << e.name;
+      }
+    }
+    ASSERT_TRUE(result.likelihood);
+    EXPECT_EQ(result.likelihood->parameters, 12);
+    EXPECT_NEAR(result.likelihood->Aic() - result.likelihood->deviance, 24.0, 1e-9);
+  }
+  EXPECT_EQ(free, 36);
+  EXPECT_GE(covered, 31);  // 88 %
+}
+
+// Of measured states the errors count as noise.
+TEST(TransitionFit, OnExactStatesFindsTheNoise) {
+  SyntheticOptions study = ProcessNoiseStudy(4);
+  study.joint_noise_m = 0.0;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = ByLikelihood(study, "transition");
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.ok()) << result.message;
+  for (Parameter id : {kSigmaX, kSigmaY, kSigmaTheta, kSigmaPhi}) {
+    EXPECT_NEAR(result.parameters[id], study.parameters[id], 0.08 * study.parameters[id])
+        << result.options.table[id].name;
+  }
+}
+
+TEST(TransitionFit, AsPrintedTheNoiseIsFarTooSmall) {
+  const SyntheticOptions study = ProcessNoiseStudy(5);
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = ByLikelihood(study, "transition_as_printed");
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.ok()) << result.message;
+  EXPECT_LT(result.parameters[kSigmaX], 0.2 * study.parameters[kSigmaX]);
+  EXPECT_FALSE(result.likelihood) << "it is no likelihood";
+}
+
+// Whole rollouts are fitted as ever; the noise is what single steps need at their optimum.
+TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
+  const SyntheticOptions study = ProcessNoiseStudy(6);
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const FitOptions noisy = NoisyRollouts(study);
+  FitOptions plain = noisy;
+  plain.model.process_noise = {};
+  const FitResult without = Fit(recordings, plain), with = Fit(recordings, noisy);
+  ASSERT_TRUE(without.ok() && with.ok());
+  for (int id = 0; id < kFirstNoiseParameter; ++id) {
+    EXPECT_EQ(without.parameters[id], with.parameters[id]) << without.options.table.specs[id].name;
+  }
+  for (Parameter id : {kSigmaX, kSigmaY, kSigmaTheta, kSigmaPhi}) {
+    EXPECT_NEAR(with.parameters[id], study.parameters[id], 0.15 * study.parameters[id]);
+  }
+}
+
+// Beside gains that are not the noise's own: roughness may be force or errors of measurement.
+TEST(ProcessNoise, IsToldFromErrorsOfMeasurement) {
+  SyntheticOptions study = ProcessNoiseStudy(3);
+  study.subjects = 6;
+  study.noise_at_first_frame = true;
+  const FitResult fit = Fit(MakePendulums(study), NoisyRollouts(study));
+  ASSERT_TRUE(fit.ok());
+  EXPECT_NEAR(fit.parameters[kMeasuredHip], 0.002, 2e-4);
+  EXPECT_NEAR(fit.parameters[kMeasuredCart], 0.002 / std::sqrt(2.0), 2e-4);
+  EXPECT_LT(fit.parameters[kSigmaX], 20.0) << "with what the gains err by, but no roughness";
+}
+
+TEST(InnovationFit, ComesBackFromJson) {
+  SyntheticOptions study = TinyStudy();
+  study.model.process_noise.diagonal = true;
+  study.parameters[kSigmaX] = study.parameters[kSigmaY] = 10.0;
+  study.parameters[kSigmaTheta] = study.parameters[kSigmaPhi] = 6.0;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = ByLikelihood(study, "innovation");
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  FittedModel model;
+  model.fit = Fit(recordings, options);
+  ASSERT_TRUE(model.fit.ok());
+  const auto back = FittedModelFromJson(ToJson(model, {}), "model.json");
+  ASSERT_TRUE(back.ok()) << back.error().ToString();
+  const FitResult& fit = back.value().fit;
+  EXPECT_EQ(fit.parameters, model.fit.parameters);
+  EXPECT_EQ(fit.options.likelihood, Likelihood::kInnovation);
+  EXPECT_TRUE(fit.options.model.process_noise.diagonal);
+  ASSERT_TRUE(fit.likelihood);
+  EXPECT_EQ(fit.likelihood->deviance, model.fit.likelihood->deviance);
+  EXPECT_EQ(fit.likelihood->measured, model.fit.likelihood->measured);
+}
+
+TEST(Likelihoods, ModelsWithAMemoryAreRefused) {
+  const SyntheticOptions study = TinyStudy();
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const auto refused = [&](const GivenOptions& more, const std::string& says) {
+    GivenOptions given = {{"preset", "tail"}, {"likelihood", "innovation"}};
+    given.insert(given.end(), more.begin(), more.end());
+    Result<FitOptions> options = MakeFitOptions(given);
+    ASSERT_TRUE(options.ok()) << options.error().ToString();
+    const MaybeError error = PrepareFit(recordings, &options.value());
+    ASSERT_TRUE(error) << says;
+    EXPECT_NE(error->ToString().find(says), std::string::npos) << error->ToString();
+  };
+  refused({{"stance", "threshold"}}, "--stance=threshold");
+  refused({{"self_force", "mlp:4"}}, "a network");
+  refused({{"interaction", "contact,drive"}}, "--interaction=drive");
+  recordings[1].initial_velocity = InitialVelocity::kFree;
+  refused({}, recordings[1].id);
+}
+
+}  // namespace
+}  // namespace pushid

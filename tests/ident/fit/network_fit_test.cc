@@ -1,0 +1,227 @@
+// Fits with a self-force network: a planted one is found again (its predictions, not its weights),
+// what guards a training, and what a result keeps of it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "datasets/files/json_file.h"
+#include "ident/fit/confidence.h"
+#include "ident/fit/fit.h"
+#include "ident/model/model_json.h"
+#include "ident/report/report_text.h"
+#include "ident/solver/early_stopping.h"
+#include "tests/ident/network_samples.h"
+
+namespace pushid {
+namespace {
+
+class PlantedNetworks : public testing::TestWithParam<NetworkShape> {};
+
+TEST_P(PlantedNetworks, PredictUnseenPushesAsTheTruthDoes) {
+  const Study study = PlantedStudy(PlantedNetwork(GetParam()), 0.0);
+  const double without = HeldOutAde(study, FitWith(study, {}));
+  const double with = HeldOutAde(study, FitWith(study, GetParam()));
+  EXPECT_GT(without, 0.002);
+  EXPECT_LT(with, 0.2 * without);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PlantedNetworks,
+                         testing::Values(NetworkShape{NetworkKind::kMlp, 3},
+                                         NetworkShape{NetworkKind::kGru, 2}),
+                         [](const auto& test) {
+                           return test.param.kind == NetworkKind::kMlp ? "mlp" : "gru";
+                         });
+
+// Where there is nothing to learn, a weak network learns nothing that shows.
+TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
+  SyntheticOptions synthetic = SmallStudy();
+  synthetic.joint_noise_m = 0.002;
+  FitOptions options = UnbiasedFit(synthetic);
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 4}, 1);
+  options.network_prior = 0.3;
+  const FitResult result = Fit(MakePendulums(synthetic), options);
+  ASSERT_TRUE(result.takeover.has_value());
+  EXPECT_LT(std::abs(result.takeover->mu), 2.0);
+  EXPECT_LT(std::abs(result.takeover->kp_theta), 70.0);
+  EXPECT_NEAR(result.parameters[kKpTheta], synthetic.parameters[kKpTheta],
+              0.1 * synthetic.parameters[kKpTheta]);
+}
+
+TEST(NetworkFit, ThePenaltyGivesTheGainsTheirMeaningBack) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 3}), 0.0);
+  const FitResult free = FitWith(study, {NetworkKind::kMlp, 3});
+  study.options.takeover_weight = 30.0;
+  const FitResult held = FitWith(study, {NetworkKind::kMlp, 3});
+  const auto taken = [](const FitResult& r) {
+    return std::abs(r.takeover->mu) / 40.0 + std::abs(r.takeover->kp_theta) / 1400.0 +
+           std::abs(r.takeover->kd_theta) / 70.0;
+  };
+  EXPECT_GT(taken(free), 0.05);
+  EXPECT_LT(taken(held), 0.2 * taken(free));
+}
+
+TEST(NetworkFit, ThreadsDoNotMatter) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.network_prior = 1.0;
+  const FitResult one = FitWith(study, {NetworkKind::kMlp, 2});
+  const FitResult again = FitWith(study, {NetworkKind::kMlp, 2});
+  study.options.num_threads = 2;
+  const FitResult two = FitWith(study, {NetworkKind::kMlp, 2});
+  EXPECT_EQ(one.parameters, again.parameters);
+  EXPECT_EQ(one.options.model.learned->weights, again.options.model.learned->weights);
+  EXPECT_NEAR(two.cost, one.cost, 1e-9 * one.cost);
+  for (Parameter id : one.options.table.Free()) {
+    EXPECT_NEAR(two.parameters[id], one.parameters[id], 1e-9 * std::abs(one.parameters[id]));
+  }
+}
+
+TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
+  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  FitOptions options = study.options;
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  const FitProblem problem(study.training, options);
+  FitPoint point = problem.NominalPoint();
+  EarlyStopping stopping(problem, &point);
+  ceres::IterationSummary step;
+  step.step_is_successful = true;
+  const auto at = [&](double mu) {  // the truth of the study is the best
+    point.shared[0] = ToFitted(problem.map().fitted[0].transform, mu);
+    return stopping(step);
+  };
+  const double nominal = point.shared[0];
+  EXPECT_EQ(at(25.0), ceres::SOLVER_CONTINUE);
+  const double best = stopping.best().shared[0];
+  EXPECT_NE(best, nominal);
+  ceres::CallbackReturnType last = ceres::SOLVER_CONTINUE;
+  for (int i = 0; i < 10; ++i) last = at(300.0 + i);
+  EXPECT_EQ(last, ceres::SOLVER_TERMINATE_SUCCESSFULLY);
+  EXPECT_TRUE(stopping.stopped());
+  EXPECT_EQ(stopping.best().shared[0], best);
+}
+
+TEST(EarlyStopping, HoldsOutAStratifiedShare) {
+  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  const FitProblem problem(study.training, study.options);
+  const auto split = SplitForEarlyStopping(problem, 0.25, 1);
+  ASSERT_TRUE(split.ok());
+  int held_out = 0;
+  for (size_t i = 0; i < study.training.size(); ++i) {
+    EXPECT_EQ(split.value().training[i] + split.value().held_out[i], 1);
+    held_out += split.value().held_out[i];
+  }
+  EXPECT_NEAR(held_out, 0.25 * static_cast<double>(study.training.size()), 1.0);
+  EXPECT_FALSE(SplitForEarlyStopping(problem, 0.01, 1).ok());
+}
+
+// Six recordings cannot give a fiftieth of themselves away, and the fit says so.
+TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
+  const SyntheticOptions synthetic = TinyStudy();
+  FitOptions options = DefaultFit(synthetic);
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  options.early_stopping = 0.02;
+  const FitResult result = Fit(MakePendulums(synthetic), options);
+  EXPECT_FALSE(result.ok());
+  EXPECT_NE(result.message.find("--early_stopping"), std::string::npos) << result.message;
+}
+
+TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kGru, 2}), 0.002);
+  study.options.ensemble = 3;
+  study.options.network_prior = 1.0;
+  const FittedModel model{FitWith(study, {NetworkKind::kGru, 2}), {}, {}, {}, {}};
+  const FitResult& result = model.fit;
+  ASSERT_EQ(result.others.size(), 2u);
+  const nlohmann::ordered_json json = ToJson(model, RunInfo{});
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
+  EXPECT_EQ(read.value().fit.options.model.learned->weights, result.options.model.learned->weights);
+  EXPECT_EQ(read.value().fit.options.ensemble, 3);
+  EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, result));
+  EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
+  EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);
+  // Weights are not in the table.
+  for (const Estimate& e : read.value().fit.nuisance) {
+    EXPECT_EQ(e.name.find("weight"), std::string::npos);
+  }
+}
+
+TEST(NetworkFit, AnEarlyStopHasTheCostOfAllRecordings) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.network_prior = 0.0;
+  study.options.early_stopping = 0.25;
+  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
+  double sum = 0.0;
+  for (const FittedRecording& recording : result.recordings) sum += recording.cost;
+  EXPECT_NEAR(result.cost, sum, 1e-9 * sum);
+}
+
+// The weights, of which a result keeps no covariance, follow along.
+TEST(NetworkFit, ProfilesAreAsWideAsTheClusteredIntervals) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.005);
+  study.options.network_prior = 1.0;
+  FittedModel model{FitWith(study, {NetworkKind::kMlp, 2}), {}, {}, {}, {}};
+  const FitResult& result = model.fit;
+  ASSERT_FALSE(AddProfiles(study.training, {"mu", "Kp_theta"}, 1, nullptr, &model));
+  ASSERT_EQ(model.profiles.size(), 2u);
+  for (const Profile& profile : model.profiles) {
+    const auto estimate = std::find_if(result.estimates.begin(), result.estimates.end(),
+                                       [&](const Estimate& e) { return e.name == profile.name; });
+    ASSERT_NE(estimate, result.estimates.end());
+    const double width = estimate->upper95 - estimate->lower95;
+    EXPECT_NEAR(profile.lower95, estimate->lower95, 0.25 * width) << profile.name;
+    EXPECT_NEAR(profile.upper95, estimate->upper95, 0.25 * width) << profile.name;
+  }
+}
+
+TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.ensemble = 2;
+  const nlohmann::ordered_json good =
+      ToJson({FitWith(study, {NetworkKind::kMlp, 2}), {}, {}, {}, {}}, RunInfo{});
+  const auto complaint = [](const nlohmann::ordered_json& json) {
+    const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
+    return read.ok() ? "" : read.error().ToString();
+  };
+  EXPECT_EQ(complaint(good), "");
+  nlohmann::ordered_json without = good, other = good;
+  without.erase("self_network");
+  EXPECT_NE(complaint(without).find("self_force is mlp:2"), std::string::npos);
+  other["ensemble"][0]["self_network"] = ToJson(*InitialNetwork({NetworkKind::kMlp, 3}, 1));
+  EXPECT_NE(complaint(other).find("a member's network"), std::string::npos);
+}
+
+// The prediction of an ensemble lies between those of its members.
+TEST(Ensemble, PredictsTheMedian) {
+  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  study.options.ensemble = 3;
+  study.options.network_prior = 3.0;
+  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
+  const IdentifiedModel model = ModelOf(result);
+  const PendulumRecording& recording = study.held_out.front();
+  const Prediction median = Predict(model, recording);
+  std::vector<IdentifiedModel> members(3, model);
+  for (IdentifiedModel& member : members) member.others.clear();
+  for (int k : {0, 1}) {
+    members[k + 1].parameters = result.others[k].parameters;
+    members[k + 1].options.learned = result.others[k].network;
+  }
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    std::vector<double> x;
+    for (const IdentifiedModel& m : members) x.push_back(Predict(m, recording).path.At(t, 0).q[0]);
+    std::sort(x.begin(), x.end());
+    EXPECT_EQ(median.path.At(t, 0).q[0], x[1]);
+  }
+  // One that falls has no say; two of three have the last.
+  IdentifiedModel bad = model;
+  bad.others[0].parameters[kKpTheta] = -1e5;
+  const Prediction two = Predict(bad, recording);
+  ASSERT_TRUE(two.status.ok);
+  EXPECT_EQ(two.path.At(20, 0).q[0], 0.5 * (Predict(members[0], recording).path.At(20, 0).q[0] +
+                                            Predict(members[2], recording).path.At(20, 0).q[0]));
+  bad.others[1].parameters[kKpTheta] = -1e5;
+  EXPECT_FALSE(Predict(bad, recording).status.ok);
+}
+
+}  // namespace
+}  // namespace pushid

@@ -1,0 +1,107 @@
+// Feet that hold and step: what made synthetic recordings is found again, and who steps is told.
+#include <gtest/gtest.h>
+
+#include "ident/fit/fit.h"
+#include "ident/fit/step_probability.h"
+#include "ident/model/identified_model.h"
+#include "ident/prediction/evaluation.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+// Pushes of which some make people step and some do not.
+SyntheticOptions StandingStudy(PushKind kind, double noise) {
+  SyntheticOptions study;
+  study.model.stance = Stance::kThreshold;
+  study.model.push = PushUse::kAsRecorded;
+  study.parameters = PublishedStanceParameters();
+  study.push_kind = kind;
+  study.strengths = {{"weak", 0.8}, {"medium", 2.2}, {"strong", 3.0}};
+  study.frames = 100;
+  study.joint_noise_m = noise;
+  study.direction_sigma_rad = 0.1;
+  return study;
+}
+
+constexpr Parameter kFree[] = {kMu, kAx, kSupportFront, kStepOnset, kStepRelease};
+
+FitOptions FreeStance(const SyntheticOptions& study) {
+  FitOptions options = MakePreset("tail").value();
+  SetStance(Stance::kThreshold, &options);
+  options.pool = "none";
+  options.pool_by = kSubjectUnit;
+  for (ParameterSpec& spec : options.table.specs) {
+    spec.prior.reset();
+    spec.free = false;
+    spec.nominal = study.parameters[spec.id];
+  }
+  for (Parameter id : kFree) options.table[id].free = true;
+  (void)PoolParameters(&options);
+  options.model = study.model;
+  options.settling_weight = 0.0;
+  return options;
+}
+
+TEST(StanceFit, ExactRecordingsGiveTheTruthFromAnotherStart) {
+  const SyntheticOptions study = StandingStudy(PushKind::kExternal, 0.0);
+  FitOptions options = FreeStance(study);
+  for (Parameter id : kFree) options.table[id].nominal *= 1.25;
+  options.sigma_source = SigmaSource::kFixed;
+  options.recording_weight = RecordingWeight::kFrame;
+  options.function_tolerance = 1e-16;
+  const FitResult fit = Fit(MakePendulums(study), options);
+  ASSERT_TRUE(fit.ok()) << fit.message;
+  for (Parameter id : kFree) {
+    EXPECT_NEAR(fit.parameters[id], study.parameters[id], 1e-3 * study.parameters[id])
+        << options.table[id].name;
+  }
+}
+
+TEST(StanceFit, NoisyRecordingsHoldTheTruthWithinTheirErrors) {
+  for (double noise : {0.001, 0.003, 0.01}) {
+    for (PushKind kind : {PushKind::kExternal, PushKind::kNet}) {
+      SyntheticOptions study = StandingStudy(kind, noise);
+      study.noise_at_first_frame = false;
+      const FitOptions options = FreeStance(study);
+      const FitResult fit = Fit(MakePendulums(study), options);
+      ASSERT_TRUE(fit.ok()) << fit.message;
+      for (Parameter id : kFree) {
+        const Estimate* e = FindEstimate(fit.estimates, options.table[id].name);
+        ASSERT_NE(e, nullptr);
+        const double truth = study.parameters[id];
+        EXPECT_LT(std::abs(e->value - truth), 4.5 * e->standard_error + 0.002 * truth)
+            << e->name << " " << e->value << " +- " << e->standard_error << " at noise " << noise;
+      }
+    }
+  }
+}
+
+TEST(StanceFit, TellsWhoSteps) {
+  const SyntheticOptions study = StandingStudy(PushKind::kExternal, 0.001);
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  // Synthetic feet slide where the cart goes: who has gone is who stepped.
+  for (PendulumRecording& recording : recordings) {
+    const auto& states = recording.states[0];
+    const double gone = (states.back().q - states.front().q).head<2>().norm();
+    recording.steps.assign(1, PersonSteps());
+    if (gone > 0.05) recording.steps[0].steps.emplace_back();
+  }
+  IdentifiedModel model;
+  model.options = study.model;
+  model.parameters = study.parameters;
+  int stepped = 0;
+  for (const PendulumRecording& recording : recordings) stepped += recording.Stepped(0);
+  ASSERT_GT(stepped, 2);
+  ASSERT_LT(stepped, static_cast<int>(recordings.size()) - 2);
+  model.step_probability = FitStepProbability(model, recordings);
+  ASSERT_TRUE(model.step_probability.has_value());
+  const StepScore score = Evaluate(model, recordings).model.steps;
+  EXPECT_EQ(score.tracks, static_cast<int>(recordings.size()));
+  EXPECT_EQ(score.stepped, stepped);
+  EXPECT_GT(score.auc, 0.95);
+  EXPECT_LT(score.brier, 0.08);
+}
+
+}  // namespace
+}  // namespace pushid

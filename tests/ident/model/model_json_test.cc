@@ -1,0 +1,225 @@
+// A result is its JSON: nothing is lost, damage is named, the same seed gives the same bytes.
+#include "ident/model/model_json.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "datasets/files/json_file.h"
+#include "ident/fit/fit.h"
+#include "ident/report/report_text.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+FittedModel SampleModel(const TableEdits& edits = {}, int num_threads = 1) {
+  const SyntheticOptions study = TinyStudy();
+  FitOptions options = DefaultFit(study);
+  options.num_starts = 2;
+  options.num_threads = num_threads;
+  EXPECT_FALSE(EditTable(edits, &options.table));
+  FittedModel model;
+  model.fit = Fit(MakePendulums(study), options);
+  model.provenance = {"0.1.0", {{"seed", "1"}, {"preset", "tail"}}, {"preset"}, "m.json", "abc",
+                      "single"};
+  return model;
+}
+
+const RunInfo kRun = {"2024-01-01", "here", "model.json", 1.5, 1};
+
+Json RoundTrip(const Json& json) {
+  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
+  EXPECT_TRUE(read.ok()) << read.error().ToString();
+  return ToJson(read.value(), kRun);
+}
+
+TEST(ResultJson, RoundTripIsExact) {
+  // Plain; with null directions (infinite errors); with pooled subjects.
+  for (const TableEdits& edits : {TableEdits{}, TableEdits{"", "Kp_x,Kp_y", "", "", ""},
+                                  TableEdits{"", "", "", "", "mu,Kp_theta"}}) {
+    const Json json = ToJson(SampleModel(edits), kRun);
+    EXPECT_EQ(RoundTrip(json).dump(), json.dump());
+    // Through text too, as a file has it.
+    EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+  }
+}
+
+// Numbers that do not end in binary, an open side, a bootstrap and every diagnostic.
+FittedModel JudgedModel() {
+  FittedModel model = SampleModel();
+  const double infinity = std::numeric_limits<double>::infinity();
+  model.profiles = {{"mu",
+                     "N s/m",
+                     20.1,
+                     ProfileClass::kPracticallyNot,
+                     ProfileClass::kStructurallyNot,
+                     -infinity,
+                     30.7,
+                     1.1,
+                     0.3,
+                     "bound",
+                     "threshold",
+                     {{10.0 / 3.0, 1.3, {{"a_x", -0.1}}}, {20.1, 1.1, {{"a_x", -0.2}}}}}};
+  model.bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  model.bootstrap->drawn_by = ClusterBy::kSubject;
+  model.bootstrap->drawn_from = 4;
+  model.bootstrap->people_shared = true;
+  Diagnostics& d = model.fit.diagnostics;
+  d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
+  d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be separated"});
+  d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
+  d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
+  d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
+  model.advice = {{"free less", "pushid-fit --fix=mu"}};
+  return model;
+}
+
+TEST(ResultJson, ConfidenceRoundTripIsExact) {
+  const Json json = ToJson(JudgedModel(), kRun);
+  for (const char* key : {"profiles", "bootstrap", "diagnostics"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+  EXPECT_EQ(json["profiles"][0]["interval_95"][0], "-infinity");
+  EXPECT_EQ(json["profiles"][0]["class"], "practically_not");
+}
+
+TEST(ResultJson, InfinitiesStayInfinite) {
+  // Freed alone, Kp_x is told from mu by what little people move sideways.
+  const FittedModel model = SampleModel({"", "Kp_x,Kp_y", "", "", ""});
+  const Json json = ToJson(model, kRun);
+  EXPECT_TRUE(Contains(json.dump(), "\"infinity\""));
+  EXPECT_FALSE(Contains(json.dump(), "null,"));
+  const FittedModel read = FittedModelFromJson(json, "").value();
+  const Estimate& e = *FindEstimate(read.fit.estimates, "Kp_x");
+  EXPECT_EQ(e.status, EstimateStatus::kUnidentifiable);
+  EXPECT_EQ(e.standard_error, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(e.lower95, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ReportText(read), ReportText(model));
+}
+
+// Five recordings that the data of two parameters run away on: what is derived has no bounds then,
+// and a constant error has no autocorrelation. A null in their places is a model that cannot be
+// read.
+TEST(ResultJson, NumbersThatAreNoneComeBack) {
+  FittedModel model = JudgedModel();
+  FitResult& result = model.fit;
+  const double infinity = std::numeric_limits<double>::infinity(), none = std::nan("");
+  result.derived = {{"c_x", "N s/m", -infinity, infinity, -infinity, infinity}};
+  result.estimates[0].value = infinity;
+  model.profiles[0].points[0] = {infinity, infinity, {{"a_x", none}}};
+  model.profiles[0].estimate = model.profiles[0].cost = infinity;
+  Diagnostics& d = result.diagnostics;
+  d.start.null_directions[0].coefficients[0] = none;
+  d.start.null_directions[0].identified = result.derived;
+  d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
+  d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
+  d.trace[0] = {8, 0, infinity, none};
+  result.uncertainty.sigma = result.uncertainty.settling.free_seconds = infinity;
+  result.behaviour.fastest_growth = none;
+  SettlingSimulation& fallen = result.behaviour.simulations.front();
+  fallen.speed = fallen.lean = fallen.distance = fallen.advance = fallen.pushed_advance = infinity;
+  result.cost = result.recordings[0].cost = infinity;
+  SolveStart& start = result.starts.front();
+  start.cost = start.stages.front().initial_cost = start.stages.front().final_cost = infinity;
+  start.from.shared = start.to.shared = {infinity, none};
+  const Json json = ToJson(model, kRun);
+  EXPECT_FALSE(Contains(json.dump(), "null,") || Contains(json.dump(), "null]") ||
+               Contains(json.dump(), "null}"));
+  EXPECT_EQ(RoundTrip(Json::parse(json.dump())).dump(), json.dump());
+}
+
+TEST(ResultJson, PredictionsNeedTheJsonAlone) {
+  const FittedModel model = SampleModel({"", "", "", "", "mu"});
+  const FittedModel read = FittedModelFromJson(ToJson(model, kRun), "").value();
+  const IdentifiedModel a = ModelOf(model.fit), b = ModelOf(read.fit);
+  EXPECT_EQ(a.parameters, b.parameters);
+  EXPECT_EQ(a.by_unit, b.by_unit);
+  EXPECT_EQ(a.by_unit.size(), 2u);
+}
+
+TEST(ResultJson, SameSeedSameBytes) {
+  Json a = ToJson(SampleModel(), kRun), b = ToJson(SampleModel(), kRun);
+  a.erase("run");
+  b.erase("run");
+  EXPECT_EQ(a.dump(), b.dump());
+}
+
+// Evaluations run ahead over threads, and Ceres adds up in one order: not a bit differs.
+TEST(ResultJson, ThreadsDoNotMatter) {
+  Json one = ToJson(SampleModel({}, 1), kRun), two = ToJson(SampleModel({}, 2), kRun);
+  one.erase("run");  // how long it took
+  two.erase("run");
+  EXPECT_EQ(one.dump(), two.dump());
+}
+
+TEST(ResultJson, DamageIsNamed) {
+  const Json good = ToJson(SampleModel(), kRun);
+  const auto message = [](const Json& json) {
+    const Result<FittedModel> read = FittedModelFromJson(json, "some.json");
+    EXPECT_FALSE(read.ok());
+    return read.ok() ? std::string() : read.error().ToString();
+  };
+  EXPECT_TRUE(Contains(message(Json::array()), "some.json: this is not a pushid model"));
+  EXPECT_TRUE(Contains(message({{"recordings", 3}}), "this is not a pushid model"));
+  EXPECT_TRUE(Contains(message({{"format", 7}}), "this is not a pushid model"));
+  Json json = good;
+  json["format_version"] = 99;
+  EXPECT_TRUE(Contains(message(json), "newer pushid"));
+  json = good;
+  json.erase("values");
+  EXPECT_TRUE(Contains(message(json), "values"));
+  json = good;
+  json["model"]["posture"] = "sitting";
+  EXPECT_TRUE(Contains(message(json), "posture is 'sitting'"));
+  json = good;
+  json["table"][0]["name"] = "nu";
+  EXPECT_TRUE(Contains(message(json), "unknown parameter 'nu'"));
+  json = good;
+  json["fit"]["cost"] = "cheap";
+  EXPECT_TRUE(Contains(message(json), "some.json: incomplete or damaged model"));
+  json = good;
+  json["uncertainty"]["covariance_fitted_scale"][1] = Json::array({1.0});
+  EXPECT_TRUE(Contains(message(json), "damaged"));
+  // Any entry of the top gone is an error, never a crash.
+  for (const auto& [key, value] : good.items()) {
+    // Older models have none.
+    static const std::set<std::string> kLater = {"format_version", "diagnostics", "changed_flags",
+                                                 "push_range", "recording_effect"};
+    if (kLater.count(key) > 0) continue;
+    json = good;
+    json.erase(key);
+    EXPECT_FALSE(message(json).empty()) << key;
+  }
+}
+
+using ResultFile = TempDirTest;
+
+TEST_F(ResultFile, ReadsWhatWasWritten) {
+  const Json json = ToJson(SampleModel(), kRun);
+  ASSERT_FALSE(WriteJson(Path("model.json"), json));
+  const Result<FittedModel> read = ReadFittedModel(Path("model.json"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), kRun).dump(), json.dump());
+}
+
+TEST_F(ResultFile, BadFilesAreNamed) {
+  const std::string cut = WriteText("cut.json", "{\"format\": \"pushid model\",\n \"values\": {");
+  const Result<FittedModel> read = ReadFittedModel(cut);
+  ASSERT_FALSE(read.ok());
+  EXPECT_TRUE(Contains(read.error().ToString(), "cut.json:2"));
+  const Result<FittedModel> missing = ReadFittedModel(Path("missing.json"));
+  ASSERT_FALSE(missing.ok());
+  EXPECT_TRUE(Contains(missing.error().ToString(), "missing.json"));
+}
+
+}  // namespace
+}  // namespace pushid
