@@ -5,6 +5,8 @@
 #include <iterator>
 #include <set>
 
+#include "ident/fit/step_probability.h"
+
 namespace pushid {
 
 namespace {
