@@ -19,12 +19,6 @@ using namespace pushid;
 
 constexpr int kInterrupted = 130;  // as a shell has it
 
-std::string BinFolder() {
-  std::error_code failed;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
-  return failed ? "." : self.parent_path().string();
-}
-
 Result<std::vector<BatchJob>> ChosenJobs(const BatchFlags& flags,
                                          const std::vector<BatchJob>& all) {
   const std::vector<BatchJob> jobs = Shard(all, flags.shard, flags.shards);
@@ -55,7 +49,7 @@ int PrintCommands(const BatchFlags& flags, const BatchPlan& plan,
     if (flags.resume && ReadResult(plan, job).done()) continue;
     const std::string folder = JobFolder(plan, job);
     std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
-    for (const auto& command : JobCommands(job, plan, folder, BinFolder())) {
+    for (const auto& command : JobCommands(job, plan, folder, OwnFolder())) {
       std::printf("%s%s\n", before.c_str(), ShellText(command).c_str());
       before.clear();
     }
@@ -94,7 +88,7 @@ int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<Ba
   options.keep_going = flags.keep_going;
   options.time_limit_s = flags.time_limit_s.value_or(plan.time_limit_s);
   options.memory_limit_mb = flags.memory_limit_mb.value_or(plan.memory_limit_mb);
-  options.bin = BinFolder();
+  options.bin = OwnFolder();
   ProgressLine line;
   const Result<BatchOutcome> outcome =
       RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
@@ -136,7 +130,7 @@ int Run() {
   const Result<std::vector<BatchJob>> jobs = ChosenJobs(flags, all.value());
   if (!jobs.ok()) return Fail(jobs.error());
   if (flags.action != BatchAction::kGather) {
-    const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), BinFolder());
+    const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), OwnFolder());
     if (wrong) return Fail(*wrong);
   }
   switch (flags.action) {

@@ -1,8 +1,8 @@
 // apps: pushid-fit: recordings in, identified parameters out.
 #include <cstdio>
 
+#include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/confidence_flags.h"
 #include "apps/flags/fit_flags.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/model_file.h"
@@ -13,12 +13,10 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_data.h"
-#include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/parameter_glossary.h"
 #include "ident/problem/parallel.h"
-#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"
 
@@ -28,9 +26,8 @@ using namespace pushid;
 
 // The recordings of a bootstrap's replica, those drawn several times standing there several times.
 std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
-                                         int replica, ClusterBy cluster) {
+                                         int replica, ClusterBy by) {
   if (replica == 0) return recordings;
-  const ClusterBy by = BootstrapBy() == ClusterBy::kAuto ? cluster : BootstrapBy();
   const std::vector<int> counts =
       DrawRecordings(MakeResamplingUnits(recordings, by), Seed(), replica);
   std::vector<PendulumRecording> drawn;
@@ -52,20 +49,6 @@ MaybeError CheckBodyFlags(const FitOptions& options, const std::string& folder) 
   return std::nullopt;
 }
 
-// The bodies of --body_weight.
-MaybeError TakeBodies(const std::vector<Recording>& recordings, const std::string& folder,
-                      FitOptions* options) {
-  if (options->body_weight <= 0.0) return std::nullopt;
-  const auto restoration = LoadRestoration(folder, "--body_restoration");
-  if (!restoration.ok()) return restoration.error();
-  const auto bodies = MakeBodyRecordings(recordings, options->mapping);
-  if (!bodies.ok()) return bodies.error();
-  const auto data = MakeBodyData(*restoration.value(), bodies.value());
-  if (!data.ok()) return data.error();
-  options->body = data.value();
-  return std::nullopt;
-}
-
 int Run() {
   const double begin = Now();
   const Result<FitFlags> flags = FitFlagsFromCommandLine();
@@ -76,7 +59,9 @@ int Run() {
   }
   Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return Fail(options.error());
-  if (MaybeError error = CheckConfidenceFlags()) return Fail(*error);
+  const Result<ModelChecks> read = ModelChecksFromCommandLine(Seed(), NumThreads());
+  if (!read.ok()) return Fail(read.error());
+  const ModelChecks& checks = read.value();
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
   if (MaybeError error = CheckBodyFlags(options.value(), flags.value().body_restoration)) {
     return Fail(*error);
@@ -91,18 +76,21 @@ int Run() {
       LoadFlaggedRecordings({}, options.value().body_weight > 0.0, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
-  const std::vector<PendulumRecording> pendulums =
-      Resampled(MakePendulumRecordings(recordings.value(), options.value().mapping),
-                flags.value().resample, options.value().cluster);
+  const std::vector<PendulumRecording> pendulums = Resampled(
+      MakePendulumRecordings(recordings.value(), options.value().mapping), flags.value().resample,
+      checks.bootstrap.by == ClusterBy::kAuto ? options.value().cluster : checks.bootstrap.by);
 
   options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
-  if (MaybeError error =
-          TakeBodies(recordings.value(), flags.value().body_restoration, &options.value())) {
-    return Fail(*error);
+  if (options.value().body_weight > 0.0) {
+    const auto bodies = LoadBodyData(flags.value().body_restoration, "--body_restoration",
+                                     recordings.value(), options.value().mapping);
+    if (!bodies.ok()) return Fail(bodies.error());
+    options.value().body = bodies.value();
   }
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
-  if (MaybeError error = CheckConfidence(options.value(), static_cast<int>(pendulums.size()))) {
+  if (MaybeError error =
+          CheckAgainst(checks, options.value(), static_cast<int>(pendulums.size()))) {
     return Fail(*error);
   }
   std::vector<std::string> unit_warnings;
@@ -123,15 +111,13 @@ int Run() {
     std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
     return kFitFailed;
   }
-  if (MaybeError error = AddConfidence(pendulums, &model)) return Fail(*error);
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   model.provenance = ProvenanceOfRun();
-  model.advice = Advise(model);
-  const Result<std::string> design = FlaggedDesign(pendulums, result);
-  if (!design.ok()) return Fail(design.error());
+  if (MaybeError error = AddFlaggedChecks(pendulums, checks, &model)) return Fail(*error);
+  const Result<std::string> sections = CheckSections(pendulums, checks, result);
+  if (!sections.ok()) return Fail(sections.error());
 
-  std::printf("%s%s%s", ReportText(model).c_str(), FlaggedPopulation(result).c_str(),
-              design.value().c_str());
+  std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
   if (!model_out.empty()) {
     if (MaybeError error = WriteModelFile(model_out, model, NumThreads(), begin))
       return Fail(*error);
@@ -150,5 +136,5 @@ int main(int argc, char** argv) {
                         "pushid-fit identifies friction, balance gains and the push tail from push "
                         "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "
                         "--model_out=model.json",
-                        Run);
+                        Run, nullptr, pushid::MovedCheckFlags());
 }

@@ -1,49 +1,101 @@
-// apps: pushid-simulate: synthetic recordings of people with known parameters; with --formation, a
-// model on people who stand together.
+// apps: pushid-simulate: synthetic recordings of people with known parameters.
+#include <gflags/gflags.h>
+
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/formation_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/simulate_flags.h"
-#include "apps/simulate_formation.h"
+#include "apps/flags/overwrite_flag.h"
+#include "apps/support/child_process.h"
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/recording.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/fit_setup.h"
 #include "ident/fit/push_range.h"
 #include "ident/parameters/option_names.h"
+#include "ident/validation/synthetic_truth.h"
+
+DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");
+DEFINE_int32(people, pushid::SyntheticOptions{}.subjects,
+             "number of people, of random mass and size");
+DEFINE_int32(group_size, pushid::SyntheticOptions{}.people_in_row,
+             "people of each recording: more than one stand in a row one behind the other, touch, "
+             "and the last is pushed (fit them with --preset=group)");
+DEFINE_int32(recordings_per_person, pushid::SyntheticOptions{}.recordings_per_subject,
+             "pushes per person: weak, medium and strong in turn");
+DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recording");
+DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
+// The library's recordings are exact; a user's trial should be as noisy as real ones.
+DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
+DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
+              "net (only the push's first part, the tail follows) or external");
+DEFINE_choice(truth_stance, pushid::SyntheticOptions{}.model.stance,
+              "without --model: behaviour of the synthetic people's feet: slide, or threshold "
+              "(hold, then step)");
+DEFINE_string(
+    truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
+    "without --model: process noise of the synthetic people: none, diagonal or full; with speed "
+    "and push, comma-separated, as --process_noise of pushid-fit (--set=sigma_x=...)");
+DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
+              "variation of all parameters between recordings (standard deviation of the "
+              "logarithm; 0.1 is about 10 %)");
+DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
+              "variation of all parameters between people, as in --recording_spread");
+DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
 
 using namespace pushid;
 
-// The model of --model, else the tail preset with the feet of --truth_stance and the process noise
-// of --truth_noise: what it fits has values near those identified from the published recordings,
-// what it holds keeps its value, so that a fit can find the truth exactly. Either with --set.
-Result<IdentifiedModel> Truth(Stance stance, const ProcessNoiseTerms& noise) {
-  const ModelFlags flags = ModelFlagsFromCommandLine();
-  if (!flags.file.empty()) {
-    for (const char* flag : {"truth_stance", "truth_noise"}) {
-      if (!Given(flag)) continue;
-      return Error{std::string("--model sets the parameters of the people; leave --") + flag +
-                   " out"};
-    }
-    return LoadFlaggedModel();
+constexpr char kOfModel[] = ": --model sets the parameters of the people; leave one of them out";
+
+// The library checks them too, but knows no flags.
+MaybeError CheckRecordingNumbers() {
+  for (MaybeError error :
+       {CheckRange("people", FLAGS_people, 1, 10000),
+        CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000),
+        CheckRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100)),
+        CheckRange("frames", FLAGS_frames, 3, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
+        CheckRange("noise", FLAGS_noise, 0, 0.1),
+        CheckRange("recording_spread", FLAGS_recording_spread, 0, 2),
+        CheckRange("subject_spread", FLAGS_subject_spread, 0, 2)}) {
+    if (error) return error;
   }
-  const Result<FitOptions> made = MakeFitOptions(
-      {{"preset", "tail"}, {"stance", NameOf(stance)}, {"process_noise", NameOf(noise)}});
-  if (!made.ok()) return made.error();
-  const FitOptions& preset = made.value();
-  const ParameterSet<double> published =
-      stance == Stance::kSlide ? PublishedTailParameters() : PublishedStanceParameters();
-  IdentifiedModel model;
-  model.options = preset.model;
-  model.table = preset.table;
-  model.parameters = preset.table.Values();
-  for (Parameter id : preset.table.Free()) model.parameters[id] = published[id];
-  if (MaybeError error = SetValues(flags.set, &model)) return *error;
-  return model;
+  return std::nullopt;
+}
+
+// All but the truth: the terms of the model that the flags name, not its parameters.
+Result<SyntheticOptions> StudyFromCommandLine() {
+  for (MaybeError error :
+       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
+        CheckRecordingNumbers(),
+        CheckFlagRules({{"truth_stance", FlagRule::kExcludes, {"model"}, kOfModel},
+                        {"truth_noise", FlagRule::kExcludes, {"model"}, kOfModel}})}) {
+    if (error) return *error;
+  }
+  const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);
+  if (!kind || *kind == PushKind::kNetWithoutFriction) {
+    return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
+  }
+  SyntheticOptions study;
+  for (MaybeError error :
+       {ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance),
+        ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise)}) {
+    if (error) return *error;
+  }
+  study.subjects = FLAGS_people;
+  study.people_in_row = FLAGS_group_size;
+  study.recordings_per_subject = FLAGS_recordings_per_person;
+  study.frames = FLAGS_frames;
+  study.fps = FLAGS_fps;
+  study.joint_noise_m = FLAGS_noise;
+  study.push_kind = *kind;
+  study.recording_spread = FLAGS_recording_spread;
+  study.subject_spread = FLAGS_subject_spread;
+  study.seed = FLAGS_seed;
+  return study;
 }
 
 void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
@@ -65,41 +117,62 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
 }
 
 int Run() {
-  if (FormationGiven()) return SimulateFormation();
-  const Result<SimulateFlags> flags = SimulateFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
-  const ModelOptions& asked = flags.value().recordings.model;
-  const Result<IdentifiedModel> truth = Truth(asked.stance, asked.process_noise);
+  const Result<SyntheticOptions> read = StudyFromCommandLine();
+  if (!read.ok()) return Fail(read.error());
+  SyntheticOptions study = read.value();
+  const ModelFlags named = ModelFlagsFromCommandLine();
+  const Result<IdentifiedModel> truth =
+      named.file.empty() ? SyntheticTruth(study, named.set) : LoadFlaggedModel();
   if (!truth.ok()) return Fail(truth.error());
-  const std::string& out = flags.value().out;
-  SyntheticOptions options = flags.value().recordings;
-  options.model = truth.value().options;
-  options.parameters = truth.value().parameters;
-  const Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
+  study.model = truth.value().options;
+  study.parameters = truth.value().parameters;
+  if (study.people_in_row > 1 && !study.model.interaction.Any()) {
+    Warn("the people of --model do not act on each other: only the pushed one of a group moves");
+  }
+  const Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(study);
   if (!made.ok()) return Fail(made.error());
   for (const std::string& warning : ExtrapolationWarnings(
            truth.value(),
            MakePendulumRecordings(Recordings(made.value()), truth.value().mapping))) {
     Warn(warning);
   }
-  if (MaybeError error = WriteSyntheticRecordings(out, options, made.value())) return Fail(*error);
-  PrintTruth(truth.value(), options);
-  std::printf("%zu recordings of %d people, joint noise %s mm: %s lists the BVH and push files\n",
-              made.value().size(), options.subjects,
-              Rounded(1000.0 * options.joint_noise_m, 3).c_str(),
-              (std::filesystem::path(out) / "manifest.json").c_str());
+  if (MaybeError error = WriteSyntheticRecordings(FLAGS_out, study, made.value())) {
+    return Fail(*error);
+  }
+  PrintTruth(truth.value(), study);
+  const std::string groups =
+      study.people_in_row > 1 ? " in rows of " + std::to_string(study.people_in_row) : "";
+  std::printf("%zu recordings of %d people%s, joint noise %s mm: %s lists the BVH and push files\n",
+              made.value().size(), study.subjects, groups.c_str(),
+              Rounded(1000.0 * study.joint_noise_m, 3).c_str(),
+              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
+}
+
+// Until version 0.4 pushid-simulate --formation=... is pushid-formation.
+bool AsksForFormation(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* word) {
+    const char* const name = word + std::strspn(word, "-");
+    return name > word && name - word <= 2 && std::strncmp(name, "formation", 9) == 0 &&
+           (name[9] == '\0' || name[9] == '=');
+  });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (AsksForFormation(argc, argv)) {
+    SetProgramName(argv[0]);
+    std::fprintf(stderr,
+                 "%s: note: --formation moved to pushid-formation; this spelling works until %s\n",
+                 ProgramName().c_str(), MovedFlags::kUntil);
+    return Fail(RunInstead("pushid-formation", {argv + 1, argv + argc}));
+  }
   return pushid::RunApp(
       argc, argv,
-      "pushid-simulate generates recordings of synthetic people with known parameters,\n"
-      "or rolls an identified model out on a formation.\n\n"
+      "pushid-simulate generates recordings of synthetic people with known parameters, alone or in "
+      "groups\n(pushid-formation rolls a model out on a crowd).\n\n"
       "  pushid-simulate --out=synthetic --people=4 --seed=1\n"
-      "  pushid-simulate --model=model.json --formation=line --people=10 --push=80 "
-      "--svg_out=wave.svg",
+      "  pushid-simulate --out=groups --people=6 --group_size=3",
       Run);
 }

@@ -33,7 +33,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"ident",
      {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "model", "fit",
       "prediction", "validation", "push", "bodies", "generators", "forecasts", "training",
-      "formations", "report", "report/page", ""}},
+      "formations", "report", "report/page", "checks", ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 

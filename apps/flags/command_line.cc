@@ -10,14 +10,10 @@
 #include <exception>
 #include <list>
 #include <new>
-#include <set>
-#include <sstream>
 
 #include "apps/support/blas_threads.h"
 #include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
-#include "datasets/files/atomic_file.h"
-#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 DEFINE_bool(quiet, false, "suppress progress on stderr");
@@ -25,59 +21,9 @@ DEFINE_bool(quiet, false, "suppress progress on stderr");
 namespace pushid {
 namespace {
 
-// gflags lists the flags of every library it finds; users care for ours.
-std::vector<gflags::CommandLineFlagInfo> OwnFlags() {
-  std::vector<gflags::CommandLineFlagInfo> all, own;
-  gflags::GetAllFlags(&all);
-  for (const gflags::CommandLineFlagInfo& flag : all) {
-    if (flag.filename.find("apps/") != std::string::npos) own.push_back(flag);
-  }
-  return own;
-}
-
-// What names outputs or only changes speed and talk is no part of a result.
-bool IsPartOfResult(const gflags::CommandLineFlagInfo& flag) {
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
-                                                 "check", "list_parameters"};
-  return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
-}
-
-// gflags prints 0.2 as 0.20000000000000001.
-std::string WithoutDust(const gflags::CommandLineFlagInfo& flag, const std::string& text) {
-  double value = 0.0;
-  return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
-}
-
-void PrintHelp(const std::string& usage) {
-  std::printf("%s\n\nflags:\n", usage.c_str());
-  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    const std::string value =
-        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
-    std::printf("  --%s%s\n      %s\n", flag.name.c_str(), value.c_str(), flag.description.c_str());
-  }
-  std::printf("  --flagfile=FILE\n      read flags from a file, one per line\n");
-  std::printf("  --help, -h\n      print this\n");
-  std::printf("  --version\n      print the version\n");
-}
-
 bool Asked(const char* flag) {
   std::string value;
   return gflags::GetCommandLineOption(flag, &value) && value == "true";
-}
-
-// gflags would name neither the program nor what to do.
-Error NoSuchFlag(const std::string& name) {
-  std::vector<std::string> known;
-  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) known.push_back(flag.name);
-  std::string meant = MeantBy(name, known);
-  // "out", where several things can be written.
-  for (const std::string& one : known) {
-    if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
-    if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
-  }
-  return Error{"there is no flag --" + name +
-               (meant.empty() ? "" : "; did you mean --" + meant + "?") + "; see " + ProgramName() +
-               " --help"};
 }
 
 // Sets the flag on the way, as gflags will again.
@@ -134,7 +80,7 @@ int CheckPrinted(int exit_code) {
 }  // namespace
 
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
-           std::vector<std::string>* words) {
+           std::vector<std::string>* words, const MovedFlags& moved) {
   SetBlasThreads(1);
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
@@ -143,12 +89,16 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   // back.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
+  if (argc == 2 && std::strcmp(argv[1], kListFlags) == 0) {
+    std::printf("%s", FlagList(moved).c_str());
+    return kDone;
+  }
   if (MaybeError error = CheckFlags(argc, argv)) return Fail(*error);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   google::InitGoogleLogging(argv[0]);
   if (FLAGS_quiet) HideProgress();
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
-    PrintHelp(usage);
+    std::printf("%s\n%s", usage.c_str(), FlagHelp(moved).c_str());
     return kDone;
   }
   if (Asked("version")) {
@@ -161,6 +111,10 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
+  if (const std::string flag = moved.FirstGiven(); !flag.empty()) {
+    std::fprintf(stderr, "%s: note: --%s moved to %s; this spelling works until %s\n",
+                 ProgramName().c_str(), flag.c_str(), moved.program.c_str(), MovedFlags::kUntil);
+  }
   SayWhenInterrupted("no partial file is left; run the same command to start again");
   try {
     return CheckPrinted(run());
@@ -192,70 +146,6 @@ void JoinRepeated(const std::string& flag, char separator, int argc, char** argv
     const bool next = **place != '-' || std::string(*place).find(flag + "=") == std::string::npos;
     *place = kept.emplace_back(next ? joined : "--" + flag + "=" + joined).data();
   }
-}
-
-MaybeError Require(const std::string& flag, const std::string& value, const std::string& what) {
-  if (!value.empty()) return std::nullopt;
-  return Error{"--" + flag + " is missing: " + what};
-}
-
-bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
-
-std::map<std::string, std::string> EffectiveFlags() {
-  std::map<std::string, std::string> flags;
-  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
-  }
-  return flags;
-}
-
-std::vector<std::string> ChangedFlags() {
-  std::vector<std::string> names;
-  for (const gflags::CommandLineFlagInfo& flag : OwnFlags()) {
-    // By value: a default that is given is no change, `none` over a preset's value is one.
-    double now = 0.0, before = 0.0;
-    const bool numbers =
-        ParseDouble(flag.current_value, &now) && ParseDouble(flag.default_value, &before);
-    const bool changed = numbers ? now != before : flag.current_value != flag.default_value;
-    if (changed && IsPartOfResult(flag)) names.push_back(flag.name);
-  }
-  return names;
-}
-
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return std::nullopt;
-  std::ostringstream text;
-  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
-       << highest;
-  return Error{text.str()};
-}
-
-namespace {
-
-// A file that would hold something else than its name says.
-MaybeError CheckEnding(const std::string& file) {
-  const size_t dot = file.rfind('.');
-  if (dot == std::string::npos) return std::nullopt;
-  for (const char* other : {"fbx", "obj", "usd", "png", "jpg", "jpeg", "gif", "mp4", "avi", "webm",
-                            "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
-    if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
-    return Error{"no program writes ." + std::string(other) +
-                     "; use .html for pages, .svg for pictures, .bvh, .gltf or .glb for bodies, "
-                     ".csv for tables, .json for models and scores",
-                 file};
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
-MaybeError CheckOutputFiles(std::initializer_list<std::string> files) {
-  for (const std::string& file : files) {
-    if (file.empty()) continue;
-    if (MaybeError error = CheckEnding(file)) return error;
-    if (MaybeError error = CheckWritable(file)) return error;
-  }
-  return std::nullopt;
 }
 
 }  // namespace pushid

@@ -9,37 +9,33 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/formation_output_flags.h"
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 
-DECLARE_int32(people);
-DECLARE_double(fps);
-
 DEFINE_string(
     formation, "",
-    "line, diamond or grid, or a trajectory file (.txt, .sqlite): instead of making recordings, "
-    "roll --model out on a group of --people, or on the people at --formation_frame of the file; "
-    "the table judges everybody 2 s after the last push (or after the onset, if later)");
+    "line, diamond or grid of --people, or a trajectory file (.txt, .sqlite), whose people at "
+    "--formation_frame are taken; the table judges everybody 2 s after the last push (or after "
+    "the onset, if later)");
+DEFINE_int32(people, 4, "number of people in a line, diamond or grid");
+DEFINE_double(fps, 60.0, "frames per second");
 DEFINE_int32(
     formation_frame, 0,
-    "formation from a file: frame of the file that gives the positions (default: its first)");
-DEFINE_double(spacing, 0.45, "formation: distance between neighbours, cart to cart, m");
+    "of a trajectory file: frame of the file that gives the positions (default: its first)");
+DEFINE_double(spacing, 0.45, "distance between neighbours, cart to cart, m");
 DEFINE_string(pushed, "0",
-              "formation: who is pushed, comma-separated numbers; people are counted from 0, from "
+              "who is pushed, comma-separated numbers; people are counted from 0, from "
               "back to front, and in a row from right to left");
 DEFINE_string(push, "80",
-              "formation: pushes at the hip along +x, comma-separated, N s or N s@start in s, as "
+              "pushes at the hip along +x, comma-separated, N s or N s@start in s, as "
               "in 80@0,80@1,112@2; every push acts on all of --pushed");
-DEFINE_double(push_duration, pushid::HipPush{}.duration,
-              "formation: duration of each push (a half-sine), s");
-DEFINE_double(mass, 80.0, "formation: mass of each person, kg");
-DEFINE_double(rod_length, pushid::kReferenceRod,
-              "formation: rod length (ankles to hip) of each person, m");
-DEFINE_double(duration, 0.0, "formation: duration, s; 0: until 6 s after the last push");
+DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
+DEFINE_double(mass, 80.0, "mass of each person, kg");
+DEFINE_double(rod_length, pushid::kReferenceRod, "rod length (ankles to hip) of each person, m");
+DEFINE_double(duration, 0.0, "duration, s; 0: until 6 s after the last push");
 DEFINE_string(as_setting, "",
-              "formation: use the parameters of this setting, for models with parameters by "
+              "use the parameters of this setting, for models with parameters by "
               "setting (default: the shared ones)");
 
 namespace pushid {
@@ -210,18 +206,6 @@ std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   return text.str();
 }
 
-// Flags of recordings of single people would be taken and do nothing.
-MaybeError CheckNoneOfRecordings() {
-  for (const char* flag :
-       {"out", "recordings_per_person", "frames", "noise", "push_kind", "recording_spread",
-        "subject_spread", "seed", "truth_stance", "truth_noise"}) {
-    if (!Given(flag)) continue;
-    return Error{std::string("--") + flag +
-                 " applies to recordings of single people, not to --formation"};
-  }
-  return std::nullopt;
-}
-
 int NumFrames(const Scene& scene) {
   const double seconds =
       FLAGS_duration > 0.0 ? FLAGS_duration : scene.LastPushEnd() * scene.dt + kWatchSeconds;
@@ -246,19 +230,12 @@ MaybeError CheckFrames(int frames, int people, const std::vector<HipPush>& pushe
 
 }  // namespace
 
-bool FormationGiven() { return !FLAGS_formation.empty(); }
-
-const char* GivenFormationFlag() {
-  for (const char* flag : {"formation_frame", "spacing", "pushed", "push", "push_duration", "mass",
-                           "rod_length", "duration", "as_setting"}) {
-    if (Given(flag)) return flag;
-  }
-  return GivenFormationOutput();
-}
-
 Result<FormationFlags> FormationFlagsFromCommandLine() {
-  if (MaybeError error = CheckNoneOfRecordings()) return *error;
-  if (MaybeError error = CheckFormationNumbers()) return *error;
+  for (MaybeError error :
+       {Require("formation", FLAGS_formation, "give line, diamond or grid, or a trajectory file"),
+        CheckFormationNumbers()}) {
+    if (error) return *error;
+  }
   const Result<Places> placed = FormationPlaces();
   if (!placed.ok()) return placed.error();
   const std::vector<Eigen::Vector2d>& positions = placed.value().positions;

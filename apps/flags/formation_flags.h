@@ -19,10 +19,4 @@ struct FormationFlags {
 // Errors name the flag.
 Result<FormationFlags> FormationFlagsFromCommandLine();
 
-// Whether --formation is given.
-bool FormationGiven();
-
-// The first given flag that means nothing without --formation; nullptr when there is none.
-const char* GivenFormationFlag();
-
 }  // namespace pushid

@@ -30,13 +30,13 @@ MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
 Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes) {
   if (MaybeError error = CheckRange("samples", FLAGS_samples, 0, 100000)) return *error;
   if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: give 2 or more"};
-  for (const char* flag : {"samples_seed", "samples_out"}) {
-    if (FLAGS_samples > 0 || !Given(flag)) continue;
-    return Error{std::string("--") + flag + " needs --samples, the number of futures"};
+  if (MaybeError error =
+          CheckNeeds({"samples_seed", "samples_out"}, {"samples"}, ", the number of futures")) {
+    return *error;
   }
   if (!writes && Given("samples_out")) {
     return Error{
-        "--samples_out is for pushid-predict and pushid-simulate; this program only scores "
+        "--samples_out is for pushid-predict and pushid-formation; this program only scores "
         "futures"};
   }
   if (MaybeError error = CheckOutputFiles({FLAGS_samples_out})) return *error;

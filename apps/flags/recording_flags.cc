@@ -69,6 +69,16 @@ RecordingFlags RecordingFlagsFromCommandLine() {
   return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
 }
 
+void LoadAs(const std::map<std::string, std::string>& configuration) {
+  const bool unit_given = Given("length_unit") || Given("length_scale");
+  for (const char* flag : kLoadFlags) {
+    const auto value = configuration.find(flag);
+    const bool of_unit = std::string(flag).rfind("length_", 0) == 0;
+    if (value == configuration.end() || (of_unit ? unit_given : Given(flag))) continue;
+    gflags::SetCommandLineOption(flag, value->second.c_str());
+  }
+}
+
 MaybeError CheckRecordingFlags() {
   const Result<LoadOptions> options = LoadOptionsOfFlags();
   return options.ok() ? std::nullopt : MaybeError(options.error());

@@ -3,6 +3,7 @@
 
 #include <gflags/gflags.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,12 @@ RecordingFlags RecordingFlagsFromCommandLine();
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
                                                      bool keep_all_joints = false,
                                                      std::vector<std::string>* warnings = nullptr);
+
+// How files are read: the flags of that by name.
+inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max_gap_s",
+                                             "lowpass_hz", "resample_fps"};
+// Those that are not given take the values that they had in another program's run.
+void LoadAs(const std::map<std::string, std::string>& configuration);
 
 // What is wrong with their flags, before any file is read.
 MaybeError CheckRecordingFlags();

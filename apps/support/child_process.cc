@@ -10,7 +10,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
+#include <sstream>
 
 #include "datasets/files/atomic_file.h"
 
@@ -84,6 +87,43 @@ Result<pid_t> StartChild(const ChildSpec& spec) {
   if (child < 0) return Error{"no process can be started: " + std::string(std::strerror(reason))};
   setpgid(child, child);  // in both, so that it is done whichever comes first
   return child;
+}
+
+std::string OwnFolder() {
+  std::error_code failed;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+  return failed ? "." : self.parent_path().string();
+}
+
+std::string FindProgram(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(OwnFolder() + ":" + (path == nullptr ? "" : path));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const std::string file = folder + "/" + name;
+    if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
+  }
+  return "";
+}
+
+Error RunInstead(const std::string& name, const std::vector<std::string>& arguments) {
+  const std::string file = FindProgram(name);
+  if (file.empty()) {
+    return Error{name + " is neither beside this program nor on the PATH; install or build it"};
+  }
+  std::vector<char*> words = {const_cast<char*>(file.c_str())};
+  for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  execv(file.c_str(), words.data());
+  return Error{std::string("cannot be started: ") + std::strerror(errno), file};
+}
+
+Result<std::string> OutputOf(const std::vector<std::string>& command) {
+  std::FILE* const pipe = popen(ShellText(command).c_str(), "r");
+  if (pipe == nullptr) return Error{"cannot be started", command[0]};
+  std::string text;
+  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+  if (pclose(pipe) != 0) return Error{"fails", command[0]};
+  return text;
 }
 
 std::string ShellText(const std::vector<std::string>& command) {

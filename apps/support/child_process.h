@@ -20,6 +20,16 @@ struct ChildSpec {
 // Errors: the program or a file cannot be opened, no process can be had.
 Result<pid_t> StartChild(const ChildSpec& spec);
 
+// The folder of the running program.
+std::string OwnFolder();
+// Where a program of pushid is: beside the running one, else on the PATH; empty: nowhere.
+std::string FindProgram(const std::string& name);
+// Runs it instead of the running one, with these arguments. Returns only where that fails.
+Error RunInstead(const std::string& name, const std::vector<std::string>& arguments);
+
+// What a command prints on stdout; errors: it cannot be started, or fails.
+Result<std::string> OutputOf(const std::vector<std::string>& command);
+
 // A command as a shell takes it, every word quoted.
 std::string ShellText(const std::vector<std::string>& command);
 

@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "datasets/manifest/select_recordings.h"
 
 namespace pushid {
@@ -64,6 +66,21 @@ MaybeError CheckKind(const std::string& name, const std::string& path, const std
   return std::nullopt;
 }
 
+// A file that would hold something else than its name says.
+MaybeError CheckEnding(const std::string& file) {
+  const size_t dot = file.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  for (const char* other : {"fbx", "obj", "usd", "png", "jpg", "jpeg", "gif", "mp4", "avi", "webm",
+                            "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
+    if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
+    return Error{"no program writes ." + std::string(other) +
+                     "; use .html for pages, .svg for pictures, .bvh, .gltf or .glb for bodies, "
+                     ".csv for tables, .json for models and scores",
+                 file};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 OutputFiles::OutputFiles() {
@@ -77,6 +94,8 @@ OutputFiles::OutputFiles() {
 
 MaybeError OutputFiles::CheckNotRead(const std::string& reader, const std::string& path) const {
   for (const NamedPath& output : files_) {
+    // pushid-check adds to the model that it reads.
+    if (reader == "--model" && output.name == "--model_out") continue;
     if (Same(output.path, path)) return BothName(reader, output.name, path);
   }
   return std::nullopt;
@@ -103,6 +122,15 @@ MaybeError CheckOutputs() {
   }
   for (const auto& [name, path, help] : files) {
     if (MaybeError error = CheckKind(name, path, help)) return error;
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckOutputFiles(std::initializer_list<std::string> files) {
+  for (const std::string& file : files) {
+    if (file.empty()) continue;
+    if (MaybeError error = CheckEnding(file)) return error;
+    if (MaybeError error = CheckWritable(file)) return error;
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 // overwrite_check.cc; so the check holds for every program at once.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ inline bool IsOutputFlag(const std::string& name) {
   return name == "out" || name == "bootstrap_file" ||
          (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
 }
+
+// Whether the outputs that are named (not empty) can be written, before a long run.
+MaybeError CheckOutputFiles(std::initializer_list<std::string> files);
 
 // Between the flags, as they are given. RunApp asks for it before anything is done.
 MaybeError CheckOutputs();

@@ -163,6 +163,16 @@ ParameterSet<double> PublishedTailParameters() {
   return p;
 }
 
+ParameterSet<double> PublishedGroupParameters() {
+  ParameterSet<double> p = PublishedTailParameters();
+  p[kTailExponent] = 1.5;
+  p[kContactStiffness] = 2800.0;
+  p[kContactDistance] = 0.42;
+  p[kContactKappa] = 0.58;
+  p[kContactDamping] = 270.0;
+  return p;
+}
+
 ParameterSet<double> PublishedStanceParameters() {
   ParameterSet<double> p{};
   p[kMu] = p[kMuY] = 90.0;

@@ -36,6 +36,8 @@ struct PushStrength {
 // The settled tail model for the person of 85 kg and 0.95 m: round values near those identified
 // from the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
+// The same of people who touch, near those identified from the published groups.
+ParameterSet<double> PublishedGroupParameters();
 // The same of feet that hold and step (models/stance.h).
 ParameterSet<double> PublishedStanceParameters();
 

@@ -1,6 +1,7 @@
 // ident: restoration and recorded bodies, for a fit.
 #include "ident/bodies/body_data.h"
 
+#include "ident/bodies/restoration_files.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {
@@ -19,6 +20,16 @@ Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restorat
     data->motions[recording.pendulum.id] = recording.bodies;
   }
   return std::shared_ptr<const BodyData>(std::move(data));
+}
+
+Result<std::shared_ptr<const BodyData>> LoadBodyData(const std::string& folder, const char* flag,
+                                                     const std::vector<Recording>& recordings,
+                                                     SkeletonMapping mapping) {
+  const auto restoration = LoadRestoration(folder, flag);
+  if (!restoration.ok()) return restoration.error();
+  const auto bodies = MakeBodyRecordings(recordings, mapping);
+  if (!bodies.ok()) return bodies.error();
+  return MakeBodyData(*restoration.value(), bodies.value());
 }
 
 }  // namespace pushid

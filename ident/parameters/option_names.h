@@ -3,12 +3,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 
 namespace pushid {
+
+// The words for an enum's values.
+template <typename E>
+std::vector<std::string> AllNames() {
+  std::vector<std::string> words;
+  for (const EnumName<E>& row : Names(E{})) words.push_back(row.name);
+  return words;
+}
 
 // Errors: "--posture is 'flat'; it must be upright or initial".
 template <typename E>

@@ -298,9 +298,13 @@ std::vector<Row> TableRows() {
 const std::vector<FitOptionRow>& FitOptionRows() {
   static const std::vector<FitOptionRow> rows = [] {
     std::vector<FitOptionRow> all;
-    for (auto part : {ModelOptionRows, WeightRows, SolverRows, TableRows}) {
-      for (FitOptionRow& row : part()) all.push_back(std::move(row));
-    }
+    const auto add = [&all](const std::string& heading, const std::vector<FitOptionRow>& part) {
+      for (const FitOptionRow& row : part) all.emplace_back(row).heading = heading;
+    };
+    add("model", ModelOptionRows());
+    add("fit", WeightRows());
+    add("fit", SolverRows());
+    add("model", TableRows());
     return all;
   }();
   return rows;

@@ -26,6 +26,8 @@ enum class OptionStage {
 struct FitOptionRow {
   std::string name;  // of the flag, without its dashes
   std::string help;
+  std::string heading;               // of --help: model, fit
+  std::vector<std::string> choices;  // the words it takes; empty: any
   OptionStage stage = OptionStage::kModel;
   bool is_bool = false;         // --name, --noname; the others take --name=value
   bool preset_decides = false;  // without it the preset's value holds

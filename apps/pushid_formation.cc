@@ -1,50 +1,26 @@
-// apps: from flags to a run, from a run to files and a table.
-#include "apps/simulate_formation.h"
-
+// apps: pushid-formation: an identified model on people who stand together, from flags to a run,
+// from a run to files and a table.
 #include <algorithm>
 #include <cstdio>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
-#include "apps/flags/formation_output_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/simulate_formation_bodies.h"
+#include "apps/formation_outputs.h"
 #include "apps/support/grouped_warnings.h"
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
-#include "ident/formations/formation_files.h"
-#include "ident/formations/formation_pictures.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 #include "ident/model/model_json.h"
 #include "ident/prediction/prediction.h"
 #include "models/learned_terms.h"
 
-namespace pushid {
 namespace {
 
-MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
-                        const std::vector<OnsetBand>& onsets, const std::string& title) {
-  MaybeError error;
-  if (!outputs.bvh_out.empty()) error = WriteFormationRecording(outputs.bvh_out, run);
-  if (!error && !outputs.csv_out.empty()) {
-    error = WriteTrajectoryCsv(outputs.csv_out, run.recording, run.prediction);
-  }
-  if (!error && !outputs.trajectories_out.empty()) {
-    error = WriteFormationTrajectories(outputs.trajectories_out, run);
-  }
-  if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
-  if (!error && !outputs.svg_out.empty()) {
-    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title, onsets));
-  }
-  if (!error && !outputs.forces_svg_out.empty()) {
-    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title, outputs.force_scale));
-  }
-  return error;
-}
+using namespace pushid;
 
 std::string Fixed(double value, int decimals) {
   char text[64];
@@ -146,12 +122,11 @@ std::string LeftDomainAdvice(double fps) {
 }
 
 int LeftDomain(const RolloutStatus& status, double dt) {
-  std::fprintf(
-      stderr,
-      "pushid-simulate: %s of person %d leaves the model's domain at frame %d; %s; nothing "
-      "is written\n",
-      std::string(status.quantity).c_str(), status.person, status.frame,
-      LeftDomainAdvice(1.0 / dt).c_str());
+  std::fprintf(stderr,
+               "%s: %s of person %d leaves the model's domain at frame %d; %s; nothing "
+               "is written\n",
+               ProgramName().c_str(), std::string(status.quantity).c_str(), status.person,
+               status.frame, LeftDomainAdvice(1.0 / dt).c_str());
   return kFitFailed;
 }
 
@@ -171,13 +146,8 @@ MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
                (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 
-}  // namespace
-
-int SimulateFormation() {
-  if (MaybeError missing =
-          RequireModel("--formation rolls out a file that pushid-fit --model_out wrote")) {
-    return Fail(*missing);
-  }
+int Run() {
+  if (MaybeError missing = RequireModel()) return Fail(*missing);
   Result<FormationFlags> flags = FormationFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
   Scene& scene = flags.value().scene;
@@ -208,12 +178,7 @@ int SimulateFormation() {
                                       scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted.value(), named.set, run) : WaveBands();
   MaybeError error = WriteOutputs(outputs.value(), run, bands.onsets, title);
-  if (!error && bodies.value()) {
-    error = WriteFormationBodies(body_flags.value(), *bodies.value(), run, title);
-  }
-  if (!error && !bodies.value()) {
-    error = WriteFormationPendulums(body_flags.value(), run, title);
-  }
+  if (!error) error = WriteFormationBodies(body_flags.value(), bodies.value(), run, title);
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.value().names.empty());
@@ -222,4 +187,14 @@ int SimulateFormation() {
   return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
 }
 
-}  // namespace pushid
+}  // namespace
+
+int main(int argc, char** argv) {
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-formation rolls an identified model out on people who stand together: who moves, "
+      "when, and\nhow far the push travels.\n\n"
+      "  pushid-formation --model=model.json --formation=line --people=10 --push=80 "
+      "--svg_out=wave.svg",
+      Run);
+}

@@ -1,10 +1,14 @@
-// apps: pushid-simulate --formation: what is written of the run, and the bodies in it.
+// apps: pushid-formation: what is written of a run, by flag, and the bodies of its people.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/flags/restoration_flags.h"
 #include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_run.h"
 #include "models/generators/diffusion_generator.h"
 
 namespace pushid {
@@ -38,7 +42,23 @@ struct FormationBodyFlags {
 };
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine();
 
-// The first given flag of these; nullptr when there is none.
-const char* GivenFormationOutput();
+struct FormationBodyPlan {
+  std::unique_ptr<Restoration> restoration;  // or
+  std::optional<LoadedGenerator> generator;
+  std::vector<Pose> first_poses;
+};
+
+// Nothing without either flag. Gives the scene's people the pendulums of their bodies.
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
+                                                    Scene* scene);
+
+// The tables and pictures of the run that the flags name.
+MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
+                        const std::vector<OnsetBand>& onsets, const std::string& title);
+
+// The pages and bodies that the flags name; of pendulums where there is no plan for bodies.
+MaybeError WriteFormationBodies(const FormationBodyFlags& flags,
+                                const std::optional<FormationBodyPlan>& plan,
+                                const FormationRun& run, const std::string& title);
 
 }  // namespace pushid

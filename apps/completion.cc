@@ -1,0 +1,198 @@
+// apps: completion scripts.
+#include "apps/completion.h"
+
+#include <sstream>
+
+#include "apps/flags/command_line.h"
+#include "apps/support/child_process.h"
+
+namespace pushid {
+namespace {
+
+struct CompletedFlag {
+  std::string name;
+  bool is_bool = false;
+  std::string words;  // with spaces between; empty: a file's name, or any
+  std::string help;
+};
+
+struct CompletedProgram {
+  Command command;
+  std::vector<CompletedFlag> flags;
+};
+
+// What a program prints for kListFlags (flag_table.h).
+std::vector<CompletedFlag> FlagsOf(const std::string& list) {
+  std::vector<CompletedFlag> flags;
+  std::istringstream lines(list);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    CompletedFlag flag;
+    std::string kind;
+    std::getline(cells, flag.name, '\t');
+    std::getline(cells, kind, '\t');
+    std::getline(cells, flag.words, '\t');
+    std::getline(cells, flag.help, '\t');
+    flag.is_bool = kind == "bool";
+    flags.push_back(flag);
+  }
+  for (const char* name : {"help", "version"}) flags.push_back({name, true, "", ""});
+  return flags;
+}
+
+// Without what ends a quoted word in one of the shells, or a part of one of zsh's.
+std::string Plain(const std::string& help) {
+  std::string text;
+  for (const char c : help) {
+    if (c == '[' || c == ']' || c == ':' || c == '\'' || c == '\\' || c == '`') continue;
+    text += c;
+  }
+  return text;
+}
+
+std::string Names(const std::vector<CompletedProgram>& programs, const std::string& before) {
+  std::string text;
+  for (const CompletedProgram& program : programs) {
+    text += (text.empty() ? "" : " ") + before + program.command.name;
+  }
+  return text;
+}
+
+constexpr char kBashEnd[] = R"bash(
+_pushid() {
+  local program=${COMP_WORDS[0]##*/} cur=${COMP_WORDS[COMP_CWORD]} flag= words
+  COMPREPLY=()
+  if [[ $program == pushid ]]; then
+    if ((COMP_CWORD == 1)); then
+      COMPREPLY=($(compgen -W "$_pushid_commands help completion" -- "$cur"))
+      return
+    elif [[ ${COMP_WORDS[1]} == help ]]; then
+      COMPREPLY=($(compgen -W "$_pushid_commands" -- "$cur"))
+      return
+    elif [[ ${COMP_WORDS[1]} == completion ]]; then
+      COMPREPLY=($(compgen -W "bash zsh fish" -- "$cur"))
+      return
+    fi
+    program=pushid-${COMP_WORDS[1]}
+  fi
+  if [[ $cur == "=" ]]; then
+    flag=${COMP_WORDS[COMP_CWORD - 1]} cur=
+  elif [[ ${COMP_WORDS[COMP_CWORD - 1]} == "=" ]]; then
+    flag=${COMP_WORDS[COMP_CWORD - 2]}
+  fi
+  if [[ -n $flag ]]; then
+    words=$(_pushid_words "$program" "$flag")
+    if [[ -n $words ]]; then
+      COMPREPLY=($(compgen -W "$words" -- "$cur"))
+    else
+      compopt -o filenames
+      COMPREPLY=($(compgen -f -- "$cur"))
+    fi
+    return
+  fi
+  COMPREPLY=($(compgen -W "$(_pushid_flags "$program")" -- "$cur"))
+  if [[ ${COMPREPLY[0]} == *= ]];
+then compopt - o nospace;
+fi
+}
+)bash";
+
+std::string BashScript(const std::vector<CompletedProgram>& programs) {
+  std::string flags, words;
+  for (const CompletedProgram& program : programs) {
+    const std::string name = "pushid-" + program.command.name;
+    std::string all;
+    for (const CompletedFlag& flag : program.flags) {
+      all += (all.empty() ? "--" : " --") + flag.name + (flag.is_bool ? "" : "=");
+      if (flag.words.empty()) continue;
+      words += "    '" + name + " --" + flag.name + "') echo '" + flag.words + "' ;;\n";
+    }
+    flags += "    " + name + ") echo '" + all + "' ;;\n";
+  }
+  return "# Completion of pushid for bash. In ~/.bashrc: source <(pushid completion bash)\n"
+         "_pushid_commands='" +
+         Names(programs, "") + "'\n_pushid_flags() {\n  case $1 in\n" + flags +
+         "  esac\n}\n_pushid_words() {\n  case \"$1 $2\" in\n" + words + "  esac\n}" + kBashEnd +
+         "complete -F _pushid pushid " + Names(programs, "pushid-") + "\n";
+}
+
+std::string ZshScript(const std::vector<CompletedProgram>& programs) {
+  std::string described, cases;
+  for (const CompletedProgram& program : programs) {
+    described += "      '" + program.command.name + ":" + Plain(program.command.line) + "'\n";
+    cases += "    pushid-" + program.command.name + ") _arguments";
+    for (const CompletedFlag& flag : program.flags) {
+      cases +=
+          " \\\n      '--" + flag.name + (flag.is_bool ? "" : "=") + "[" + Plain(flag.help) + "]";
+      if (!flag.is_bool) cases += flag.words.empty() ? ":value:_files" : ": :(" + flag.words + ")";
+      cases += "'";
+    }
+    cases += " ;;\n";
+  }
+  return "#compdef pushid " + Names(programs, "pushid-") +
+         "\n# Completion of pushid for zsh. In ~/.zshrc, after compinit: "
+         "source <(pushid completion zsh)\n"
+         "_pushid() {\n"
+         "  local program=$service commands\n"
+         "  if [[ $program == pushid ]]; then\n"
+         "    commands=(\n" +
+         described +
+         "      'help:list the commands, or the flags of one'\n"
+         "      'completion:a script for a shell'\n"
+         "    )\n"
+         "    if ((CURRENT == 2)); then _describe command commands; return; fi\n"
+         "    if [[ $words[2] == help ]]; then _describe command commands; return; fi\n"
+         "    if [[ $words[2] == completion ]]; then compadd bash zsh fish; return; fi\n"
+         "    program=pushid-$words[2]\n"
+         "    shift words\n"
+         "    ((CURRENT--))\n"
+         "  fi\n"
+         "  case $program in\n" +
+         cases + "  esac\n}\ncompdef _pushid pushid " + Names(programs, "pushid-") + "\n";
+}
+
+std::string FishScript(const std::vector<CompletedProgram>& programs) {
+  std::string text =
+      "# Completion of pushid for fish: pushid completion fish "
+      ">~/.config/fish/completions/pushid.fish\n"
+      "complete -c pushid -f\n"
+      "complete -c pushid -n __fish_use_subcommand -a help -d 'list the commands'\n"
+      "complete -c pushid -n __fish_use_subcommand -a completion -d 'a script for a shell'\n"
+      "complete -c pushid -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'\n"
+      "complete -c pushid -n '__fish_seen_subcommand_from help' -a '" +
+      Names(programs, "") + "'\n";
+  for (const CompletedProgram& program : programs) {
+    const std::string& name = program.command.name;
+    text += "complete -c pushid -n __fish_use_subcommand -a " + name + " -d '" +
+            Plain(program.command.line) + "'\n";
+    for (const CompletedFlag& flag : program.flags) {
+      const std::string takes = flag.is_bool         ? ""
+                                : flag.words.empty() ? " -r -F"
+                                                     : " -x -a '" + flag.words + "'";
+      const std::string rest = " -l " + flag.name + takes + " -d '" + Plain(flag.help) + "'\n";
+      text += "complete -c pushid-" + name + rest;
+      text += "complete -c pushid -n '__fish_seen_subcommand_from " + name + "'" + rest;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::string> CompletionScript(const std::string& shell,
+                                     const std::vector<Command>& commands) {
+  std::vector<CompletedProgram> programs;
+  for (const Command& command : commands) {
+    const std::string file = FindProgram("pushid-" + command.name);
+    if (file.empty()) continue;
+    const Result<std::string> list = OutputOf({file, kListFlags});
+    if (!list.ok()) return list.error();
+    programs.push_back({command, FlagsOf(list.value())});
+  }
+  if (shell == "bash") return BashScript(programs);
+  if (shell == "zsh") return ZshScript(programs);
+  if (shell == "fish") return FishScript(programs);
+  return Error{"there is completion for bash, zsh and fish, not for '" + shell + "'"};
+}
+
+}  // namespace pushid

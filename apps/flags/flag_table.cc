@@ -1,0 +1,228 @@
+// apps: flags in one table.
+#include "apps/flags/flag_table.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "apps/support/app_support.h"
+#include "apps/support/overwrite_check.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "ident/parameters/option_table.h"
+
+namespace pushid {
+namespace {
+
+using FlagInfo = gflags::CommandLineFlagInfo;
+
+// gflags lists the flags of every library it finds; users care for ours.
+std::vector<FlagInfo> OwnFlags() {
+  std::vector<FlagInfo> all, own;
+  gflags::GetAllFlags(&all);
+  for (const FlagInfo& flag : all) {
+    if (flag.filename.find("apps/") != std::string::npos) own.push_back(flag);
+  }
+  return own;
+}
+
+// What names outputs or only changes speed and talk is no part of a result.
+bool IsPartOfResult(const FlagInfo& flag) {
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
+                                                 "check", "list_parameters"};
+  return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
+}
+
+// gflags prints 0.2 as 0.20000000000000001.
+std::string WithoutDust(const FlagInfo& flag, const std::string& text) {
+  double value = 0.0;
+  return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
+}
+
+// By value: a default that is given is no change, `none` over a preset's value is one.
+bool Changed(const FlagInfo& flag) {
+  double now = 0.0, before = 0.0;
+  const bool numbers =
+      ParseDouble(flag.current_value, &now) && ParseDouble(flag.default_value, &before);
+  return numbers ? now != before : flag.current_value != flag.default_value;
+}
+
+bool HasEffect(const std::string& name) {
+  FlagInfo flag;
+  return gflags::GetCommandLineFlagInfo(name.c_str(), &flag) && Changed(flag);
+}
+
+std::string Listed(const std::vector<std::string>& names, const std::string& between) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "--" : between + "--") + name;
+  return text;
+}
+
+std::map<std::string, std::vector<std::string>>& Choices() {
+  static std::map<std::string, std::vector<std::string>> choices;
+  return choices;
+}
+
+std::vector<std::string> ChoicesOf(const FlagInfo& flag) {
+  if (flag.type == "bool") return {"true", "false"};
+  const FitOptionRow* const row = FindFitOption(flag.name);
+  const bool option = row != nullptr && flag.filename.find("fit_option") != std::string::npos;
+  if (option) return row->choices;
+  const auto found = Choices().find(flag.name);
+  return found == Choices().end() ? std::vector<std::string>() : found->second;
+}
+
+// The headings of --help, in their order, and the files of flags below each.
+struct Heading {
+  const char* title;
+  std::vector<const char*> files;
+};
+const std::vector<Heading>& Headings() {
+  static const std::vector<Heading> headings = {
+      {"recordings", {"recording_flags"}},
+      {"model", {"model_flags"}},
+      {"fit", {}},
+      {"checks", {"check_flags"}},
+      {"settings", {}},  // what stands nowhere else: the program's own
+      {"prediction", {"observed_flags", "futures_flags"}},
+      {"bodies", {"restoration_flags", "postprocess_flags", "diffusion_flags"}},
+      {"output", {"overwrite_flag"}},
+      {"general", {"command_line"}}};
+  return headings;
+}
+
+std::string HeadingOf(const FlagInfo& flag) {
+  if (IsOutputFlag(flag.name)) return "output";
+  if (flag.name == "num_threads") return "general";
+  const FitOptionRow* const row = FindFitOption(flag.name);
+  if (row != nullptr && flag.filename.find("fit_option") != std::string::npos) return row->heading;
+  for (const Heading& heading : Headings()) {
+    for (const char* file : heading.files) {
+      if (flag.filename.find(std::string("/") + file + ".") != std::string::npos) {
+        return heading.title;
+      }
+    }
+  }
+  return "settings";
+}
+
+}  // namespace
+
+MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
+  for (const FlagRule& rule : rules) {
+    const FlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(rule.flag.c_str());
+    if (flag.is_default || flag.current_value.empty()) continue;
+    const bool acts = std::any_of(rule.others.begin(), rule.others.end(), HasEffect);
+    if (acts == (rule.kind == FlagRule::kNeeds)) continue;
+    const std::string needs = acts ? "" : " needs " + Listed(rule.others, " or ");
+    return Error{"--" + rule.flag + needs + rule.why};
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+                      const std::string& why) {
+  std::vector<FlagRule> rules;
+  for (const std::string& flag : flags) rules.push_back({flag, FlagRule::kNeeds, others, why});
+  return CheckFlagRules(rules);
+}
+
+bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
+
+MaybeError Require(const std::string& flag, const std::string& value, const std::string& what) {
+  if (!value.empty()) return std::nullopt;
+  return Error{"--" + flag + " is missing: " + what};
+}
+
+MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return std::nullopt;
+  std::ostringstream text;
+  text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
+       << highest;
+  return Error{text.str()};
+}
+
+std::map<std::string, std::string> EffectiveFlags() {
+  std::map<std::string, std::string> flags;
+  for (const FlagInfo& flag : OwnFlags()) {
+    if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
+  }
+  return flags;
+}
+
+std::vector<std::string> ChangedFlags() {
+  std::vector<std::string> names;
+  for (const FlagInfo& flag : OwnFlags()) {
+    if (Changed(flag) && IsPartOfResult(flag)) names.push_back(flag.name);
+  }
+  return names;
+}
+
+bool MovedFlags::Has(const std::string& flag) const {
+  return std::find(names.begin(), names.end(), flag) != names.end();
+}
+
+std::string MovedFlags::FirstGiven() const {
+  const auto given = std::find_if(names.begin(), names.end(),
+                                  [](const std::string& name) { return Given(name.c_str()); });
+  return given == names.end() ? "" : *given;
+}
+
+std::string FlagHelp(const MovedFlags& moved) {
+  std::map<std::string, std::string> below;
+  for (const FlagInfo& flag : OwnFlags()) {
+    if (moved.Has(flag.name)) continue;
+    const std::string value =
+        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
+    below[HeadingOf(flag)] += "  --" + flag.name + value + "\n      " + flag.description + "\n";
+  }
+  below["general"] +=
+      "  --flagfile=FILE\n      read flags from a file, one per line\n"
+      "  --help, -h\n      print this\n"
+      "  --version\n      print the version\n";
+  std::string text;
+  for (const Heading& heading : Headings()) {
+    const auto flags = below.find(heading.title);
+    if (flags != below.end()) text += "\n" + flags->first + ":\n" + flags->second;
+  }
+  if (moved.names.empty()) return text;
+  return text + "\n" + moved.what + " moved to " + moved.program + " (" +
+         Listed(moved.names, ", ") + "); " + ProgramName() + " takes these flags until " +
+         MovedFlags::kUntil + ".\n";
+}
+
+std::string FlagList(const MovedFlags& moved) {
+  std::string text;
+  for (const FlagInfo& flag : OwnFlags()) {
+    if (moved.Has(flag.name)) continue;
+    std::string words;
+    for (const std::string& word : ChoicesOf(flag)) words += (words.empty() ? "" : " ") + word;
+    const std::string help = flag.description.substr(0, flag.description.find_first_of(";:("));
+    text += flag.name + "\t" + (flag.type == "bool" ? "bool" : "value") + "\t" + words + "\t" +
+            std::string(Trimmed(help)) + "\n";
+  }
+  return text;
+}
+
+Error NoSuchFlag(const std::string& name) {
+  std::vector<std::string> known;
+  for (const FlagInfo& flag : OwnFlags()) known.push_back(flag.name);
+  std::string meant = MeantBy(name, known);
+  // "out", where several things can be written.
+  for (const std::string& one : known) {
+    if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
+    if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
+  }
+  return Error{"there is no flag --" + name +
+               (meant.empty() ? "" : "; did you mean --" + meant + "?") + "; see " + ProgramName() +
+               " --help"};
+}
+
+bool SetChoices(const std::string& flag, const std::vector<std::string>& words) {
+  Choices()[flag] = words;
+  return true;
+}
+
+}  // namespace pushid

@@ -1,0 +1,76 @@
+// apps: the flags of this executable as a table: what is given, what goes with what, the list that
+// --help prints and that shells complete from.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/parameters/option_names.h"
+
+// A string flag that takes one of an enum's names: shells complete them.
+#define DEFINE_choice(name, value, help)            \
+  DEFINE_string(name, pushid::NameOf(value), help); \
+  const bool choices_of_##name =                    \
+      pushid::SetChoices(#name, pushid::AllNames<std::decay_t<decltype(value)>>())
+
+namespace pushid {
+
+// What one flag asks of others, a row each.
+struct FlagRule {
+  enum Kind { kNeeds, kExcludes };
+  std::string flag;
+  Kind kind;
+  std::vector<std::string> others;  // one of them is enough
+  // kNeeds: what follows "--flag needs --other or --another"; kExcludes: what follows "--flag".
+  std::string why;
+};
+// Whether a flag that is given has what it needs, and nothing that it excludes. A flag of others
+// acts where its value is not its default.
+MaybeError CheckFlagRules(const std::vector<FlagRule>& rules);
+// Of many flags that need the same.
+MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+                      const std::string& why = "");
+
+// Whether a flag was given at all, even with its default's value.
+bool Given(const char* flag);
+
+// "--recordings is missing ..." when a flag that is needed is empty.
+MaybeError Require(const std::string& flag, const std::string& value, const std::string& what);
+
+// "--spacing is -1; it must lie between ...". Written so that NaN fails.
+MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
+
+// The effective flags of this executable that are part of a result: not outputs, threads,
+// verbosity.
+std::map<std::string, std::string> EffectiveFlags();
+
+// Names of those that are not at their defaults.
+std::vector<std::string> ChangedFlags();
+
+// Flags that belong to another program now, and are taken here for one more version.
+struct MovedFlags {
+  std::vector<std::string> names;
+  std::string program;
+  std::string what;  // "Checks of a finished fit"
+
+  bool Has(const std::string& flag) const;
+  // The first of them that is given; empty: none.
+  std::string FirstGiven() const;
+  static constexpr char kUntil[] = "version 0.4";
+};
+
+// Under headings, without those that moved.
+std::string FlagHelp(const MovedFlags& moved);
+// One line a flag: name, `bool` or `value`, the words it takes, the first sentence of its help;
+// tabs between. What `pushid completion` is made of.
+std::string FlagList(const MovedFlags& moved);
+
+// A name that gflags does not know: names the program, and what may be meant.
+Error NoSuchFlag(const std::string& name);
+
+// The words that a flag takes. Always true, so that it can be said beside the flag.
+bool SetChoices(const std::string& flag, const std::vector<std::string>& words);
+
+}  // namespace pushid

@@ -1,0 +1,230 @@
+// apps: outputs of a formation, from flags to files.
+#include "apps/formation_outputs.h"
+
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/diffusion_flags.h"
+#include "apps/flags/overwrite_flag.h"
+#include "datasets/exchange/crowd.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/loading/load_recordings.h"
+#include "ident/bodies/animation.h"
+#include "ident/bodies/body_files.h"
+#include "ident/formations/formation_files.h"
+#include "ident/generators/push_particles.h"
+
+DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
+DEFINE_string(trajectories_out, "",
+              "trajectories of the hips, for PedPy and JuPedSim (.txt, or .sqlite)");
+DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
+DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
+DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
+DEFINE_string(forces_svg_out, "", "picture of the net forces with their parts (SVG)");
+DEFINE_bool(forces_own_scale, false, "with --forces_svg_out, give each panel its own scale");
+
+DEFINE_string(generator, "",
+              "whole bodies by diffusion instead of --restoration: the folder that "
+              "pushid-train-generator --kind=diffusion --out wrote");
+DEFINE_string(poses_from, "",
+              "with bodies: manifest.json of recordings whose first poses (skeleton and "
+              "lean) are used, in their order (default: the synthetic skeleton, upright)");
+DEFINE_string(html_out, "", "page of the moving people (HTML)");
+DEFINE_string(strip_out, "", "strip of poses (SVG)");
+DEFINE_string(joints_out, "", "with bodies: joint positions (CSV)");
+DEFINE_string(bodies_out, "",
+              "with bodies: the bodies (.gltf or .glb: all in one animated file; "
+              "otherwise BVH, one file per person, named after this one)");
+
+namespace pushid {
+namespace {
+
+// Flags that go with one way to bodies, where that is not the one.
+MaybeError CheckWayToBodies() {
+  std::vector<FlagRule> rules = {{"restoration",
+                                  FlagRule::kExcludes,
+                                  {"generator"},
+                                  " and --generator both make the bodies; give one of them"},
+                                 {"postprocess",
+                                  FlagRule::kExcludes,
+                                  {"generator"},
+                                  " needs --restoration; a generator does its own postprocessing"}};
+  for (const char* flag : DiffusionFlagNames()) {
+    rules.push_back({flag, FlagRule::kNeeds, {"generator"}, ""});
+  }
+  for (const char* flag : {"poses_from", "joints_out", "bodies_out"}) {
+    rules.push_back(
+        {flag,
+         FlagRule::kNeeds,
+         {"restoration", "generator"},
+         ", the folder of pushid-train-restoration or pushid-train-generator that makes "
+         "the bodies"});
+  }
+  return CheckFlagRules(rules);
+}
+
+MaybeError CheckPicture(const std::string& flag, const std::string& file, int people, int most) {
+  if (file.empty() || people <= most) return std::nullopt;
+  return Error{"--" + flag + " shows at most " + std::to_string(most) +
+               " people; leave it out or lower --people"};
+}
+
+constexpr int kPosesOfStrip = 6;
+
+Result<std::vector<Pose>> FirstPosesFrom(const std::string& manifest, double rod_length) {
+  if (manifest.empty()) return std::vector<Pose>{SyntheticPose(rod_length)};
+  LoadOptions options;
+  options.keep_all_joints = true;
+  const Result<std::vector<Recording>> recordings = LoadRecordings(manifest, options);
+  if (!recordings.ok()) return recordings.error();
+  const Result<std::vector<BodyRecording>> bodies =
+      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
+  if (!bodies.ok()) return bodies.error();
+  return FirstPoses(bodies.value());
+}
+
+BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
+  BodyScene scene;
+  scene.id = run.recording.id;
+  scene.dt = run.recording.scene.dt;
+  scene.subject_ids = run.recording.subject_ids;
+  scene.bodies = std::move(bodies);
+  return scene;
+}
+
+Result<LoadedGenerator> LoadFormationGenerator(const FormationBodyFlags& flags, bool rod_moves,
+                                               const Scene& scene) {
+  if (MaybeError error = CheckRod("generator", rod_moves)) return *error;
+  GeneratorChanges changes;
+  changes.diffusion = flags.diffusion;
+  Result<LoadedGenerator> loaded = LoadGenerator(flags.generator, changes, "--generator");
+  if (!loaded.ok()) return loaded;
+  if (MaybeError error = PrepareForFormation(scene, "generator", &loaded.value())) return *error;
+  const std::string other = OtherPushKinds(loaded.value().settings, scene);
+  if (!other.empty()) Warn(other);
+  return loaded;
+}
+
+MaybeError WritePages(const FormationBodyFlags& flags, const Animation& animation) {
+  MaybeError error;
+  if (!flags.html_out.empty()) {
+    error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));
+  }
+  if (!error && !flags.strip_out.empty()) {
+    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, kPosesOfStrip));
+  }
+  return error;
+}
+
+}  // namespace
+
+Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
+  for (MaybeError error :
+       {CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave),
+        CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces),
+        CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out),
+        CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
+                          FLAGS_forces_svg_out})}) {
+    if (error) return *error;
+  }
+  if (!FLAGS_bvh_out.empty()) {
+    if (MaybeError error = CheckOutputFolder("bvh_out", FLAGS_bvh_out)) return *error;
+  }
+  if (MaybeError error = CheckNeeds({"forces_own_scale"}, {"forces_svg_out"})) return *error;
+  return FormationOutputs{FLAGS_csv_out,
+                          FLAGS_trajectories_out,
+                          FLAGS_forces_out,
+                          FLAGS_bvh_out,
+                          FLAGS_svg_out,
+                          FLAGS_forces_svg_out,
+                          FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared};
+}
+
+Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
+  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
+  if (!restoration.ok()) return restoration.error();
+  if (MaybeError error = CheckWayToBodies()) return *error;
+  const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
+  if (!diffusion.ok()) return diffusion.error();
+  const FormationBodyFlags flags{restoration.value(), FLAGS_generator, diffusion.value(),
+                                 FLAGS_poses_from,    FLAGS_html_out,  FLAGS_strip_out,
+                                 FLAGS_joints_out,    FLAGS_bodies_out};
+  if (MaybeError error =
+          CheckOutputFiles({flags.html_out, flags.strip_out, flags.joints_out, flags.bodies_out})) {
+    return *error;
+  }
+  return flags;
+}
+
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
+                                                    Scene* scene) {
+  if (!flags.given()) return std::optional<FormationBodyPlan>();
+  FormationBodyPlan plan;
+  if (flags.generates()) {
+    Result<LoadedGenerator> generator = LoadFormationGenerator(flags, rod_moves, *scene);
+    if (!generator.ok()) return generator.error();
+    plan.generator = std::move(generator.value());
+  } else {
+    Result<std::unique_ptr<Restoration>> restoration =
+        LoadFlaggedRestoration(flags.restoration, rod_moves, scene->num_people());
+    if (!restoration.ok()) return restoration.error();
+    plan.restoration = std::move(restoration.value());
+  }
+  const Result<std::vector<Pose>> poses =
+      FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);
+  if (!poses.ok()) return poses.error();
+  plan.first_poses = TakePoses(poses.value(), scene);
+  return std::optional<FormationBodyPlan>(std::move(plan));
+}
+
+MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
+                        const std::vector<OnsetBand>& onsets, const std::string& title) {
+  MaybeError error;
+  if (!outputs.bvh_out.empty()) error = WriteFormationRecording(outputs.bvh_out, run);
+  if (!error && !outputs.csv_out.empty()) {
+    error = WriteTrajectoryCsv(outputs.csv_out, run.recording, run.prediction);
+  }
+  if (!error && !outputs.trajectories_out.empty()) {
+    error = WriteFormationTrajectories(outputs.trajectories_out, run);
+  }
+  if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
+  if (!error && !outputs.svg_out.empty()) {
+    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title, onsets));
+  }
+  if (!error && !outputs.forces_svg_out.empty()) {
+    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title, outputs.force_scale));
+  }
+  return error;
+}
+
+MaybeError WriteFormationBodies(const FormationBodyFlags& flags,
+                                const std::optional<FormationBodyPlan>& plan,
+                                const FormationRun& run, const std::string& title) {
+  const bool generates = plan && plan->generator;
+  BodyScene scene = SceneOfRun(run, {});
+  if (plan) {
+    Result<std::vector<BodyMotion>> bodies =
+        generates ? GeneratedBodies(run, plan->first_poses, *plan->generator)
+                  : FormationBodies(run, plan->first_poses, *plan->restoration,
+                                    flags.restoration.postprocess);
+    if (!bodies.ok()) return bodies.error();
+    scene.bodies = std::move(bodies.value());
+  }
+  Animation animation;
+  animation.title = title + (generates ? "; bodies by diffusion" : "");
+  animation.dt = scene.dt;
+  // Restored bodies hang on their pendulums; generated ones move beside them.
+  if (generates) AddForecast(scene.subject_ids, scene.bodies, &animation);
+  AddPrediction(run.recording, run.prediction, generates ? std::vector<BodyMotion>() : scene.bodies,
+                &animation);
+  AddPushes(run.recording, &animation);
+  MaybeError error = WritePages(flags, animation);
+  if (!error && !flags.joints_out.empty()) error = WriteJointsCsv(flags.joints_out, scene);
+  if (!error && !flags.bodies_out.empty()) {
+    const auto files = WriteBodyFiles(flags.bodies_out, scene);
+    if (!files.ok()) error = files.error();
+  }
+  return error;
+}
+
+}  // namespace pushid

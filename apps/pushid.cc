@@ -1,0 +1,104 @@
+// apps: pushid: one command in front of all programs: `pushid fit ...` runs `pushid-fit ...`.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "apps/completion.h"
+#include "apps/support/app_support.h"
+#include "apps/support/child_process.h"
+#include "datasets/files/names.h"
+
+namespace {
+
+using namespace pushid;
+
+struct Job {
+  const char* title;
+  std::vector<Command> commands;
+};
+
+// Every program, by the job that it is for.
+const std::vector<Job>& Jobs() {
+  static const std::vector<Job> jobs = {
+      {"recordings",
+       {{"inspect", "what is in a file: joints, rate, unit, axes, onset, problems"},
+        {"manifest", "write down which files belong together"},
+        {"push", "compute a push from a force sensor, or by inverse dynamics"},
+        {"simulate", "make recordings of synthetic people, alone or in groups"},
+        {"export", "write recordings as Motion-BIDS or for PedPy"}}},
+      {"identification",
+       {{"fit", "identify the parameters of a model from recordings"},
+        {"check", "question a fitted model: profiles, bootstrap, other pushes and priors"},
+        {"report", "a model in words and tables, or as a page"},
+        {"evaluate", "errors of a model on recordings"},
+        {"crossvalidate", "errors of models on recordings that they were not fitted to"},
+        {"batch", "many fits from a plan"}}},
+      {"prediction",
+       {{"predict", "the motion after a push"},
+        {"animate", "a page of moving bodies, forces told in words"},
+        {"formation", "how far a push travels through people who stand together"},
+        {"path", "the most probable motion between two ends, or through a recording"}}},
+      {"learned parts",
+       {{"train-restoration", "learn whole bodies from pendulums"},
+        {"train-generator", "learn to generate motion"},
+        {"generate", "motion from a generator, and its scores"}}},
+  };
+  return jobs;
+}
+
+std::vector<Command> AllCommands() {
+  std::vector<Command> all;
+  for (const Job& job : Jobs()) all.insert(all.end(), job.commands.begin(), job.commands.end());
+  return all;
+}
+
+int Help() {
+  std::printf("pushid COMMAND [flags] runs the program pushid-COMMAND.\n");
+  for (const Job& job : Jobs()) {
+    std::printf("\n%s:\n", job.title);
+    for (const Command& command : job.commands) {
+      std::printf("  %-18s %s\n", command.name.c_str(), command.line.c_str());
+    }
+  }
+  std::printf(
+      "\npushid help COMMAND lists the flags of one; pushid completion bash|zsh|fish prints a "
+      "script for\nthe shell; pushid --version prints the version.\n");
+  return kDone;
+}
+
+int Run(const std::string& command, const std::vector<std::string>& arguments) {
+  std::vector<std::string> known = {"help", "completion"};
+  bool found = false;
+  for (const Command& one : AllCommands()) {
+    known.push_back(one.name);
+    found = found || one.name == command;
+  }
+  if (found) return Fail(RunInstead("pushid-" + command, arguments));
+  const std::string meant = MeantBy(command, known);
+  return Fail("there is no command '" + command + "'" +
+              (meant.empty() ? "" : "; did you mean '" + meant + "'?") + "; see pushid help");
+}
+
+int Complete(const std::vector<std::string>& arguments) {
+  if (arguments.size() != 1) return Fail("name the shell: pushid completion bash, zsh or fish");
+  const Result<std::string> script = CompletionScript(arguments[0], AllCommands());
+  if (!script.ok()) return Fail(script.error());
+  std::printf("%s", script.value().c_str());
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  SetProgramName(argv[0]);
+  std::string command = argc > 1 ? argv[1] : "help";
+  const std::vector<std::string> arguments(argv + std::min(argc, 2), argv + argc);
+  if (command == "--version") {
+    std::printf("pushid %s\n", Version().c_str());
+    return kDone;
+  }
+  if (command == "help" || command == "--help" || command == "-h") {
+    return arguments.empty() ? Help() : Run(arguments[0], {"--help"});
+  }
+  return command == "completion" ? Complete(arguments) : Run(command, arguments);
+}

@@ -1,0 +1,124 @@
+// apps: pushid-check: questions put to a finished model, with the recordings that it was fitted to.
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "apps/flags/check_flags.h"
+#include "apps/flags/command_line.h"
+#include "apps/flags/model_file.h"
+#include "apps/flags/recording_flags.h"
+#include "datasets/files/atomic_file.h"
+#include "ident/bodies/body_data.h"
+#include "ident/model/model_json.h"
+#include "ident/parameters/option_table.h"
+#include "ident/problem/parallel.h"
+#include "ident/report/report_text.h"
+
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote; the checks are added to it");
+DEFINE_string(model_out, "", "write the model with the checks here (JSON) instead of to --model");
+DEFINE_string(seed, "", "seed of all random numbers (default: that of the fit)");
+DEFINE_int32(num_threads, 1, "threads; results are the same for any number");
+
+namespace {
+
+using namespace pushid;
+
+Result<uint64_t> SeedOf(const FitOptions& options) {
+  if (FLAGS_seed.empty()) return options.seed;
+  FitOptions given;
+  if (MaybeError error = FindFitOption("seed")->apply(FLAGS_seed, &given)) return *error;
+  return given.seed;
+}
+
+// The recordings of the model, loaded as the fit loaded them, and the bodies of --body_weight.
+Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
+  const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
+  FitOptions& options = model->fit.options;
+  std::vector<std::string> ids;
+  std::set<std::string> seen;  // a replica of a bootstrap has a recording several times
+  const bool chosen = RecordingFlagsFromCommandLine().chosen || Given("leave_out");
+  for (const FittedRecording& fitted : model->fit.recordings) {
+    if (!chosen && seen.insert(fitted.id).second) ids.push_back(fitted.id);
+  }
+  LoadAs(fit_flags);
+  const auto loaded = LoadFlaggedRecordings(ids, options.body_weight > 0.0);
+  if (!loaded.ok()) return loaded.error();
+  if (options.body_weight > 0.0) {
+    const auto folder = fit_flags.find("body_restoration");
+    const auto bodies =
+        LoadBodyData(folder == fit_flags.end() ? "" : folder->second,
+                     "--body_restoration of the fit", loaded.value(), options.mapping);
+    if (!bodies.ok()) return bodies.error();
+    options.body = bodies.value();
+  }
+  return AsFitted(MakePendulumRecordings(loaded.value(), options.mapping), model->fit);
+}
+
+// A model says how it was made: with these flags too.
+void AddToProvenance(Provenance* from) {
+  const std::map<std::string, std::string> now = EffectiveFlags();
+  const std::vector<std::string> changed = ChangedFlags();
+  for (const std::string& name : MovedCheckFlags().names) {
+    if (std::find(changed.begin(), changed.end(), name) == changed.end()) continue;
+    from->configuration[name] = now.at(name);
+    const auto at = std::lower_bound(from->changed_flags.begin(), from->changed_flags.end(), name);
+    if (at == from->changed_flags.end() || *at != name) from->changed_flags.insert(at, name);
+  }
+}
+
+int Run() {
+  const double begin = Now();
+  for (MaybeError error :
+       {Require("model", FLAGS_model, "give a file that pushid-fit wrote"),
+        CheckRange("num_threads", FLAGS_num_threads, 1, 1024), CheckRecordingFlags()}) {
+    if (error) return Fail(*error);
+  }
+  Result<FittedModel> read = ReadFittedModel(FLAGS_model);
+  if (!read.ok()) return Fail(read.error());
+  FittedModel& model = read.value();
+  const Result<uint64_t> seed = SeedOf(model.fit.options);
+  if (!seed.ok()) return Fail(seed.error());
+  const Result<ModelChecks> checks = ModelChecksFromCommandLine(seed.value(), FLAGS_num_threads);
+  if (!checks.ok()) return Fail(checks.error());
+  if (!checks.value().Any()) {
+    return Fail(
+        "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
+        "--push_check, --horizon_check, --design=all and --population");
+  }
+  const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
+  const bool writes = checks.value().Adds() || !FLAGS_model_out.empty();
+  if (writes) {
+    if (MaybeError error = CheckWritable(out)) return Fail(*error);
+  }
+  const Result<std::vector<PendulumRecording>> recordings = LoadFitted(&model);
+  if (!recordings.ok()) return Fail(recordings.error());
+  for (MaybeError error : {CheckAgainst(checks.value(), model.fit.options,
+                                        static_cast<int>(recordings.value().size())),
+                           ResumeFit(recordings.value(), &model.fit),
+                           AddFlaggedChecks(recordings.value(), checks.value(), &model)}) {
+    if (error) return Fail(*error);
+  }
+  AddToProvenance(&model.provenance);
+  const Result<std::string> sections = CheckSections(recordings.value(), checks.value(), model.fit);
+  if (!sections.ok()) return Fail(sections.error());
+  std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
+  if (!writes) return kDone;
+  if (MaybeError error = WriteModelFile(out, model, FLAGS_num_threads, begin)) return Fail(*error);
+  std::printf("model with the checks written to %s\n", out.c_str());
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  pushid::AllowBareProfile(argc, argv);
+  return pushid::RunApp(
+      argc, argv,
+      "pushid-check questions a fitted model with the recordings that it was fitted to: profiles, "
+      "bootstrap,\nother priors, pushes and horizons, what to record next. It adds the results to "
+      "the model's file\n(or writes them to --model_out); reports and advice use them.\n\n"
+      "  pushid-check --model=model.json --recordings=M/manifest.json --bootstrap=199 --profile",
+      Run);
+}

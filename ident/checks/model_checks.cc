@@ -1,0 +1,167 @@
+// ident: checks of a model, one after the other.
+#include "ident/checks/model_checks.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "datasets/files/number_text.h"
+#include "ident/fit/confidence.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/push/push_check.h"
+#include "ident/report/advice.h"
+#include "ident/report/confidence_text.h"
+#include "ident/report/design_text.h"
+
+namespace pushid {
+namespace {
+
+std::vector<std::string> ProfileNames(const std::string& profile) {
+  std::vector<std::string> names;
+  if (profile == "all") return names;
+  std::stringstream list(profile);
+  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  return names;
+}
+
+Error NotAsFitted(const std::string& id, const std::string& what) {
+  return Error{"recording " + id + " " + what};
+}
+
+}  // namespace
+
+MaybeError CheckNumbers(const ModelChecks& checks) {
+  if (checks.bootstrap.replicas < 0 || checks.bootstrap.replicas == 1) {
+    return Error{"--bootstrap must be 0 (none) or at least 2 replicas"};
+  }
+  const double noise = checks.pushes.sensor_noise;
+  if (noise >= 0.0 && noise <= 1.0) return std::nullopt;
+  return Error{"--push_check_noise is " + DoubleText(noise) +
+               "; it must be from 0 to 1, a fraction of the push's peak"};
+}
+
+MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, int recordings) {
+  const bool bootstrap = checks.bootstrap.replicas > 0;
+  if (bootstrap && recordings < 2) {
+    return Error{"--bootstrap draws people or recordings with replacement; it needs at least two"};
+  }
+  const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
+  if (stopped_early && (bootstrap || !checks.profile.empty())) {
+    return Error{
+        "--profile and --bootstrap need the minimum of the cost, which a fit with --early_stopping "
+        "does not reach; prevent overfitting with --network_prior instead"};
+  }
+  if (NeedsGradientTraining(options) &&
+      (checks.push_check || checks.horizon_check || checks.prior_check)) {
+    return Error{
+        "--push_check, --horizon_check and --prior_check refit many times, and this network is too "
+        "large for that (trained by its gradient); choose a smaller one"};
+  }
+  if (options.likelihood != Likelihood::kTrajectory && checks.horizon_check) {
+    return Error{
+        "--horizon_check compares rollouts of many lengths, including single steps; leave "
+        "--likelihood out"};
+  }
+  if (checks.population && options.model.push_tail == PushTail::kNone) {
+    return Error{
+        "--population estimates a factor on the push tail, and the model has none; add "
+        "--push_tail=exponential (the presets tail and group have it)"};
+  }
+  if (checks.design.empty() || checks.design == "all") return std::nullopt;
+  std::string known = "all";
+  for (Parameter id : options.table.Free()) {
+    known += ", " + options.table[id].name;
+    if (options.table[id].name == checks.design) return std::nullopt;
+  }
+  return Error{"--design: '" + checks.design + "' has no standard error to reduce; choose from " +
+               known};
+}
+
+Result<std::vector<PendulumRecording>> AsFitted(const std::vector<PendulumRecording>& given,
+                                                const FitResult& fit) {
+  const auto same_id = [](const std::string& id) {
+    return [&id](const auto& recording) { return recording.id == id; };
+  };
+  for (const PendulumRecording& recording : given) {
+    const auto fitted =
+        std::find_if(fit.recordings.begin(), fit.recordings.end(), same_id(recording.id));
+    if (fitted != fit.recordings.end()) continue;
+    return NotAsFitted(recording.id,
+                       "is none of those that the model was fitted to; leave --setting and --ids "
+                       "out, so that the model's own are taken, or fit again with it");
+  }
+  std::vector<PendulumRecording> recordings;
+  for (const FittedRecording& fitted : fit.recordings) {
+    const auto found = std::find_if(given.begin(), given.end(), same_id(fitted.id));
+    if (found == given.end()) {
+      return NotAsFitted(fitted.id,
+                         "is missing, and the model was fitted to it; leave --setting, --ids and "
+                         "--leave_out out, so that all of the model's are taken");
+    }
+    if (found->content_hash != fitted.content_hash || found->num_frames() != fitted.frames) {
+      return NotAsFitted(fitted.id,
+                         "is not what the model was fitted to: its files, its entry in the "
+                         "manifest or the way it is loaded have changed since; give the fit's "
+                         "recordings, or fit them again");
+    }
+    recordings.push_back(*found);
+  }
+  return recordings;
+}
+
+MaybeError ResumeFit(const std::vector<PendulumRecording>& recordings, FitResult* fit) {
+  // The reader holds what is learned; a fit holds only what was trained by its gradient.
+  const auto& learned = fit->options.model.learned;
+  fit->options.hold_network =
+      learned != nullptr && learned->weights.size() > size_t{kMostGaussNewtonWeights};
+  SolveStart& best = fit->starts[fit->best_start];
+  const FitProblem problem(recordings, fit->options);
+  std::optional<FitPoint> point = problem.PointAt(best.to.Flat());
+  if (!point) {
+    return Error{
+        "the model has other units or initial velocities than its recordings ask for; fit again"};
+  }
+  best.to = std::move(*point);
+  return std::nullopt;
+}
+
+MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
+                     const std::function<JobProgress(const std::string&)>& progress,
+                     FittedModel* model) {
+  if (!checks.profile.empty()) {
+    if (MaybeError error = AddProfiles(recordings, ProfileNames(checks.profile), checks.num_threads,
+                                       progress("profile"), model)) {
+      return Error{"--profile: " + error->ToString()};
+    }
+  }
+  if (checks.bootstrap.replicas > 0) {
+    if (MaybeError error =
+            AddBootstrap(recordings, checks.bootstrap, progress("bootstrap replica"), model)) {
+      return *error;
+    }
+  }
+  if (checks.push_check) {
+    if (MaybeError error =
+            AddPushCheck(recordings, checks.pushes, checks.num_threads, progress("push"), model)) {
+      return Error{"--push_check: " + error->ToString()};
+    }
+  }
+  if (checks.prior_check) AddPriorCheck(recordings, model);
+  if (checks.horizon_check) {
+    AddHorizonCheck(recordings, checks.num_threads, progress("horizon"), model);
+  }
+  model->advice = Advise(*model);
+  return std::nullopt;
+}
+
+Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
+                                  const ModelChecks& checks, const FitResult& fit) {
+  std::string text;
+  if (checks.population && fit.recording_effect)
+    text = "\n" + PopulationText(*fit.recording_effect);
+  if (checks.design.empty()) return text;
+  const Result<std::string> design = DesignText(DesignExperiments(recordings, fit), checks.design);
+  if (!design.ok()) return Error{"--design: " + design.error().message};
+  return text + "\n" + design.value();
+}
+
+}  // namespace pushid

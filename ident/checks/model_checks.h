@@ -1,0 +1,56 @@
+// ident: what a finished model is asked: how wide its intervals are by other means (profiles,
+// bootstrap), what other pushes, priors and horizons would have made of it, and what to record
+// next. pushid-check asks a model's file, pushid-fit a fit that has just ended.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/model/fitted_model.h"
+#include "ident/push/push_check.h"
+
+namespace pushid {
+
+struct ModelChecks {
+  std::string profile;         // names, comma-separated; all; empty: none
+  BootstrapOptions bootstrap;  // of which `replicas` may be 0: none
+  bool push_check = false, prior_check = false, horizon_check = false;
+  PushVariantOptions pushes;  // of push_check
+  bool population = false;
+  std::string design;  // a parameter, or all; empty: none
+  int num_threads = 1;
+
+  // Whether they add to the model; population and design are only printed.
+  bool Adds() const {
+    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check || horizon_check;
+  }
+  bool Any() const { return Adds() || population || !design.empty(); }
+};
+
+// What is wrong with them, before a long fit. Errors name the flag.
+MaybeError CheckNumbers(const ModelChecks& checks);
+// The same against what is, or was, fitted.
+MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, int recordings);
+
+// The recordings that the model was fitted to, in its order and as often, out of those given.
+// Errors: one is missing, differs from what was fitted, or was not fitted.
+Result<std::vector<PendulumRecording>> AsFitted(const std::vector<PendulumRecording>& given,
+                                                const FitResult& fit);
+
+// A model from a file as it was when Fit returned it: what refits start from is complete again.
+// Errors: the recordings have other units or sizes than those of the fit.
+MaybeError ResumeFit(const std::vector<PendulumRecording>& recordings, FitResult* fit);
+
+// Adds the checks to a model that came from Fit, or ResumeFit, of these very recordings, and the
+// advice that follows. progress: of the check of that name.
+MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
+                     const std::function<JobProgress(const std::string&)>& progress,
+                     FittedModel* model);
+
+// What population and design print; empty where nothing was asked.
+Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
+                                  const ModelChecks& checks, const FitResult& fit);
+
+}  // namespace pushid

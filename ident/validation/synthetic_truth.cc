@@ -1,0 +1,32 @@
+// ident: presets with published values.
+#include "ident/validation/synthetic_truth.h"
+
+#include "ident/fit/fit_setup.h"
+#include "ident/parameters/option_names.h"
+
+namespace pushid {
+
+Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std::string& set) {
+  const bool groups = study.people_in_row > 1, slide = study.model.stance == Stance::kSlide;
+  const Result<FitOptions> made =
+      MakeFitOptions({{"preset", groups ? "group" : "tail"},
+                      {"stance", NameOf(study.model.stance)},
+                      {"process_noise", NameOf(study.model.process_noise)}});
+  if (!made.ok()) return made.error();
+  const FitOptions& preset = made.value();
+  const ParameterSet<double> published =
+      !slide ? PublishedStanceParameters()
+             : (groups ? PublishedGroupParameters() : PublishedTailParameters());
+  IdentifiedModel model;
+  model.options = preset.model;
+  model.table = preset.table;
+  model.parameters = preset.table.Values();
+  for (Parameter id : preset.table.Free()) {
+    // Standing people touch as the preset has it.
+    if (!IsPairParameter(id) || slide) model.parameters[id] = published[id];
+  }
+  if (MaybeError error = SetValues(set, &model)) return *error;
+  return model;
+}
+
+}  // namespace pushid
