@@ -1,10 +1,13 @@
 // apps: pushid-animate: recorded and predicted people as a web page and as a strip of poses.
+#include <gflags/gflags.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <string>
 
-#include "apps/flags/animate_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/flags/what_if_flags.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
@@ -14,9 +17,29 @@
 #include "ident/prediction/prediction.h"
 #include "models/learned_terms.h"
 
+DEFINE_string(id, "", "the recording to show");
+DEFINE_string(out, "", "the page to write (HTML), for any browser");
+DEFINE_string(strip_out, "", "a strip of poses (SVG)");
+DEFINE_int32(poses, 7, "poses of the strip");
+DEFINE_string(explain, "",
+              "describe the forces on this person in words and plot them beside the motion: a "
+              "person's id, or auto (the bystander with the most events)");
+DEFINE_bool(recorded, true, "also show the recorded bodies");
+
 namespace {
 
 using namespace pushid;
+
+MaybeError CheckFlags() {
+  if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
+    return missing;
+  }
+  if (FLAGS_out.empty() && FLAGS_strip_out.empty()) {
+    return Error{"--out and --strip_out are missing: name a page (HTML) or a picture (SVG)"};
+  }
+  if (FLAGS_poses < 2 || FLAGS_poses > 40) return Error{"--poses must lie between 2 and 40"};
+  return CheckOutputFiles({FLAGS_out, FLAGS_strip_out});
+}
 
 MaybeError Write(const std::string& file, const std::string& content) {
   if (MaybeError error = WriteFileAtomically(file, content)) return error;
@@ -52,21 +75,21 @@ int LeftDomain(const RolloutStatus& status, const std::string& what) {
 }
 
 int Run() {
-  const Result<AnimateFlags> read = AnimateFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const AnimateFlags& flags = read.value();
+  if (MaybeError error = CheckFlags()) return Fail(*error);
+  const Result<RestorationFlags> flags = RestorationFlagsFromCommandLine("rigid");
+  if (!flags.ok()) return Fail(flags.error());
   const Result<std::vector<WhatIf>> what_ifs = LoadWhatIfs();
   if (!what_ifs.ok()) return Fail(what_ifs.error());
   const IdentifiedModel& model = what_ifs.value().front().model;
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id}, true);
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options),
+      LoadFlaggedRestoration(flags.value(), RodMoves(model.options),
                              static_cast<int>(recordings.value().front().people.size()));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.mapping);
-  if (!recording.ok() && flags.bodies_asked) return Fail(recording.error());
+  if (!recording.ok() && Given("restoration")) return Fail(recording.error());
   if (!recording.ok()) Warn(recording.error().ToString() + "; only pendulums are shown");
 
   const PendulumRecording pendulum =
@@ -77,27 +100,27 @@ int Run() {
   animation.dt = pendulum.scene.dt;
   AddPushes(pendulum, &animation);
   if (recording.ok()) animation.title += ", " + std::string(restoration.value()->kind());
-  if (recording.ok() && flags.recorded) {
+  if (recording.ok() && FLAGS_recorded) {
     AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
   }
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);
     if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
-    if (!flags.explain.empty() && !animation.story) {
-      const MaybeError unknown = Explain(flags.explain, pendulum, prediction, &animation);
+    if (!FLAGS_explain.empty() && !animation.story) {
+      const MaybeError unknown = Explain(FLAGS_explain, pendulum, prediction, &animation);
       if (unknown) return Fail(*unknown);
     }
     std::vector<BodyMotion> bodies;
     if (recording.ok()) {
-      bodies = RestoreBodies(*restoration.value(), flags.restoration.postprocess,
+      bodies = RestoreBodies(*restoration.value(), flags.value().postprocess,
                              PredictedPeople(recording.value(), prediction));
     }
     AddPrediction(pendulum, prediction, bodies, &animation, one.what);
   }
   MaybeError error;
-  if (!flags.out.empty()) error = Write(flags.out, AnimationHtml(animation));
-  if (!error && !flags.strip_out.empty()) {
-    error = Write(flags.strip_out, PoseStripSvg(animation, flags.poses));
+  if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml(animation));
+  if (!error && !FLAGS_strip_out.empty()) {
+    error = Write(FLAGS_strip_out, PoseStripSvg(animation, FLAGS_poses));
   }
   return error ? Fail(*error) : kDone;
 }

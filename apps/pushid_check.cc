@@ -59,12 +59,11 @@ Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
 // A model says how it was made: with these flags too.
 void AddToProvenance(Provenance* from) {
   const std::map<std::string, std::string> now = EffectiveFlags();
-  const std::vector<std::string> changed = ChangedFlags();
-  for (const std::string& name : MovedCheckFlags().names) {
-    if (std::find(changed.begin(), changed.end(), name) == changed.end()) continue;
+  std::vector<std::string>& known = from->changed_flags;
+  for (const std::string& name : ChangedFlags()) {
+    if (!MovedCheckFlags().Has(name)) continue;
     from->configuration[name] = now.at(name);
-    const auto at = std::lower_bound(from->changed_flags.begin(), from->changed_flags.end(), name);
-    if (at == from->changed_flags.end() || *at != name) from->changed_flags.insert(at, name);
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
   }
 }
 

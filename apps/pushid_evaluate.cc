@@ -1,15 +1,18 @@
 // apps: pushid-evaluate: how far a model's predictions are from recordings, beside the baselines.
+#include <gflags/gflags.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/evaluate_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "apps/flags/restoration_flags.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
@@ -21,29 +24,47 @@
 #include "ident/validation/steps_report.h"
 #include "models/learned_terms.h"
 
+DEFINE_string(json_out, "", "write the scores here (JSON)");
+DEFINE_string(peer, "",
+              "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe or "
+              "--kind=mrt) to compare with");
+DEFINE_bool(per_recording, true, "print a line for every recording");
+
 namespace {
 
 using namespace pushid;
 
+// That of --restoration, once all flags have been checked.
+Result<RestorationFlags> CheckedFlags() {
+  if (MaybeError missing = RequireModel()) return *missing;
+  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
+  if (!restoration.ok()) return restoration.error();
+  for (MaybeError error : {CheckNeeds({"peer"}, {"restoration"}, " to be compared with"),
+                           CheckOutputFiles({FLAGS_json_out})}) {
+    if (error) return *error;
+  }
+  return restoration;
+}
+
 // Bodies beside pendulums, where --restoration asks for them; else nothing.
-Result<std::optional<BodyEvaluation>> Bodies(const EvaluateFlags& flags,
+Result<std::optional<BodyEvaluation>> Bodies(const RestorationFlags& flags,
                                              const IdentifiedModel& model,
                                              const std::vector<Recording>& recordings) {
-  if (!flags.restoration.given()) return std::optional<BodyEvaluation>();
+  if (!flags.given()) return std::optional<BodyEvaluation>();
   size_t people = 0;
   for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.restoration, RodMoves(model.options), static_cast<int>(people));
+      LoadFlaggedRestoration(flags, RodMoves(model.options), static_cast<int>(people));
   if (!restoration.ok()) return restoration.error();
   const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
   if (!bodies.ok()) return bodies.error();
   BodyScores scores;
   for (const BodyRecording& body : bodies.value()) {
-    ScoreRestoration(model, *restoration.value(), flags.restoration.postprocess, body, &scores,
+    ScoreRestoration(model, *restoration.value(), flags.postprocess, body, &scores,
                      ObservedFrames());
   }
-  if (!flags.peer.empty()) {
-    const Result<std::unique_ptr<Peer>> peer = LoadPeer(flags.peer);
+  if (!FLAGS_peer.empty()) {
+    const Result<std::unique_ptr<Peer>> peer = LoadPeer(FLAGS_peer);
     if (!peer.ok()) return peer.error();
     for (const BodyRecording& body : bodies.value()) ScorePeer(*peer.value(), body, &scores);
   }
@@ -51,9 +72,8 @@ Result<std::optional<BodyEvaluation>> Bodies(const EvaluateFlags& flags,
 }
 
 int Run() {
-  const Result<EvaluateFlags> read = EvaluateFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const EvaluateFlags& flags = read.value();
+  const Result<RestorationFlags> restoration = CheckedFlags();
+  if (!restoration.ok()) return Fail(restoration.error());
   const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
   if (MaybeError error = CheckObservedFlag()) return Fail(*error);
@@ -61,18 +81,18 @@ int Run() {
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, flags.restoration.given());
+      LoadFlaggedRecordings({}, restoration.value().given());
   if (!recordings.ok()) return Fail(recordings.error());
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), model.value().mapping);
   if (MaybeError error = CheckObservedFlag(pendulums, model.value())) return Fail(*error);
   const Result<std::optional<BodyEvaluation>> bodies =
-      Bodies(flags, model.value(), recordings.value());
+      Bodies(restoration.value(), model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
   WarnGrouped(InputWarnings(model.value(), pendulums));
   const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames());
-  std::printf("%s", EvaluationText(evaluation, flags.per_recording).c_str());
-  std::printf("\n%s", StepsReport(pendulums, flags.per_recording).c_str());
+  std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
+  std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);
   if (const int draws = drawn.value().samples; draws > 0) {
     const auto futures = EvaluateFutures(model.value(), pendulums, draws, drawn.value().seed);
@@ -85,10 +105,10 @@ int Run() {
     std::printf("\n%s", BodyText(*bodies.value()).c_str());
     AddBodyJson(*bodies.value(), &json);
   }
-  if (!flags.json_out.empty()) {
+  if (!FLAGS_json_out.empty()) {
     json["version"] = Version();
     json["configuration"] = EffectiveFlags();
-    if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+    if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
   }
   return kDone;
 }

@@ -1,11 +1,19 @@
 // apps: pushid-inspect: what files hold, and what about them will matter.
+#include <gflags/gflags.h>
+
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/inspect_flags.h"
+#include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/inspection/inspection.h"
+#include "datasets/manifest/column_mapping.h"
 #include "ident/report/inspection_svg.h"
+
+DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
+DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
 
 namespace {
 
@@ -13,29 +21,42 @@ using namespace pushid;
 
 std::vector<std::string> g_files;
 
+MaybeError CheckFlags() {
+  if (g_files.empty()) {
+    return Error{"name one or more files to inspect; see pushid-inspect --help"};
+  }
+  if (FLAGS_svg_out.empty()) return std::nullopt;
+  if (g_files.size() > 1) {
+    return Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
+  }
+  if (MaybeError error = OutputFiles().CheckNotRead("the command line", g_files[0])) return error;
+  return CheckOutputFiles({FLAGS_svg_out});
+}
+
 int Run() {
-  const Result<InspectFlags> read = InspectFlagsFromCommandLine(g_files);
-  if (!read.ok()) return Fail(read.error());
-  const InspectFlags& flags = read.value();
+  if (MaybeError error = CheckFlags()) return Fail(*error);
+  const Result<ColumnMapping> mapping =
+      FLAGS_mapping.empty() ? ColumnMapping() : ReadColumnMapping(FLAGS_mapping);
+  if (!mapping.ok()) return Fail(mapping.error());
   // A file that cannot be read does not keep the others from being told about.
   int outcome = kDone;
   for (const std::string& file : g_files) {
-    const Result<Inspection> found = Inspect(file, flags.mapping);
+    const Result<Inspection> found = Inspect(file, mapping.value());
     if (!found.ok()) {
       outcome = Fail(found.error());
       continue;
     }
     std::printf("%s", InspectionText(found.value()).c_str());
-    if (flags.svg_out.empty()) continue;
+    if (FLAGS_svg_out.empty()) continue;
     const Inspection& seen = found.value();
     if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
       return Fail(file + ": a " + seen.format +
                   " contains nothing to draw; give the file of a recording");
     }
-    if (MaybeError error = WriteFileAtomically(flags.svg_out, InspectionSvg(found.value()))) {
+    if (MaybeError error = WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value()))) {
       return Fail(*error);
     }
-    std::printf("  picture         %s\n", flags.svg_out.c_str());
+    std::printf("  picture         %s\n", FLAGS_svg_out.c_str());
   }
   return outcome;
 }

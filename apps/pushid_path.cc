@@ -1,18 +1,92 @@
 // apps: pushid-path: most probable paths under a model's process noise, and smoothed recordings.
+#include <gflags/gflags.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/path_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/forecasts/most_probable_path.h"
+
+DEFINE_string(from, "",
+              "initial state of the path: x, y (m), theta, phi (rad), xd, yd (m/s), thetad, phid "
+              "(rad/s), comma-separated, as in theta=0.05,xd=0.3; components not named are 0");
+DEFINE_string(to, "",
+              "final state, in the same form; if no velocity is named all are free, otherwise all "
+              "are fixed. With several ends, separated by semicolons, the most probable one is "
+              "reported. Not for models whose noise grows with speed");
+DEFINE_int32(frames, 60, "frames of the path, both ends included");
+DEFINE_double(fps, 60.0, "frames per second");
+DEFINE_double(mass, pushid::kReferenceMass, "the person's mass, kg");
+DEFINE_double(rod, pushid::kReferenceRod, "the person's rod (ankles to hip), m");
+DEFINE_string(id, "",
+              "instead of --from and --to: a recording of --recordings, whose states are smoothed "
+              "and whose gaps are filled");
+DEFINE_string(out, "", "write states, and the forces that drove them, here (CSV)");
+DEFINE_string(json_out, "", "write the actions here (JSON)");
 
 namespace {
 
 using namespace pushid;
+
+struct Ends {
+  PathEnd from;
+  std::vector<PathEnd> to;         // of which the most probable one is found
+  std::vector<std::string> names;  // as they were given
+};
+
+Result<Ends> ReadEnds() {
+  Ends ends;
+  const Result<PathEnd> from = ParsePathEnd("--from", FLAGS_from, true);
+  if (!from.ok()) return from.error();
+  ends.from = from.value();
+  std::stringstream list(FLAGS_to);
+  for (std::string text; std::getline(list, text, ';');) {
+    const std::string name(Trimmed(text));
+    const Result<PathEnd> to = ParsePathEnd("--to", name, false);
+    if (!to.ok()) return to.error();
+    if (name.empty()) return Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
+    if (!ends.to.empty() && to.value().rates_held != ends.to.front().rates_held) {
+      return Error{
+          "--to fixes velocities in some ends and leaves them free in others, so their "
+          "probabilities cannot be compared; name a velocity in all ends or in none"};
+    }
+    ends.to.push_back(to.value());
+    ends.names.push_back(name);
+  }
+  if (MaybeError missing = Require("to", FLAGS_to, "give the final state, as in --to=x=0.5,xd=0")) {
+    return *missing;
+  }
+  return ends;
+}
+
+// None where a recording is smoothed.
+Result<Ends> CheckedEnds() {
+  if (MaybeError missing = RequireModel()) return *missing;
+  Result<Ends> ends = FLAGS_id.empty() ? ReadEnds() : Ends();
+  if (!ends.ok()) return ends;
+  if (!FLAGS_id.empty()) {
+    for (const char* flag : {"from", "to", "frames", "fps", "mass", "rod"}) {
+      if (!Given(flag)) continue;
+      return Error{std::string("--id smooths a recording, which gives both ends; leave --") + flag +
+                   " out"};
+    }
+  }
+  for (MaybeError error :
+       {CheckRange("frames", FLAGS_frames, 6, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
+        CheckRange("mass", FLAGS_mass, 5, 500), CheckRange("rod", FLAGS_rod, 0.2, 2),
+        CheckOutputFiles({FLAGS_out, FLAGS_json_out})}) {
+    if (error) return *error;
+  }
+  return ends;
+}
 
 nlohmann::ordered_json ActionJson(const ProbablePath& path) {
   return {{"action", path.action()},
@@ -21,50 +95,49 @@ nlohmann::ordered_json ActionJson(const ProbablePath& path) {
 }
 
 // The CSV of the path and the JSON.
-int Write(const PathFlags& flags, const ProbablePath& path, double dt,
-          nlohmann::ordered_json json) {
-  if (!flags.out.empty()) {
-    if (MaybeError error = WritePathCsv(flags.out, path, dt)) return Fail(*error);
-    std::printf("%d frames written to %s\n", path.states.num_frames(), flags.out.c_str());
+int Write(const ProbablePath& path, double dt, nlohmann::ordered_json json) {
+  if (!FLAGS_out.empty()) {
+    if (MaybeError error = WritePathCsv(FLAGS_out, path, dt)) return Fail(*error);
+    std::printf("%d frames written to %s\n", path.states.num_frames(), FLAGS_out.c_str());
   }
-  if (flags.json_out.empty()) return kDone;
+  if (FLAGS_json_out.empty()) return kDone;
   json["version"] = Version();
   json["configuration"] = EffectiveFlags();
-  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
   return kDone;
 }
 
-int Between(const PathFlags& flags, const IdentifiedModel& model) {
+int Between(const Ends& ends, const IdentifiedModel& model) {
   TextTable table({"end", "action", "of noise", "of divergence"}, {true, false, false, false});
   nlohmann::ordered_json json;
   size_t best = 0;
   std::vector<ProbablePath> paths;
-  for (size_t i = 0; i < flags.to.size(); ++i) {
-    Result<ProbablePath> path =
-        PathBetween(model, flags.body, flags.fps, flags.from, flags.to[i], flags.frames);
+  for (size_t i = 0; i < ends.to.size(); ++i) {
+    Result<ProbablePath> path = PathBetween(model, {FLAGS_mass, FLAGS_rod, 0.0}, FLAGS_fps,
+                                            ends.from, ends.to[i], FLAGS_frames);
     if (!path.ok()) return Fail(path.error());
     const ProbablePath& found = path.value();
-    table.Add({flags.end_names[i], Rounded(found.action(), 4), Rounded(found.noise_action, 4),
+    table.Add({ends.names[i], Rounded(found.action(), 4), Rounded(found.noise_action, 4),
                Rounded(found.divergence_action, 4)});
     nlohmann::ordered_json one = ActionJson(found);
-    one["end"] = flags.end_names[i];
+    one["end"] = ends.names[i];
     json["paths"].push_back(one);
     paths.push_back(std::move(path.value()));
     if (paths[i].action() < paths[best].action()) best = i;
   }
-  json["most_probable"] = flags.end_names[best];
+  json["most_probable"] = ends.names[best];
   std::printf("%s", table.ToString().c_str());
   if (paths.size() > 1) {
-    std::printf("most probable: %s\n", flags.end_names[best].c_str());
+    std::printf("most probable: %s\n", ends.names[best].c_str());
   }
   std::printf(
       "action: -log probability density of the path, up to a constant that depends on its "
       "frames\n");
-  return Write(flags, paths[best], 1.0 / flags.fps, json);
+  return Write(paths[best], 1.0 / FLAGS_fps, json);
 }
 
-int Smooth(const PathFlags& flags, const IdentifiedModel& model) {
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({flags.id});
+int Smooth(const IdentifiedModel& model) {
+  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.mapping);
@@ -85,16 +158,15 @@ int Smooth(const PathFlags& flags, const IdentifiedModel& model) {
   nlohmann::ordered_json json = ActionJson(found);
   json["recording"] = recording.id;
   json["measurement_cost"] = found.measurement_cost;
-  return Write(flags, found, recording.scene.dt, json);
+  return Write(found, recording.scene.dt, json);
 }
 
 int Run() {
-  const Result<PathFlags> flags = PathFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
+  const Result<Ends> ends = CheckedEnds();
+  if (!ends.ok()) return Fail(ends.error());
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
-  return flags.value().between ? Between(flags.value(), model.value())
-                               : Smooth(flags.value(), model.value());
+  return FLAGS_id.empty() ? Between(ends.value(), model.value()) : Smooth(model.value());
 }
 
 }  // namespace

@@ -1,33 +1,127 @@
 // apps: pushid-predict: what happens after a push, from the first frame and the push alone.
+#include <gflags/gflags.h>
+
 #include <cstdio>
+#include <string>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/observed_flags.h"
-#include "apps/flags/predict_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/predict_bodies.h"
+#include "apps/flags/restoration_flags.h"
+#include "apps/support/app_support.h"
 #include "apps/support/grouped_warnings.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 
+DEFINE_string(id, "", "the recording that gives the first frame and the push");
+DEFINE_string(out, "",
+              "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
+              "the bodies instead, if the name ends in .bvh (one file per person), or in .gltf or "
+              ".glb (all in one animated glTF file)");
+DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
+DEFINE_string(joints_out, "",
+              "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
+DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
+
 namespace {
 
 using namespace pushid;
 
-int WritePendulums(const PredictFlags& flags, const PendulumRecording& recording,
-                   const Prediction& prediction) {
-  if (MaybeError error = WriteTrajectoryCsv(flags.out, recording, prediction)) {
+constexpr int kMostFrames = 1000000;  // hours of motion
+
+// The first output that holds bodies; empty where there is none.
+std::string BodyOutput() {
+  if (!FLAGS_joints_out.empty()) return "joints_out";
+  if (!FLAGS_json_out.empty()) return "json_out";
+  return IsBodyFile(FLAGS_out) ? "out=" + FLAGS_out : "";
+}
+
+bool WholeRecording() { return FLAGS_frames == 0; }
+
+// That of --restoration, once all flags have been checked.
+Result<RestorationFlags> CheckedFlags() {
+  for (MaybeError missing :
+       {RequireModel(), Require("id", FLAGS_id, "name a recording of the manifest"),
+        Require("out", FLAGS_out, "name the CSV, BVH or glTF file to write")}) {
+    if (missing) return *missing;
+  }
+  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
+  if (!restoration.ok()) return restoration.error();
+  const std::string needy = BodyOutput();
+  if (!needy.empty() && !restoration.value().given()) return NeedsRestoration(needy);
+  if (!WholeRecording() && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
+    return Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
+  }
+  if (MaybeError error = CheckOutputFiles({FLAGS_joints_out, FLAGS_json_out, FLAGS_out})) {
+    return *error;
+  }
+  return restoration;
+}
+
+Result<std::vector<std::string>> WriteScene(const BodyScene& scene, const BodyRecording& recording,
+                                            const Prediction& prediction) {
+  std::vector<std::string> files = {FLAGS_out};
+  if (IsBodyFile(FLAGS_out)) {
+    const Result<std::vector<std::string>> written = WriteBodyFiles(FLAGS_out, scene);
+    if (!written.ok()) return written;
+    files = written.value();
+  } else if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording.pendulum, prediction)) {
+    return *error;
+  }
+  if (!FLAGS_joints_out.empty()) {
+    if (MaybeError error = WriteJointsCsv(FLAGS_joints_out, scene)) return *error;
+    files.push_back(FLAGS_joints_out);
+  }
+  if (!FLAGS_json_out.empty()) {
+    if (MaybeError error = WriteJson(FLAGS_json_out, ToJson(scene), -1)) return *error;
+    files.push_back(FLAGS_json_out);
+  }
+  return files;
+}
+
+// Restores bodies, writes what the flags name and prints, for a whole recording also how far they
+// are from the recorded ones; returns the exit code.
+int WriteBodies(const RestorationFlags& flags, const Recording& recorded, SkeletonMapping mapping,
+                const Prediction& prediction) {
+  const Result<std::unique_ptr<Restoration>> restoration =
+      LoadFlaggedRestoration(flags, prediction.rod_moves, static_cast<int>(recorded.people.size()));
+  if (!restoration.ok()) return Fail(restoration.error());
+  const Result<BodyRecording> recording = MakeBodyRecording(recorded, mapping);
+  if (!recording.ok()) return Fail(recording.error());
+  std::vector<BodyMotion> bodies = RestoreBodies(*restoration.value(), flags.postprocess,
+                                                 PredictedPeople(recording.value(), prediction));
+  BodyScore score;
+  if (WholeRecording()) score = ScoreBodies(recording.value(), bodies);
+  const BodyScene scene = SceneOf(recording.value(), std::move(bodies));
+  const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);
+  if (!files.ok()) return Fail(files.error());
+  std::printf("%s: %d frames of %d %s predicted (%s)\n", scene.id.c_str(), scene.num_frames(),
+              scene.num_people(), scene.num_people() == 1 ? "body" : "bodies",
+              std::string(restoration.value()->kind()).c_str());
+  for (const std::string& file : files.value()) std::printf("  %s\n", file.c_str());
+  if (WholeRecording()) {
+    std::printf("against the recording: %s\n", MetricsText(score.value, 3).c_str());
+  }
+  return kDone;
+}
+
+int WritePendulums(const PendulumRecording& recording, const Prediction& prediction) {
+  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording, prediction)) {
     return Fail(*error);
   }
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
-              prediction.path.num_frames(), flags.out.c_str());
-  if (flags.whole_recording()) {
+              prediction.path.num_frames(), FLAGS_out.c_str());
+  if (WholeRecording()) {
     const RecordingScore score = ScoreHip(recording, prediction.hip, prediction.observed);
     std::printf("against the recording: %s\n", MetricsText(score, 3, prediction.observed).c_str());
   }
@@ -35,28 +129,28 @@ int WritePendulums(const PredictFlags& flags, const PendulumRecording& recording
 }
 
 int Run() {
-  const Result<PredictFlags> read = PredictFlagsFromCommandLine();
+  const Result<RestorationFlags> read = CheckedFlags();
   if (!read.ok()) return Fail(read.error());
-  const PredictFlags& flags = read.value();
+  const RestorationFlags& restoration = read.value();
   const Result<FuturesFlags> futures = FuturesFlagsFromCommandLine(true);
   if (!futures.ok()) return Fail(futures.error());
   const Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = CheckDraws(futures.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({flags.id}, flags.restoration.given());
+      LoadFlaggedRecordings({FLAGS_id}, restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());
   const PendulumRecording recording =
       MakePendulumRecording(recordings.value().front(), model.value().mapping);
 
   WarnGrouped(InputWarnings(model.value(), {recording}));
   if (MaybeError error = CheckObservedFlag({recording}, model.value())) return Fail(*error);
-  if (!flags.whole_recording() && flags.frames <= ObservedFrames()) {
-    return Fail("--frames=" + std::to_string(flags.frames) + " leaves none to predict after " +
+  if (!WholeRecording() && FLAGS_frames <= ObservedFrames()) {
+    return Fail("--frames=" + std::to_string(FLAGS_frames) + " leaves none to predict after " +
                 "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
   }
   const Result<Prediction> predicted =
-      PredictFrom(model.value(), recording, ObservedFrames(), flags.frames);
+      PredictFrom(model.value(), recording, ObservedFrames(), FLAGS_frames);
   if (!predicted.ok()) return Fail(predicted.error());
   const Prediction& prediction = predicted.value();
   if (!prediction.status.ok) {
@@ -64,13 +158,13 @@ int Run() {
                  OutsideText(prediction.status).c_str());
     return kFitFailed;
   }
-  const int code = flags.restoration.given() ? WriteBodies(flags, recordings.value().front(),
-                                                           model.value().mapping, prediction)
-                                             : WritePendulums(flags, recording, prediction);
+  const int code = restoration.given() ? WriteBodies(restoration, recordings.value().front(),
+                                                     model.value().mapping, prediction)
+                                       : WritePendulums(recording, prediction);
   if (code != kDone) return code;
   std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
               EffectText(prediction).c_str());
-  return PrintFutures(futures.value(), model.value(), recording, flags.frames);
+  return PrintFutures(futures.value(), model.value(), recording, FLAGS_frames);
 }
 
 }  // namespace

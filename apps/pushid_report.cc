@@ -1,14 +1,24 @@
 // apps: pushid-report: an identified model in words and tables, and as a page with pictures.
+#include <gflags/gflags.h>
+
 #include <cstdio>
+#include <string>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/report_flags.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/error.h"
 #include "ident/model/model_json.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
+
+DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
+DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
+DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
+DEFINE_bool(text, false, "print the whole report, not only the parameters");
+DEFINE_int32(num_threads, 1, "threads");
+DEFINE_string(csv_dir, "", "write the numbers behind every plot into this folder (CSV)");
 
 namespace {
 
@@ -25,25 +35,25 @@ Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
   return LoadFlaggedRecordings(ids, true);
 }
 
-int WriteWhole(const ReportFlags& flags, const FittedModel& model) {
+int WriteWhole(const FittedModel& model) {
   const Result<std::vector<Recording>> recordings = RecordingsOf(model.fit);
   if (!recordings.ok()) return Fail(recordings.error());
   ProgressLine line;
   BuildReportOptions options;
-  options.num_threads = flags.num_threads;
+  options.num_threads = FLAGS_num_threads;
   options.progress = [&line](int done, int total) {
     line.Show("recording " + std::to_string(done) + " of " + std::to_string(total));
   };
   const Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
-  if (flags.text) std::printf("%s", ToText(report).c_str());
-  if (!flags.csv_dir.empty()) {
-    if (MaybeError error = WriteNumbers(report, flags.csv_dir)) return Fail(*error);
-    std::fprintf(stderr, "numbers written to %s\n", flags.csv_dir.c_str());
+  if (FLAGS_text) std::printf("%s", ToText(report).c_str());
+  if (!FLAGS_csv_dir.empty()) {
+    if (MaybeError error = WriteNumbers(report, FLAGS_csv_dir)) return Fail(*error);
+    std::fprintf(stderr, "numbers written to %s\n", FLAGS_csv_dir.c_str());
   }
-  if (flags.html_out.empty()) return kDone;
-  if (MaybeError error = WriteFileAtomically(flags.html_out, ToPage(report))) return Fail(*error);
-  std::fprintf(stderr, "report written to %s\n", flags.html_out.c_str());
+  if (FLAGS_html_out.empty()) return kDone;
+  if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
+  std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
   if (recordings.value().empty()) {
     Warn("without --recordings the report shows no motion and no figure");
   }
@@ -51,18 +61,21 @@ int WriteWhole(const ReportFlags& flags, const FittedModel& model) {
 }
 
 int Run() {
-  const Result<ReportFlags> read = ReportFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const ReportFlags& flags = read.value();
-  const Result<FittedModel> model = ReadFittedModel(flags.model);
+  for (MaybeError error :
+       {Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote"),
+        CheckOutputFiles({FLAGS_html_out})}) {
+    if (error) return Fail(*error);
+  }
+  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
   if (!model.ok()) return Fail(model.error());
-  if (!flags.truth.empty()) {
-    const Result<std::map<std::string, double>> truth = ReadTruth(flags.truth);
+  if (!FLAGS_truth.empty()) {
+    const Result<std::map<std::string, double>> truth = ReadTruth(FLAGS_truth);
     if (!truth.ok()) return Fail(truth.error());
     std::printf("%s", TruthTable(model.value().fit, truth.value()).c_str());
     return kDone;
   }
-  if (flags.whole()) return WriteWhole(flags, model.value());
+  if ((FLAGS_text || !FLAGS_html_out.empty() || !FLAGS_csv_dir.empty()))
+    return WriteWhole(model.value());
   std::printf("%s", ReportText(model.value()).c_str());
   return kDone;
 }

@@ -8,7 +8,7 @@
 #include "apps/support/app_support.h"
 #include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
-#include "ident/parameters/option_names.h"
+#include "ident/report/fit_command.h"
 
 DEFINE_string(profile, "",
               "profile likelihood of these parameters and combinations, comma-separated; all (or "
@@ -77,10 +77,7 @@ Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads) {
 }
 
 MovedFlags MovedCheckFlags() {
-  return {{"profile", "bootstrap", "bootstrap_file", "push_check", "push_check_noise",
-           "prior_check", "horizon_check", "design", "population"},
-          "pushid-check",
-          "checks of a finished model"};
+  return {CheckFlagNames(), "pushid-check", "checks of a finished model"};
 }
 
 MaybeError AddFlaggedChecks(const std::vector<PendulumRecording>& recordings,

@@ -51,8 +51,9 @@ class Adviser {
     if (!given) advice_.push_back({sentence, text});
   }
   FitCommand Same() const { return FitCommand("pushid-fit", model_.provenance); }
+  FitCommand Check() const { return FitCommand::Check(model_.provenance); }
   FitCommand Bootstrap(int replicas) const {
-    return Same().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
+    return Check().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
   }
   // More of it than the fit had.
   FitCommand SettleHarder(double weight) const;
@@ -107,7 +108,7 @@ void Adviser::Identifiability() {
     Add(weak +
             " is only weakly identified; find out which pushes, people or sensor would reduce its "
             "error most.",
-        Same().Set("design", weak));
+        Check().Set("design", weak));
   }
   const Uncertainty& u = result_.uncertainty;
   const int shared = static_cast<int>(result_.options.table.Free().size());
@@ -211,14 +212,14 @@ void Adviser::Recordings() {
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
             (people ? " people" : " recordings") +
             " the clustered errors are themselves uncertain; record more, as the design suggests.",
-        Same().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
+        Check().Set("design", l.parameters.empty() ? std::string("all") : l.parameters.front()));
   }
 }
 
 void Adviser::Intervals() {
   if (model_.profiles.empty()) {
     Add("The intervals assume a quadratic cost; profiles show its true shape.",
-        Same().Set("profile", "all").Set("num_threads", "2"));
+        Check().Set("profile", "all").Set("num_threads", "2"));
   }
   const bool several = result_.recordings.size() > 1;  // a single one is its only resample
   if (!model_.bootstrap && several) {
@@ -248,7 +249,7 @@ void Adviser::Shares() {
   }
   if (!held.empty() && !model_.prior_check) {
     Add("Priors determine " + held + "; check the sensitivity to the priors.",
-        Same().Set("prior_check", "true"));
+        Check().Set("prior_check", "true"));
   }
 }
 
@@ -257,14 +258,14 @@ void Adviser::Pushes() {
   if (measured || model_.push_check) return;
   Add("The pushes are net forces from inverse dynamics; check how much its window affects the "
       "estimates.",
-      Same().Set("push_check", "true"));
+      Check().Set("push_check", "true"));
 }
 
 void Adviser::Horizons() {
   if (model_.horizon_check || OfSteps()) return;
   Add("A parameter with physical meaning keeps its value when fewer frames are fitted; check which "
       "do.",
-      Same().Set("horizon_check", "true"));
+      Check().Set("horizon_check", "true"));
 }
 
 void Adviser::Terms() {

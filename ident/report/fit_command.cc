@@ -8,8 +8,12 @@
 namespace pushid {
 namespace {
 
-// Stands for the recordings where the provenance does not know their place.
-constexpr char kSomeManifest[] = "M/manifest.json";
+// Stand for the recordings and the model where the provenance does not know their place.
+constexpr char kSomeManifest[] = "M/manifest.json", kSomeModel[] = "model.json";
+
+std::string ManifestOf(const Provenance& provenance) {
+  return provenance.manifest.empty() ? kSomeManifest : provenance.manifest;
+}
 
 // gflags writes 0.2 as 0.20000000000000001.
 std::string Shortest(const std::string& value) {
@@ -31,17 +35,28 @@ std::string ShellQuoted(const std::string& value) {
 
 }  // namespace
 
+const std::vector<std::string>& CheckFlagNames() {
+  static const std::vector<std::string> names = {
+      "profile",     "bootstrap",     "bootstrap_file", "push_check", "push_check_noise",
+      "prior_check", "horizon_check", "design",         "population"};
+  return names;
+}
+
+FitCommand FitCommand::Check(const Provenance& provenance) {
+  FitCommand command("pushid-check");
+  return command.Set("model", kSomeModel).Set("recordings", ManifestOf(provenance));
+}
+
 FitCommand::FitCommand(std::string program, const Provenance& provenance)
     : program_(std::move(program)) {
-  Set("recordings", provenance.manifest.empty() ? kSomeManifest : provenance.manifest);
+  Set("recordings", ManifestOf(provenance));
   // The recordings and the model first, the rest by name.
   std::vector<std::string> names = {"setting", "ids", "leave_out", "preset"};
   for (const std::string& name : provenance.changed_flags) {
     const bool leads = std::find(names.begin(), names.begin() + 4, name) != names.begin() + 4;
-    const bool tells_more = name == "profile" || name == "bootstrap" || name == "design" ||
-                            name == "push_check" || name == "prior_check" ||
-                            name == "horizon_check";
-    if (!leads && !tells_more) names.push_back(name);
+    const std::vector<std::string>& checks = CheckFlagNames();
+    const bool checked = std::find(checks.begin(), checks.end(), name) != checks.end();
+    if (!leads && !checked) names.push_back(name);
   }
   for (const std::string& name : names) {
     const auto& changed = provenance.changed_flags;

@@ -12,11 +12,15 @@
 
 namespace pushid {
 
+// The flags of pushid-check that question a fit and are no part of it: profiles, bootstrap, design.
+const std::vector<std::string>& CheckFlagNames();
+
 class FitCommand {
  public:
-  // Every flag of the fit that was not at its default, but for those that only ask for more to be
-  // told about it (profiles, bootstrap, design).
+  // Every flag of the fit that was not at its default, but for those of CheckFlagNames.
   FitCommand(std::string program, const Provenance& provenance);
+  // pushid-check of the fitted model.
+  static FitCommand Check(const Provenance& provenance);
 
   // In place of what the fit had.
   FitCommand& Set(const std::string& flag, const std::string& value);
@@ -29,6 +33,7 @@ class FitCommand {
   std::string ToString() const;
 
  private:
+  explicit FitCommand(std::string program) : program_(std::move(program)) {}
   std::string* Find(const std::string& flag);
   std::string program_;
   std::vector<std::pair<std::string, std::string>> flags_;  // in the order they are printed
