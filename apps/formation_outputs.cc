@@ -41,14 +41,15 @@ namespace {
 
 // Flags that go with one way to bodies, where that is not the one.
 MaybeError CheckWayToBodies() {
-  std::vector<FlagRule> rules = {{"restoration",
-                                  FlagRule::kExcludes,
-                                  {"generator"},
-                                  " and --generator both make the bodies; give one of them"},
-                                 {"postprocess",
-                                  FlagRule::kExcludes,
-                                  {"generator"},
-                                  " needs --restoration; a generator does its own postprocessing"}};
+  std::vector<FlagRule> rules = {
+      {"restoration",
+       FlagRule::kExcludes,
+       {"generator"},
+       "--restoration and --generator both make the bodies; give one of them"},
+      {"postprocess",
+       FlagRule::kExcludes,
+       {"generator"},
+       "--postprocess needs --restoration; a generator does its own postprocessing"}};
   for (const char* flag : DiffusionFlagNames()) {
     rules.push_back({flag, FlagRule::kNeeds, {"generator"}, ""});
   }

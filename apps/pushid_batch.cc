@@ -1,33 +1,79 @@
 // apps: pushid-batch: many fits from one plan, each in a process of its own.
+#include <gflags/gflags.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string>
 
 #include "apps/batch/batch_run.h"
 #include "apps/batch/batch_summary.h"
 #include "apps/batch/variant_check.h"
-#include "apps/flags/batch_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/support/child_process.h"
+#include "apps/support/interruption.h"
+#include "datasets/files/error.h"
 #include "datasets/manifest/select_recordings.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/document.h"
+
+DEFINE_string(plan, "", "the plan (TOML); apps/README.md gives its keys");
+DEFINE_bool(
+    list, false,
+    "only list the jobs (CSV): id, variant, group, replica, numbers of recordings fitted and "
+    "held out, folder");
+DEFINE_bool(dry_run, false, "only print the commands of the unfinished jobs");
+DEFINE_int32(jobs, 1, "number of jobs run in parallel");
+DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
+DEFINE_string(job, "", "only the job with this id (or the start of its id)");
+DEFINE_bool(resume, true,
+            "skip finished jobs; false runs all jobs again and discards earlier results");
+DEFINE_bool(keep_going, true, "continue after a failed job");
+DEFINE_bool(summary, true,
+            "write summary.csv, summary.json and summary.html; set to false for shards that run at "
+            "the same time");
+DEFINE_bool(gather, false, "run nothing; only write the summary of existing results");
+DEFINE_double(time_limit, 0.0, "time limit of one job, s, instead of the plan's; 0: none");
+DEFINE_int32(memory_limit, 0,
+             "limit of one job's address space, MB, instead of the plan's; 0: none");
 
 namespace {
 
 using namespace pushid;
 
-constexpr int kInterrupted = 130;  // as a shell has it
+// Only every `shards`-th job, starting with this one, from 1.
+int shard = 1, shards = 1;
 
-Result<std::vector<BatchJob>> ChosenJobs(const BatchFlags& flags,
-                                         const std::vector<BatchJob>& all) {
-  const std::vector<BatchJob> jobs = Shard(all, flags.shard, flags.shards);
-  if (flags.job.empty()) return jobs;
+MaybeError ReadShard() {
+  if (FLAGS_shard.empty()) return std::nullopt;
+  char rest = 0;
+  const int read = std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &shard, &shards, &rest);
+  if (read == 2 && 1 <= shard && shard <= shards) return std::nullopt;
+  return Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
+}
+
+MaybeError CheckFlags() {
+  for (MaybeError error :
+       {Require("plan", FLAGS_plan, "name the TOML file of the batch"), ReadShard()}) {
+    if (error) return error;
+  }
+  if (FLAGS_jobs < 1) return Error{"--jobs must be at least 1"};
+  if (!(FLAGS_time_limit >= 0.0)) {
+    return Error{"--time_limit must be a number of seconds, 0 for none"};
+  }
+  if (FLAGS_memory_limit < 0) return Error{"--memory_limit must be a number of MB, 0 for none"};
+  return std::nullopt;
+}
+
+Result<std::vector<BatchJob>> ChosenJobs(const std::vector<BatchJob>& all) {
+  const std::vector<BatchJob> jobs = Shard(all, shard, shards);
+  if (FLAGS_job.empty()) return jobs;
   std::vector<BatchJob> named;
   for (const BatchJob& job : jobs) {
-    if (job.id.rfind(flags.job, 0) == 0) named.push_back(job);
+    if (job.id.rfind(FLAGS_job, 0) == 0) named.push_back(job);
   }
-  if (named.empty()) return Error{"--job: the plan has no job '" + flags.job + "' (see --list)"};
+  if (named.empty()) return Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
   return named;
 }
 
@@ -43,10 +89,9 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   return kDone;
 }
 
-int PrintCommands(const BatchFlags& flags, const BatchPlan& plan,
-                  const std::vector<BatchJob>& jobs) {
+int PrintCommands(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
-    if (flags.resume && ReadResult(plan, job).done()) continue;
+    if (FLAGS_resume && ReadResult(plan, job).done()) continue;
     const std::string folder = JobFolder(plan, job);
     std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
     for (const auto& command : JobCommands(job, plan, folder, OwnFolder())) {
@@ -80,14 +125,14 @@ int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   return kDone;
 }
 
-int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<BatchJob>& all,
+int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
             const std::vector<BatchJob>& jobs) {
   BatchRunOptions options;
-  options.jobs = flags.jobs;
-  options.resume = flags.resume;
-  options.keep_going = flags.keep_going;
-  options.time_limit_s = flags.time_limit_s.value_or(plan.time_limit_s);
-  options.memory_limit_mb = flags.memory_limit_mb.value_or(plan.memory_limit_mb);
+  options.jobs = FLAGS_jobs;
+  options.resume = FLAGS_resume;
+  options.keep_going = FLAGS_keep_going;
+  options.time_limit_s = Given("time_limit") ? FLAGS_time_limit : plan.time_limit_s;
+  options.memory_limit_mb = Given("memory_limit") ? FLAGS_memory_limit : plan.memory_limit_mb;
   options.bin = OwnFolder();
   ProgressLine line;
   const Result<BatchOutcome> outcome =
@@ -99,7 +144,7 @@ int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<Ba
   line.Finish();
   if (!outcome.ok()) return Fail(outcome.error());
   const BatchOutcome& o = outcome.value();
-  if (flags.summary) {
+  if (FLAGS_summary) {
     if (MaybeError error = ShowSummary(plan, all)) return Fail(*error);
   }
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
@@ -118,32 +163,23 @@ int RunJobs(const BatchFlags& flags, const BatchPlan& plan, const std::vector<Ba
 }
 
 int Run() {
-  const Result<BatchFlags> read = BatchFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const BatchFlags& flags = read.value();
-  const Result<BatchPlan> plan = ReadPlan(flags.plan);
+  if (MaybeError error = CheckFlags()) return Fail(*error);
+  const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
   if (!plan.ok()) return Fail(plan.error());
   const Result<Manifest> manifest = ReadManifests(plan.value().manifest);
   if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
   const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
   if (!all.ok()) return Fail(all.error());
-  const Result<std::vector<BatchJob>> jobs = ChosenJobs(flags, all.value());
+  const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
   if (!jobs.ok()) return Fail(jobs.error());
-  if (flags.action != BatchAction::kGather) {
+  if (!FLAGS_gather || FLAGS_list || FLAGS_dry_run) {
     const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), OwnFolder());
     if (wrong) return Fail(*wrong);
   }
-  switch (flags.action) {
-    case BatchAction::kList:
-      return List(plan.value(), jobs.value());
-    case BatchAction::kPrintCommands:
-      return PrintCommands(flags, plan.value(), jobs.value());
-    case BatchAction::kGather:
-      return Gather(plan.value(), all.value());
-    case BatchAction::kRun:
-      break;
-  }
-  return RunJobs(flags, plan.value(), all.value(), jobs.value());
+  if (FLAGS_list) return List(plan.value(), jobs.value());
+  if (FLAGS_dry_run) return PrintCommands(plan.value(), jobs.value());
+  if (FLAGS_gather) return Gather(plan.value(), all.value());
+  return RunJobs(plan.value(), all.value(), jobs.value());
 }
 
 }  // namespace

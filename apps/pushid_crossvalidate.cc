@@ -1,39 +1,93 @@
 // apps: pushid-crossvalidate: how well configurations predict recordings they have not seen.
+#include <gflags/gflags.h>
+
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/crossvalidate_flags.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
-#include "datasets/files/atomic_file.h"
+#include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/parameters/option_names.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/fold_file.h"
-#include "ident/validation/frontier_svg.h"
+#include "ident/problem/folds.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/predictors.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 
+DEFINE_choice(scheme, pushid::FoldScheme::kStratified,
+              "what is held out: stratified (folds by setting, strength and subject), interleaved "
+              "(recordings of a setting assigned to folds in turn), subject or setting (one at a "
+              "time), strong (all strong pushes)");
+DEFINE_int32(folds, 4, "folds of the stratified and the interleaved scheme");
+DEFINE_string(folds_file, "",
+              "file with the folds, instead of --scheme: JSON, {\"folds\": [{\"name\": \"1\", "
+              "\"held_out\": [ids]}]}; all other recordings are fitted");
+DEFINE_int32(repeats, 5, "repeats of the stratified scheme, each with new folds");
+DEFINE_string(compare, "",
+              "further candidates, semicolon-separated: name: --flag=value ... added to the flags "
+              "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
+DEFINE_bool(yardsticks, true,
+            "also score the baselines: static, constant velocity and ridge regression");
+DEFINE_bool(bands, false,
+            "also score how often predictive 50 and 90 % bands contain the held-out recordings");
+DEFINE_string(json_out, "", "write the scores here (JSON)");
+
 namespace {
 
 using namespace pushid;
+using NamedOptions = std::vector<std::pair<std::string, GivenOptions>>;
+
+// Those of --compare, with the options that they have over the given ones.
+Result<NamedOptions> CandidatesFrom(const std::string& text) {
+  NamedOptions candidates;
+  std::stringstream list(text);
+  for (std::string item; std::getline(list, item, ';');) {
+    const std::string trimmed(Trimmed(item));
+    if (trimmed.empty()) continue;
+    const size_t colon = trimmed.find(':');
+    const std::string name(Trimmed(trimmed.substr(0, colon)));
+    if (colon == std::string::npos || name.empty()) {
+      return Error{"--compare: '" + trimmed + "' is not 'name: --flag=value ...'"};
+    }
+    const Result<GivenOptions> options = ParseOptionWords(trimmed.substr(colon + 1));
+    if (!options.ok()) return Error{"--compare, '" + name + "': " + options.error().message};
+    candidates.emplace_back(name, options.value());
+  }
+  return candidates;
+}
+
+MaybeError ReadScheme(FoldScheme* scheme) {
+  if (MaybeError error = CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
+                                       "--folds_file already gives the folds; leave --{} out")) {
+    return error;
+  }
+  return ParseName("--scheme", FLAGS_scheme, scheme);
+}
 using Predictors = std::vector<std::unique_ptr<Predictor>>;
 
 using Candidates = std::vector<std::pair<std::string, FitOptions>>;
 
 // The flags' own model and those of --compare. recordings: as in FitOptionsFromFlags.
-Result<Candidates> ModelCandidates(const CrossvalidateFlags& flags, const FitOptions& options,
+Result<Candidates> ModelCandidates(const NamedOptions& further, const FitOptions& options,
                                    const std::vector<PendulumRecording>* recordings) {
   Candidates candidates = {{options.preset, options}};
-  for (const auto& [name, more] : flags.candidates) {
+  for (const auto& [name, more] : further) {
     const Result<FitOptions> candidate =
         MakeFitOptions(Merged(GivenFitFlags(), more), recordings, more);
     if (!candidate.ok()) return Error{"--compare, '" + name + "': " + candidate.error().message};
@@ -43,9 +97,9 @@ Result<Candidates> ModelCandidates(const CrossvalidateFlags& flags, const FitOpt
 }
 
 // Those that futures can be drawn from.
-Result<Candidates> NoisyModels(const CrossvalidateFlags& flags, const FitOptions& options,
+Result<Candidates> NoisyModels(const NamedOptions& further, const FitOptions& options,
                                const std::vector<PendulumRecording>* recordings) {
-  Result<Candidates> all = ModelCandidates(flags, options, recordings);
+  Result<Candidates> all = ModelCandidates(further, options, recordings);
   if (!all.ok()) return all;
   Candidates noisy;
   for (auto& [name, candidate] : all.value()) {
@@ -91,11 +145,11 @@ MaybeError CheckNames(const Predictors& predictors) {
 }
 
 // All of them. recordings: as in FitOptionsFromFlags.
-Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOptions& options,
+Result<Predictors> MakePredictors(const NamedOptions& further, const FitOptions& options,
                                   const std::vector<PendulumRecording>* recordings) {
   Predictors predictors;
   const int observed = ObservedFrames();
-  const Result<Candidates> candidates = ModelCandidates(flags, options, recordings);
+  const Result<Candidates> candidates = ModelCandidates(further, options, recordings);
   if (!candidates.ok()) return candidates.error();
   for (const auto& [name, candidate] : candidates.value()) {
     if (candidate.body_weight > 0.0) {
@@ -111,7 +165,7 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
     }
     predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed));
   }
-  if (flags.baselines) AddBaselines(options, &predictors);
+  if (FLAGS_yardsticks) AddBaselines(options, &predictors);
   // What the preset auto is called is known with the recordings.
   if (recordings == nullptr) return predictors;
   if (MaybeError error = CheckNames(predictors)) return *error;
@@ -119,17 +173,13 @@ Result<Predictors> MakePredictors(const CrossvalidateFlags& flags, const FitOpti
 }
 
 // What is wrong with the flags, before any recording is read.
-MaybeError CheckFlags(const CrossvalidateFlags& flags) {
+MaybeError CheckFlags(const NamedOptions& further) {
   const Result<FitOptions> options = FitOptionsFromFlags();
   if (!options.ok()) return options.error();
-  const Result<Predictors> predictors = MakePredictors(flags, options.value(), nullptr);
+  const Result<Predictors> predictors = MakePredictors(further, options.value(), nullptr);
   if (!predictors.ok()) return predictors.error();
   if (MaybeError error = CheckObservedFlag()) return error;
-  for (const std::string& file : {flags.json_out, flags.frontier_out}) {
-    if (file.empty()) continue;
-    if (MaybeError error = CheckWritable(file)) return error;
-  }
-  return std::nullopt;
+  return CheckOutputFiles({FLAGS_json_out});
 }
 
 nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validations) {
@@ -144,12 +194,14 @@ nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validation
 }
 
 int Run() {
-  const Result<CrossvalidateFlags> read = CrossvalidateFlagsFromCommandLine();
+  FoldScheme scheme;
+  if (MaybeError error = ReadScheme(&scheme)) return Fail(*error);
+  const Result<NamedOptions> read = CandidatesFrom(FLAGS_compare);
   if (!read.ok()) return Fail(read.error());
-  const CrossvalidateFlags& flags = read.value();
+  const NamedOptions& further = read.value();
   const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
-  if (MaybeError error = CheckFlags(flags)) return Fail(*error);
+  if (MaybeError error = CheckFlags(further)) return Fail(*error);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
@@ -159,16 +211,15 @@ int Run() {
   const Result<FitOptions> options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
-  const Result<Predictors> predictors = MakePredictors(flags, options.value(), &pendulums);
+  const Result<Predictors> predictors = MakePredictors(further, options.value(), &pendulums);
   if (!predictors.ok()) return Fail(predictors.error());
   const Result<Candidates> noisy = drawn.value().samples > 0
-                                       ? NoisyModels(flags, options.value(), &pendulums)
+                                       ? NoisyModels(further, options.value(), &pendulums)
                                        : Result<Candidates>(Candidates{});
   if (!noisy.ok()) return Fail(noisy.error());
   const Result<std::vector<Fold>> folds =
-      flags.folds_file.empty()
-          ? MakeFolds(pendulums, flags.scheme, flags.folds, flags.repeats, Seed())
-          : ReadFolds(flags.folds_file, pendulums);
+      FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
+                               : ReadFolds(FLAGS_folds_file, pendulums);
   if (!folds.ok()) return Fail(folds.error());
 
   std::vector<CrossValidation> validations;
@@ -192,7 +243,7 @@ int Run() {
         }));
   }
   std::vector<BandCoverage> bands;
-  if (flags.bands) {
+  if (FLAGS_bands) {
     BandOptions asked;
     asked.seed = Seed();
     bands = CrossValidateBands(
@@ -203,16 +254,12 @@ int Run() {
   }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());
-  if (!flags.frontier_out.empty()) {
-    const std::string svg = FrontierSvg(validations);
-    if (MaybeError error = WriteFileAtomically(flags.frontier_out, svg)) return Fail(*error);
-  }
-  if (flags.bands) std::printf("\n%s", BandCoverageText(bands).c_str());
+  if (FLAGS_bands) std::printf("\n%s", BandCoverageText(bands).c_str());
   if (!futures.empty()) std::printf("\n%s", HeldOutFuturesText(pendulums, futures).c_str());
-  if (!flags.json_out.empty()) {
+  if (!FLAGS_json_out.empty()) {
     nlohmann::ordered_json json = ScoresJson(validations);
     for (const HeldOutFutures& one : futures) json["futures"].push_back(ToJson(one.summary));
-    if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+    if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
   }
   return kDone;
 }

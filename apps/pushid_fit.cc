@@ -1,15 +1,18 @@
 // apps: pushid-fit: recordings in, identified parameters out.
+#include <gflags/gflags.h>
+
 #include <cstdio>
+#include <string>
 
 #include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/fit_flags.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_data.h"
@@ -19,6 +22,16 @@
 #include "ident/problem/parallel.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"
+
+DEFINE_string(model_out, "", "write the identified model here (JSON)");
+DEFINE_int32(resample, 0,
+             "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
+             "replacement from --seed and k; 0: the recordings as they are");
+DEFINE_string(body_restoration, "",
+              "folder that pushid-train-restoration --kind=window wrote, for --body_weight");
+DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
+DEFINE_bool(list_parameters, false,
+            "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
 
 namespace {
 
@@ -37,13 +50,14 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
   return drawn;
 }
 
-MaybeError CheckBodyFlags(const FitOptions& options, const std::string& folder) {
-  if (options.body_weight > 0.0 && folder.empty()) {
+// --body_weight and --body_restoration go together.
+MaybeError CheckBodyFlags(const FitOptions& options) {
+  if (options.body_weight > 0.0 && FLAGS_body_restoration.empty()) {
     return Error{
         "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
         "--kind=window wrote"};
   }
-  if (options.body_weight <= 0.0 && !folder.empty()) {
+  if (options.body_weight <= 0.0 && !FLAGS_body_restoration.empty()) {
     return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
   }
   return std::nullopt;
@@ -51,9 +65,8 @@ MaybeError CheckBodyFlags(const FitOptions& options, const std::string& folder) 
 
 int Run() {
   const double begin = Now();
-  const Result<FitFlags> flags = FitFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
-  if (flags.value().list_parameters) {
+  if (FLAGS_resample < 0) return Fail("--resample must not be negative");
+  if (FLAGS_list_parameters) {
     std::printf("%s", ParameterGlossaryMarkdown().c_str());
     return kDone;
   }
@@ -63,13 +76,12 @@ int Run() {
   if (!read.ok()) return Fail(read.error());
   const ModelChecks& checks = read.value();
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
-  if (MaybeError error = CheckBodyFlags(options.value(), flags.value().body_restoration)) {
+  if (MaybeError error = CheckBodyFlags(options.value())) {
     return Fail(*error);
   }
-  if (flags.value().check) return kDone;
-  const std::string& model_out = flags.value().model_out;
-  if (!model_out.empty()) {
-    if (MaybeError error = CheckWritable(model_out)) return Fail(*error);
+  if (FLAGS_check) return kDone;
+  if (!FLAGS_model_out.empty()) {
+    if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
   std::vector<std::string> file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
@@ -77,13 +89,13 @@ int Run() {
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums = Resampled(
-      MakePendulumRecordings(recordings.value(), options.value().mapping), flags.value().resample,
+      MakePendulumRecordings(recordings.value(), options.value().mapping), FLAGS_resample,
       checks.bootstrap.by == ClusterBy::kAuto ? options.value().cluster : checks.bootstrap.by);
 
   options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
   if (options.value().body_weight > 0.0) {
-    const auto bodies = LoadBodyData(flags.value().body_restoration, "--body_restoration",
+    const auto bodies = LoadBodyData(FLAGS_body_restoration, "--body_restoration",
                                      recordings.value(), options.value().mapping);
     if (!bodies.ok()) return Fail(bodies.error());
     options.value().body = bodies.value();
@@ -118,10 +130,10 @@ int Run() {
   if (!sections.ok()) return Fail(sections.error());
 
   std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
-  if (!model_out.empty()) {
-    if (MaybeError error = WriteModelFile(model_out, model, NumThreads(), begin))
+  if (!FLAGS_model_out.empty()) {
+    if (MaybeError error = WriteModelFile(FLAGS_model_out, model, NumThreads(), begin))
       return Fail(*error);
-    std::printf("model written to %s\n", model_out.c_str());
+    std::printf("model written to %s\n", FLAGS_model_out.c_str());
   }
   if (result.converged) return kDone;
   std::fprintf(stderr, "pushid-fit: the fit did not converge: %s\n", result.message.c_str());

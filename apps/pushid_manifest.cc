@@ -51,7 +51,9 @@ MaybeError CheckManifestFlags() {
        {Require("folder", FLAGS_folder, "name the folder of the recordings"),
         Require("pattern", FLAGS_pattern,
                 "give the pattern of the file names, as in {subject}_{take}.bvh"),
-        Require("out", FLAGS_out, "name the manifest to write")}) {
+        Require("out", FLAGS_out, "name the manifest to write"),
+        CheckExcludes({"length_scale"}, "length_unit",
+                      "--length_scale is given together with --length_unit; give one of them")}) {
     if (missing) return missing;
   }
   if (!(FLAGS_mass_kg >= 0.0 && FLAGS_mass_kg <= 400.0)) {
@@ -85,9 +87,6 @@ MaybeError ReadNamed(ManifestOptions* options) {
   if (FLAGS_length_scale != 0.0) {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);
     if (!problem.empty()) return Error{"--length_scale " + problem};
-    if (!FLAGS_length_unit.empty()) {
-      return Error{"--length_scale is given together with --length_unit; give one of them"};
-    }
     options->length_scale = FLAGS_length_scale;
   }
   if (FLAGS_length_unit.empty()) return std::nullopt;

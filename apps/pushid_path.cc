@@ -72,15 +72,10 @@ Result<Ends> CheckedEnds() {
   if (MaybeError missing = RequireModel()) return *missing;
   Result<Ends> ends = FLAGS_id.empty() ? ReadEnds() : Ends();
   if (!ends.ok()) return ends;
-  if (!FLAGS_id.empty()) {
-    for (const char* flag : {"from", "to", "frames", "fps", "mass", "rod"}) {
-      if (!Given(flag)) continue;
-      return Error{std::string("--id smooths a recording, which gives both ends; leave --") + flag +
-                   " out"};
-    }
-  }
   for (MaybeError error :
-       {CheckRange("frames", FLAGS_frames, 6, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
+       {CheckExcludes({"from", "to", "frames", "fps", "mass", "rod"}, "id",
+                      "--id smooths a recording, which gives both ends; leave --{} out"),
+        CheckRange("frames", FLAGS_frames, 6, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
         CheckRange("mass", FLAGS_mass, 5, 500), CheckRange("rod", FLAGS_rod, 0.2, 2),
         CheckOutputFiles({FLAGS_out, FLAGS_json_out})}) {
     if (error) return *error;

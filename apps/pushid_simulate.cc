@@ -49,8 +49,6 @@ namespace {
 
 using namespace pushid;
 
-constexpr char kOfModel[] = ": --model sets the parameters of the people; leave one of them out";
-
 // The library checks them too, but knows no flags.
 MaybeError CheckRecordingNumbers() {
   for (MaybeError error :
@@ -71,8 +69,8 @@ Result<SyntheticOptions> StudyFromCommandLine() {
   for (MaybeError error :
        {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
         CheckRecordingNumbers(),
-        CheckFlagRules({{"truth_stance", FlagRule::kExcludes, {"model"}, kOfModel},
-                        {"truth_noise", FlagRule::kExcludes, {"model"}, kOfModel}})}) {
+        CheckExcludes({"truth_stance", "truth_noise"}, "model",
+                      "--model sets the parameters of the people; leave --{} out")}) {
     if (error) return *error;
   }
   const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);

@@ -116,17 +116,33 @@ MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
     if (flag.is_default || flag.current_value.empty()) continue;
     const bool acts = std::any_of(rule.others.begin(), rule.others.end(), HasEffect);
     if (acts == (rule.kind == FlagRule::kNeeds)) continue;
-    const std::string needs = acts ? "" : " needs " + Listed(rule.others, " or ");
-    return Error{"--" + rule.flag + needs + rule.why};
+    if (!acts) return Error{"--" + rule.flag + " needs " + Listed(rule.others, " or ") + rule.why};
+    std::string sentence = rule.why;
+    const size_t name = sentence.find("{}");
+    return Error{name == std::string::npos ? sentence : sentence.replace(name, 2, rule.flag)};
   }
   return std::nullopt;
 }
 
+namespace {
+
+MaybeError CheckSame(const std::vector<std::string>& flags, FlagRule::Kind kind,
+                     const std::vector<std::string>& others, const std::string& why) {
+  std::vector<FlagRule> rules;
+  for (const std::string& flag : flags) rules.push_back({flag, kind, others, why});
+  return CheckFlagRules(rules);
+}
+
+}  // namespace
+
 MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
                       const std::string& why) {
-  std::vector<FlagRule> rules;
-  for (const std::string& flag : flags) rules.push_back({flag, FlagRule::kNeeds, others, why});
-  return CheckFlagRules(rules);
+  return CheckSame(flags, FlagRule::kNeeds, others, why);
+}
+
+MaybeError CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
+                         const std::string& why) {
+  return CheckSame(flags, FlagRule::kExcludes, {other}, why);
 }
 
 bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }

@@ -23,15 +23,18 @@ struct FlagRule {
   std::string flag;
   Kind kind;
   std::vector<std::string> others;  // one of them is enough
-  // kNeeds: what follows "--flag needs --other or --another"; kExcludes: what follows "--flag".
+  // kNeeds: what follows "--flag needs --other or --another"; kExcludes: the whole sentence, in
+  // which {} stands for the flag.
   std::string why;
 };
 // Whether a flag that is given has what it needs, and nothing that it excludes. A flag of others
 // acts where its value is not its default.
 MaybeError CheckFlagRules(const std::vector<FlagRule>& rules);
-// Of many flags that need the same.
+// Of many flags that need, or exclude, the same.
 MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
                       const std::string& why = "");
+MaybeError CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
+                         const std::string& why);
 
 // Whether a flag was given at all, even with its default's value.
 bool Given(const char* flag);

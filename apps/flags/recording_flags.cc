@@ -44,6 +44,11 @@ Result<LoadOptions> LoadOptionsOfFlags() {
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = SplitList(FLAGS_ids);
   options.leave_out = SplitList(FLAGS_leave_out);
+  if (MaybeError error =
+          CheckExcludes({"length_scale"}, "length_unit",
+                        "--length_scale is given together with --length_unit; give one of them")) {
+    return *error;
+  }
   if (!FLAGS_length_unit.empty()) {
     options.length_unit = LengthUnitFromName(FLAGS_length_unit);
     if (!options.length_unit) {
@@ -53,9 +58,6 @@ Result<LoadOptions> LoadOptionsOfFlags() {
   if (FLAGS_length_scale != 0.0) {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);
     if (!problem.empty()) return Error{"--length_scale " + problem};
-    if (options.length_unit) {
-      return Error{"--length_scale is given together with --length_unit; give one of them"};
-    }
     options.length_scale = FLAGS_length_scale;
   }
   if (MaybeError error = CheckPreparation(options.preparation)) return *error;
