@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/support/child_process.h"
+#include "apps/support/processes.h"
 
 namespace pushid {
 namespace {

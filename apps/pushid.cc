@@ -5,7 +5,7 @@
 
 #include "apps/completion.h"
 #include "apps/support/app_support.h"
-#include "apps/support/child_process.h"
+#include "apps/support/processes.h"
 #include "datasets/files/names.h"
 
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
-#include "apps/flags/what_if_flags.h"
-#include "apps/support/grouped_warnings.h"
+#include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
 #include "ident/bodies/animation.h"

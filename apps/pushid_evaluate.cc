@@ -13,7 +13,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
-#include "apps/support/grouped_warnings.h"
+#include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/peer_files.h"

@@ -10,7 +10,6 @@
 #include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
-#include "apps/support/grouped_warnings.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"

@@ -8,7 +8,7 @@
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
 #include "apps/formation_outputs.h"
-#include "apps/support/grouped_warnings.h"
+#include "apps/support/app_support.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"

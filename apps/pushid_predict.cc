@@ -11,7 +11,6 @@
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
-#include "apps/support/grouped_warnings.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"

@@ -9,7 +9,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/overwrite_flag.h"
-#include "apps/support/child_process.h"
+#include "apps/support/processes.h"
 #include "datasets/files/number_text.h"
 #include "datasets/manifest/recording.h"
 #include "ident/figures/text_table.h"

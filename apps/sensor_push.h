@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/flags/sensor_flags.h"
+#include "apps/flags/push_flags.h"
 #include "datasets/loading/pendulum_recording.h"
 
 namespace pushid {

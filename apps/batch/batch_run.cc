@@ -9,9 +9,7 @@
 #include <set>
 
 #include "apps/support/app_support.h"
-#include "apps/support/child_process.h"
-#include "apps/support/folder_lock.h"
-#include "apps/support/signal_reader.h"
+#include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 

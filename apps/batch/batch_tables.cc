@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/batch/batch_columns.h"
+#include "apps/batch/batch_summary.h"
 #include "datasets/files/number_text.h"
 #include "ident/uncertainty/bootstrap.h"
 

@@ -6,7 +6,6 @@
 #include <cstring>
 
 #include "apps/support/app_support.h"
-#include "apps/support/interruption.h"
 #include "apps/support/overwrite_check.h"
 #include "ident/report/fit_command.h"
 

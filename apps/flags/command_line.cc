@@ -11,8 +11,7 @@
 #include <list>
 #include <new>
 
-#include "apps/support/blas_threads.h"
-#include "apps/support/interruption.h"
+#include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/number_text.h"
 

@@ -3,6 +3,8 @@
 
 #include <gflags/gflags.h>
 
+#include <sstream>
+
 #include "apps/flags/command_line.h"
 #include "ident/model/model_json.h"
 
@@ -23,6 +25,23 @@ Result<IdentifiedModel> LoadFlaggedModel() {
   model.source = FLAGS_model;
   if (MaybeError error = SetValues(FLAGS_set, &model)) return *error;
   return model;
+}
+
+Result<std::vector<WhatIf>> LoadWhatIfs() {
+  if (MaybeError missing = RequireModel()) return *missing;
+  const ModelFlags flags = ModelFlagsFromCommandLine();
+  const Result<FittedModel> read = ReadFittedModel(flags.file);
+  if (!read.ok()) return read.error();
+  IdentifiedModel fitted = ModelOf(read.value().fit);
+  fitted.source = flags.file;
+  std::vector<WhatIf> what_ifs = {{"", fitted}};
+  std::stringstream sets(flags.set);
+  for (std::string set; std::getline(sets, set, kBetweenSets);) {
+    WhatIf one{set, fitted};
+    if (MaybeError error = SetValues(set, &one.model)) return *error;
+    what_ifs.push_back(std::move(one));
+  }
+  return what_ifs;
 }
 
 }  // namespace pushid

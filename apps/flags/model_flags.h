@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "ident/model/fitted_model.h"
@@ -20,5 +21,17 @@ MaybeError RequireModel(const std::string& why = "give a file that pushid-fit --
 
 // The model of --model with the values of --set.
 Result<IdentifiedModel> LoadFlaggedModel();
+
+// Several what-ifs at once: --set=mu=10 --set=mu=60,a_x=-5.
+inline constexpr char kBetweenSets = ';';
+
+struct WhatIf {
+  std::string what;  // as it was given; empty: the model as it was fitted
+  IdentifiedModel model;
+};
+
+// The model of --model as it was fitted, and then with each --set; main joins them by ;
+// (JoinRepeated).
+Result<std::vector<WhatIf>> LoadWhatIfs();
 
 }  // namespace pushid

@@ -1,15 +1,22 @@
-// apps: the flags of pushid-push alone; those of sensors are in sensor_flags.h.
+// apps: the flags of pushid-push.
 #pragma once
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/flags/sensor_flags.h"
+#include "datasets/sensors/sensor_choice.h"
 #include "ident/push/push_estimation.h"
 
 namespace pushid {
 
+// What measured a push and how: one sensor by flags, several by a list.
+struct SensorFlags {
+  std::vector<SensorChoice> sensors;  // which push together; empty: none is given
+  bool start_given = false;           // their clocks at frame 0 are not taken from the motion
+  bool estimate_offset = false;       // of their clocks from the motion's
+  double max_offset_s = 0.5;          // how far estimate_offset looks on either side
+};
 struct PushFlags {
   std::vector<std::string> ids;  // the recordings
   int person = 0;                // who is pushed

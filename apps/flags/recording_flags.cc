@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/support/grouped_warnings.h"
+#include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/select_recordings.h"
@@ -100,9 +100,11 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
     options.value().ids = ids;
     options.value().leave_out.clear();
   }
+  const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
+  if (!manifest.ok()) return manifest.error();
   std::vector<std::string> found;
   Result<std::vector<Recording>> recordings =
-      LoadRecordings(FLAGS_recordings, options.value(), &found);
+      LoadRecordings(manifest.value(), options.value(), &found);
   if (recordings.ok()) {
     PlausibilityCheck ankles;
     for (const Recording& recording : recordings.value()) ankles.LookAtFacing(recording);
@@ -112,8 +114,6 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) return recordings;
   // Pushes may be written again where they were read; a motion cannot be had back.
-  const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
-  if (!manifest.ok()) return manifest.error();
   const OutputFiles outputs;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;

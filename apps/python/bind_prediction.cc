@@ -1,6 +1,6 @@
 // apps: predictions in Python: from the first frame and the push, from frames as they come, and as
 // whole bodies.
-#include "apps/python/predicted.h"
+#include "apps/python/bindings.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"

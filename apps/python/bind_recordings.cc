@@ -4,9 +4,12 @@
 #include "apps/python/bindings.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
+#include "ident/validation/synthetic_truth.h"
 
 namespace pushid {
 namespace {
+
+using namespace py::literals;
 
 using Track = std::vector<Eigen::Vector3d>;
 
@@ -95,13 +98,7 @@ py::tuple Simulate(int people, int recordings_per_person, int people_in_row, dou
   if (!kind)
     Raise(Fault::kUsage, Error{"push_kind is '" + push_kind + "'; it must be net or external"});
   options.push_kind = *kind;
-  const FitOptions preset = Unwrapped(MakeFitOptions({{"preset", "tail"}}), Fault::kUsage);
-  IdentifiedModel truth;
-  truth.options = preset.model;
-  truth.table = preset.table;
-  truth.parameters = preset.table.Values();
-  for (Parameter p : preset.table.Free()) truth.parameters[p] = options.parameters[p];
-  Check(SetValues(set, &truth), Fault::kUsage);
+  const IdentifiedModel truth = Unwrapped(SyntheticTruth(options, set), Fault::kUsage);
   options.model = truth.options;
   options.parameters = truth.parameters;
   const auto made = Unwrapped(MakeSyntheticRecordings(options), Fault::kUsage);
@@ -110,9 +107,23 @@ py::tuple Simulate(int people, int recordings_per_person, int people_in_row, dou
     recordings.push_back(std::make_shared<const Recording>(one.recording));
   }
   py::dict values;
-  for (Parameter p : preset.table.Free())
-    values[py::str(preset.table[p].name)] = truth.parameters[p];
+  for (Parameter p : truth.table.Free()) {
+    values[py::str(truth.table[p].name)] = truth.parameters[p];
+  }
   return py::make_tuple(recordings, values);
+}
+
+// What Read and Simulate do unless they are told otherwise.
+py::dict Defaults() {
+  const LoadOptions read;
+  const SyntheticOptions made;
+  return py::dict("setting"_a = read.setting, "max_gap_s"_a = read.preparation.max_gap_s,
+                  "lowpass_hz"_a = read.preparation.lowpass_hz,
+                  "resample_fps"_a = read.preparation.resample_fps, "people"_a = made.subjects,
+                  "recordings_per_person"_a = made.recordings_per_subject,
+                  "people_in_row"_a = made.people_in_row, "fps"_a = made.fps,
+                  "frames"_a = made.frames, "seed"_a = made.seed,
+                  "push_kind"_a = Name(made.push_kind));
 }
 
 py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first_frame,
@@ -186,6 +197,7 @@ void BindRecordings(py::module_* module) {
                              [](const std::shared_ptr<Recording>& r) { return StatesArray(r); })
       .def_property_readonly("push",
                              [](const std::shared_ptr<Recording>& r) { return PushArray(r); });
+  module->attr("defaults") = Defaults();
   module->def("read", &Read);
   module->def("simulate", &Simulate);
   module->def("estimate_push", &EstimatePushOf);

@@ -12,6 +12,7 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/units.h"
 #include "ident/fit.h"
+#include "ident/prediction/prediction.h"
 
 namespace pushid {
 
@@ -79,5 +80,35 @@ void BindFits(py::module_* module);
 void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
 void BindFormations(py::module_* module);
+
+// What a model was fitted to.
+struct FittedTo {
+  std::vector<SharedRecording> recordings;
+  std::vector<PendulumRecording> pendulums;
+};
+
+// Both parts are replaced whole and never changed: another thread may be reading them without the
+// GIL. `to` is null where the model was loaded.
+struct Model {
+  std::shared_ptr<const FittedModel> fitted;
+  std::shared_ptr<const FittedTo> to;
+};
+
+// The data of a model that asks for them.
+std::shared_ptr<const FittedTo> DataOf(const Model& model);
+
+IdentifiedModel IdentifiedOf(const Model& model);
+
+// (frames, people, 8): q, then qd.
+Array StatesOf(const RolloutPath<double>& path, int people);
+
+// hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
+py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording);
+
+// The model with some of its values replaced: "mu=20,...".
+IdentifiedModel With(const Model& model, const std::string& set);
+
+// Warns of pushes beyond those that the model was fitted to.
+void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording);
 
 }  // namespace pushid

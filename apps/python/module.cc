@@ -5,6 +5,8 @@
 #include <regex>
 
 #include "apps/python/bindings.h"
+#include "datasets/loading/recording_from_tracks.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {
@@ -119,3 +121,129 @@ PYBIND11_MODULE(_pushid, module) {
   BindPredictions(&module);
   BindFormations(&module);
 }
+
+namespace pushid {
+namespace {
+
+using Track = std::vector<Eigen::Vector3d>;
+
+Error WrongShape(const std::string& what, const Array& array, const std::string& must) {
+  std::string shape;
+  for (int i = 0; i < array.ndim(); ++i) {
+    shape += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  }
+  return Error{what + " has the shape (" + shape + "); it must be " + must};
+}
+
+// (frames, 3) or (frames, people, 3), whatever its strides.
+std::vector<Track> TracksOf(const std::string& what, const Array& array) {
+  const bool alone = array.ndim() == 2 && array.shape(1) == 3;
+  if (!alone && !(array.ndim() == 3 && array.shape(2) == 3)) {
+    Raise(Fault::kData, WrongShape(what, array, "(frames, 3) or (frames, people, 3), in m"));
+  }
+  const py::ssize_t people = alone ? 1 : array.shape(1);
+  std::vector<Track> tracks(people, Track(array.shape(0)));
+  for (py::ssize_t n = 0; n < people; ++n) {
+    for (py::ssize_t t = 0; t < array.shape(0); ++t) {
+      for (py::ssize_t i = 0; i < 3; ++i) {
+        tracks[n][t][i] = alone ? array.at(t, i) : array.at(t, n, i);
+      }
+    }
+  }
+  return tracks;
+}
+
+// Rows of a push as it was given: numbers forwards, (fx, fy), (fx, fy, fz), or generalized forces.
+void AddPush(const Array& rows, int person, int start, double height, Recording* recording) {
+  const bool one = rows.ndim() == 1;
+  const py::ssize_t columns = one ? 1 : rows.ndim() == 2 ? rows.shape(1) : 0;
+  if (columns < 1 || columns > 4) {
+    Raise(Fault::kData,
+          WrongShape("push", rows,
+                     "(rows,) or (rows, 2 or 3) of forces in N, or (rows, 4) of generalized forces "
+                     "in N and N m"));
+  }
+  const PendulumRecording seen = MakePendulumRecording(*recording, SkeletonMapping::kExact);
+  Push push;
+  push.person = person;
+  push.start_frame = start;
+  for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
+    Eigen::Vector4d row = Eigen::Vector4d::Zero();
+    for (py::ssize_t i = 0; i < columns; ++i) row[i] = one ? rows.at(t) : rows.at(t, i);
+    if (columns < 4) {
+      const auto& states = seen.states[person];
+      const size_t frame = std::min<size_t>(start + t, states.size() - 1);
+      row = GeneralizedForce<double>(seen.scene.people[person].body, states[frame].q,
+                                     Vector3<double>(row.head<3>()), height);
+    }
+    push.force.push_back(row);
+  }
+  recording->pushes.push_back(std::move(push));
+}
+
+SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Array& right_ankle,
+                           const std::vector<double>& mass, double fps, const py::object& push,
+                           const std::string& id, const std::vector<std::string>& subjects,
+                           int pushed_person, int push_start, double push_height,
+                           const std::string& push_kind, const std::string& initial_velocity,
+                           const std::string& setting, const std::string& magnitude,
+                           const std::string& condition) {
+  TrackedRecording tracks;
+  tracks.id = id;
+  tracks.fps = fps;
+  tracks.labels.Set(kSettingLabel, setting);
+  tracks.labels.Set(kMagnitudeLabel, magnitude);
+  tracks.labels.Set(kConditionLabel, condition);
+  tracks.pushed_person = pushed_person;
+  const auto kind = PushKindFromName(push_kind);
+  const auto velocity = InitialVelocityFromName(initial_velocity);
+  if (!kind) {
+    Raise(Fault::kUsage, Error{"push_kind is '" + push_kind +
+                               "'; it must be net, net_without_friction or external"});
+  }
+  if (!velocity) {
+    Raise(Fault::kUsage, Error{"initial_velocity is '" + initial_velocity +
+                               "'; it must be zero, estimated or free"});
+  }
+  tracks.push_kind = *kind;
+  tracks.initial_velocity = *velocity;
+  const std::vector<Track> hips = TracksOf("hip", hip), left = TracksOf("left_ankle", left_ankle),
+                           right = TracksOf("right_ankle", right_ankle);
+  if (left.size() != hips.size() || right.size() != hips.size() || mass.size() != hips.size() ||
+      (!subjects.empty() && subjects.size() != hips.size())) {
+    Raise(Fault::kData, Error{"hip has " + std::to_string(hips.size()) +
+                              " people; ankles, mass and subjects must have as many"});
+  }
+  if (pushed_person < 0 || pushed_person >= static_cast<int>(hips.size())) {
+    Raise(Fault::kUsage, Error{"pushed_person is " + std::to_string(pushed_person) +
+                               "; there are " + std::to_string(hips.size()) + " people"});
+  }
+  for (size_t n = 0; n < hips.size(); ++n) {
+    tracks.people.push_back({subjects.empty() ? "person " + std::to_string(n) : subjects[n],
+                             mass[n], hips[n], left[n], right[n]});
+  }
+  // The rod and the angles, which turn forces into generalized ones, come with the motion.
+  Recording recording = Unwrapped(RecordingFromTracks(tracks), Fault::kData);
+  if (push.is_none()) return std::make_shared<const Recording>(std::move(recording));
+  if (push_start < 0) Raise(Fault::kUsage, Error{"push_start counts frames from 0"});
+  AddPush(py::cast<Array>(push), pushed_person, push_start, push_height, &recording);
+  tracks.pushes = recording.pushes;
+  return std::make_shared<const Recording>(Unwrapped(RecordingFromTracks(tracks), Fault::kData));
+}
+
+}  // namespace
+
+LengthUnit UnitOf(const std::string& name) {
+  const std::optional<LengthUnit> unit = LengthUnitFromName(name);
+  if (!unit) {
+    Raise(Fault::kUsage, Error{"length_unit is '" + name + "'; it must be mm, cm or m"});
+  }
+  return *unit;
+}
+
+void BindArrays(py::module_* module) {
+  module->def("from_arrays", &FromArrays);
+  module->def("metres_per", [](const std::string& unit) { return MetresPer(UnitOf(unit)); });
+}
+
+}  // namespace pushid

@@ -1,10 +1,16 @@
 // apps: exit codes, errors and warnings, progress.
 #include "apps/support/app_support.h"
 
+#include <dlfcn.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
+#include "datasets/loading/load_recordings.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -30,6 +36,10 @@ int Fail(const std::string& message) {
 
 void Warn(const std::string& message) {
   std::fprintf(stderr, "%s: warning: %s\n", g_program.c_str(), message.c_str());
+}
+
+void WarnGrouped(const std::vector<std::string>& messages) {
+  for (const std::string& message : GroupedWarnings(messages)) Warn(message);
 }
 
 std::string Version() { return PUSHID_VERSION; }
@@ -63,6 +73,47 @@ void ProgressLine::Show(const std::string& text) {
 void ProgressLine::Finish() {
   if (width_ > 0) std::fprintf(stderr, "\r%s\r", std::string(width_, ' ').c_str());
   width_ = 0;
+}
+
+namespace {
+
+// A handler may neither allocate nor lock: the message stands ready. Old ones are kept, as the
+// signal may come while one is replaced; there are three at most.
+std::atomic<const char*> g_message{nullptr};
+
+void End(int) {
+  const char* message = g_message.load();
+  const ssize_t ignored = write(STDERR_FILENO, message, std::strlen(message));
+  static_cast<void>(ignored);
+  _exit(kInterrupted);
+}
+
+}  // namespace
+
+void SayWhenInterrupted(const std::string& what) {
+  const auto* text = new std::string("\n" + ProgramName() + ": interrupted; " + what + "\n");
+  g_message.store(text->c_str());
+  struct sigaction ending = {};
+  ending.sa_handler = End;
+  sigaction(SIGINT, &ending, nullptr);
+}
+
+namespace {
+
+template <typename Function>
+Function* Loaded(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_DEFAULT, name));
+}
+
+}  // namespace
+
+void SetBlasThreads(int num_threads) {
+  auto* const set = Loaded<void(int)>("openblas_set_num_threads");
+  if (set == nullptr || std::getenv("OPENBLAS_NUM_THREADS") != nullptr) return;
+  set(num_threads);
+  // Ends those that look for work; the next product that wants them starts them again.
+  auto* const end_threads = Loaded<int()>("blas_thread_shutdown_");
+  if (num_threads == 1 && end_threads != nullptr) end_threads();
 }
 
 }  // namespace pushid

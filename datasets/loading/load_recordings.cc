@@ -128,13 +128,19 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
   if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
   const Result<Manifest> manifest = ReadManifests(manifests);
   if (!manifest.ok()) return manifest.error();
+  return LoadRecordings(manifest.value(), options, warnings);
+}
+
+Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
+                                              std::vector<std::string>* warnings) {
+  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
   const Result<std::vector<int>> selected =
-      SelectRecordings(manifest.value(), options.setting, options.ids, options.leave_out);
+      SelectRecordings(manifest, options.setting, options.ids, options.leave_out);
   if (!selected.ok()) return selected.error();
   std::vector<Recording> recordings;
   for (int index : selected.value()) {
     Result<Recording> recording =
-        LoadRecording(manifest.value(), manifest.value().recordings[index], options, warnings);
+        LoadRecording(manifest, manifest.recordings[index], options, warnings);
     if (!recording.ok()) return recording.error();
     recordings.push_back(std::move(recording.value()));
   }

@@ -52,7 +52,9 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
                                               std::vector<std::string>* warnings = nullptr);
 
-// One recording of a manifest that was read already.
+// Those of a manifest that was read already, or one of them.
+Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
+                                              std::vector<std::string>* warnings = nullptr);
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
                                 const LoadOptions& options = {},
                                 std::vector<std::string>* warnings = nullptr);

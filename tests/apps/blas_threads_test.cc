@@ -1,12 +1,12 @@
 // apps: how many threads the BLAS of a program has.
-#include "apps/support/blas_threads.h"
-
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+
+#include "apps/support/app_support.h"
 
 namespace pushid {
 namespace {

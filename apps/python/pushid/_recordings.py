@@ -23,8 +23,12 @@ def _listed(names):
     return [str(name) for name in ([names] if isinstance(names, (str, int)) else names)]
 
 
-def read(manifest, setting="all", *, ids=(), leave_out=(), all_joints=False, max_gap_s=0.1, lowpass_hz=0.0,
-         resample_fps=0.0, length_unit="", length_scale=0.0):
+_DEFAULT = _pushid.defaults  # those of the library's structs
+
+
+def read(manifest, setting=_DEFAULT["setting"], *, ids=(), leave_out=(), all_joints=False,
+         max_gap_s=_DEFAULT["max_gap_s"], lowpass_hz=_DEFAULT["lowpass_hz"], resample_fps=_DEFAULT["resample_fps"],
+         length_unit="", length_scale=0.0):
     """Recordings of a manifest, or of several (a list of paths).
 
     setting: settings of the manifest, comma-separated, "groups" or "all". ids, leave_out: ids to use or to skip.
@@ -70,10 +74,12 @@ def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recordi
                                push_kind, initial_velocity, setting, magnitude, condition)
 
 
-def simulate(*, people=4, recordings_per_person=6, people_in_row=1, fps=60.0, frames=90, seed=1, push_kind="net",
-             joint_noise_m=0.002, set=None):
+def simulate(*, people=_DEFAULT["people"], recordings_per_person=_DEFAULT["recordings_per_person"],
+             people_in_row=_DEFAULT["people_in_row"], fps=_DEFAULT["fps"], frames=_DEFAULT["frames"],
+             seed=_DEFAULT["seed"], push_kind=_DEFAULT["push_kind"], joint_noise_m=0.002, set=None):
     """Recordings of synthetic people with known parameters: (recordings, {name: true value}).
 
+    people_in_row: more than one stand one behind the other and touch; the last of them is pushed.
     set: {name: value} of true values that differ from the defaults. joint_noise_m: m, one sigma.
     """
     changed = text_of("set", set or {})

@@ -1,7 +1,8 @@
 // apps: fork, limits, exec.
-#include "apps/support/child_process.h"
+#include "apps/support/processes.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -148,5 +149,16 @@ ChildEnd NextEnded() {
 }
 
 void KillChild(pid_t pid, int signal) { kill(-pid, signal); }
+
+FolderLock::~FolderLock() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+Result<bool> FolderLock::Take(const std::string& folder) {
+  descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) return Error{"cannot be opened: " + std::string(strerror(errno)), folder};
+  // A file system that knows no locks is no reason to do nothing.
+  return flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
 
 }  // namespace pushid
