@@ -1,4 +1,4 @@
-// apps: the Python module: errors, and what the other parts share.
+// apps: the Python module: errors, arrays, and what the other parts share.
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
