@@ -54,12 +54,11 @@ MaybeError CheckWayToBodies() {
     rules.push_back({flag, FlagRule::kNeeds, {"generator"}, ""});
   }
   for (const char* flag : {"poses_from", "joints_out", "bodies_out"}) {
-    rules.push_back(
-        {flag,
-         FlagRule::kNeeds,
-         {"restoration", "generator"},
-         ", the folder of pushid-train-restoration or pushid-train-generator that makes "
-         "the bodies"});
+    rules.push_back({flag,
+                     FlagRule::kNeeds,
+                     {"restoration", "generator"},
+                     "--{} needs bodies: give the folder of pushid-train-restoration as "
+                     "--restoration, or that of pushid-train-generator as --generator"});
   }
   return CheckFlagRules(rules);
 }

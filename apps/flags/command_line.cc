@@ -110,13 +110,14 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
-  if (const std::string flag = moved.FirstGiven(); !flag.empty()) {
-    std::fprintf(stderr, "%s: note: --%s moved to %s; this spelling works until %s\n",
-                 ProgramName().c_str(), flag.c_str(), moved.program.c_str(), MovedFlags::kUntil);
-  }
   SayWhenInterrupted("no partial file is left; run the same command to start again");
   try {
-    return CheckPrinted(run());
+    const int exit_code = CheckPrinted(run());
+    if (const std::string flag = moved.FirstGiven(); !flag.empty() && exit_code == kDone) {
+      std::fprintf(stderr, "%s: note: --%s moved to %s; this spelling works until %s\n",
+                   ProgramName().c_str(), flag.c_str(), moved.program.c_str(), MovedFlags::kUntil);
+    }
+    return exit_code;
   } catch (const std::bad_alloc&) {
     return Fail("out of memory");
   } catch (const std::exception& exception) {

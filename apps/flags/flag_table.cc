@@ -116,10 +116,11 @@ MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
     if (flag.is_default || flag.current_value.empty()) continue;
     const bool acts = std::any_of(rule.others.begin(), rule.others.end(), HasEffect);
     if (acts == (rule.kind == FlagRule::kNeeds)) continue;
-    if (!acts) return Error{"--" + rule.flag + " needs " + Listed(rule.others, " or ") + rule.why};
     std::string sentence = rule.why;
     const size_t name = sentence.find("{}");
-    return Error{name == std::string::npos ? sentence : sentence.replace(name, 2, rule.flag)};
+    if (name != std::string::npos) return Error{sentence.replace(name, 2, rule.flag)};
+    if (acts) return Error{sentence};
+    return Error{"--" + rule.flag + " needs " + Listed(rule.others, " or ") + sentence};
   }
   return std::nullopt;
 }

@@ -23,8 +23,8 @@ struct FlagRule {
   std::string flag;
   Kind kind;
   std::vector<std::string> others;  // one of them is enough
-  // kNeeds: what follows "--flag needs --other or --another"; kExcludes: the whole sentence, in
-  // which {} stands for the flag.
+  // kNeeds: what follows "--flag needs --other or --another". kExcludes, and where there is a {},
+  // which stands for the flag: the whole sentence.
   std::string why;
 };
 // Whether a flag that is given has what it needs, and nothing that it excludes. A flag of others

@@ -193,7 +193,7 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
   } catch (const nlohmann::json::exception&) {
     if (IsFormation(document.value().content)) {
       return Error{
-          "a formation of pushid-simulate --formation: its truth is the model it was rolled out "
+          "a formation of pushid-formation: its truth is the model it was rolled out "
           "with; compare with that model's own report",
           manifest_path};
     }

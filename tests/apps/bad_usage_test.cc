@@ -119,8 +119,8 @@ TEST_F(BadUsageTest, OutputsThatCannotBeWrittenAreRefusedBeforeTheFit) {
 
 TEST_F(BadUsageTest, OutputsAreWhatTheirNamesSay) {
   const std::string model = "--model=" + FitModel();
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--push=40",
-                                                 "--svg_out=" + Path("wave.html")}),
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {model, "--formation=line", "--push=40",
+                                                  "--svg_out=" + Path("wave.html")}),
                       {"--svg_out writes .svg", "wave.html ends in .html"}));
   EXPECT_TRUE(Refused(
       RunApp("pushid-animate", {model, Recordings(), "--id=" + id_, "--out=" + Path("poses.svg")}),

@@ -113,6 +113,10 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
   EXPECT_TRUE(Contains(header,
                        ",cost,settles,held_out_hip_ade_m,held_out_hip_fde_m,warnings,"
                        "solve_s,seconds"));
+  // A column is one row of the table: what the CSV has stands in the JSON.
+  nlohmann::ordered_json job = jobs[0];
+  job.erase("warnings");
+  EXPECT_EQ(std::count(header.begin(), header.end(), ',') + 1, job.flatten().size() + 1);
   EXPECT_TRUE(Contains(run.out, "held-out hipFDE, m"));
   const std::string page = ReadText(Path("out/summary.html"));
   EXPECT_TRUE(Contains(run.out, "3 of 3"));

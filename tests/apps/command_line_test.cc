@@ -16,10 +16,12 @@ struct App {
   const char* name;
   const char* flag;  // one that its help must name
 };
-const std::vector<App> kApps = {{"pushid-fit", "--model_out"},       {"pushid-report", "--model"},
-                                {"pushid-evaluate", "--json_out"},   {"pushid-predict", "--id"},
-                                {"pushid-simulate", "--out"},        {"pushid-push", "--sensor"},
-                                {"pushid-crossvalidate", "--scheme"}};
+const std::vector<App> kApps = {
+    {"pushid-fit", "--model_out"},        {"pushid-report", "--model"},
+    {"pushid-evaluate", "--json_out"},    {"pushid-predict", "--id"},
+    {"pushid-simulate", "--out"},         {"pushid-push", "--sensor"},
+    {"pushid-crossvalidate", "--scheme"}, {"pushid-check", "--bootstrap"},
+    {"pushid-formation", "--spacing"}};
 
 TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
   for (const App& app : kApps) {

@@ -130,7 +130,7 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   const std::string crowd = WriteText("crowd.txt",
                                       "# framerate: 10\n# id frame x/m y/m\n21 0 0 0\n21 1 0 0\n"
                                       "30 1 0.5 0.02\n44 1 1.0 -0.01\n");
-  const AppRun run = RunApp("pushid-simulate",
+  const AppRun run = RunApp("pushid-formation",
                             {model, "--formation=" + crowd, "--formation_frame=1", "--pushed=1",
                              "--push=20", "--duration=2", "--trajectories_out=" + Path("out.txt")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -139,7 +139,7 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   EXPECT_TRUE(Contains(out, "\n30\t0\t0.5\t0.02\t"));
   EXPECT_EQ(out.find("person"), std::string::npos) << "ids are the file's own";
   // The result is itself a crowd.
-  EXPECT_EQ(RunApp("pushid-simulate",
+  EXPECT_EQ(RunApp("pushid-formation",
                    {model, "--formation=" + Path("out.txt"), "--push=20", "--formation_frame=60",
                     "--trajectories_out=" + Path("out.sqlite")})
                 .exit_code,
@@ -147,7 +147,7 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
     std::vector<std::string> flags = {model, "--formation=" + crowd};
     flags.insert(flags.end(), more.begin(), more.end());
-    return Refused(RunApp("pushid-simulate", flags), {says});
+    return Refused(RunApp("pushid-formation", flags), {says});
   };
   EXPECT_TRUE(refused({"--formation_frame=7"}, "there is no frame 7"));
   EXPECT_TRUE(refused({"--people=3"}, "--people is for line, diamond and grid"));
@@ -155,8 +155,9 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=44"}, "the file's id 44 is person 2"));
   EXPECT_TRUE(refused({"--trajectories_out=" + crowd}, "both name"));
   EXPECT_TRUE(refused({"--trajectories_out=a.csv"}, "trajectories end in .txt"));
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model, "--formation=line", "--formation_frame=1"}),
-                      {"--formation_frame needs a trajectory file"}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-formation", {model, "--formation=line", "--formation_frame=1"}),
+              {"--formation_frame needs a trajectory file"}));
 }
 
 }  // namespace

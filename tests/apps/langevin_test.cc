@@ -82,7 +82,7 @@ TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
   EXPECT_TRUE(Contains(held_out.out, "full less tail"));
 
   const AppRun line = RunApp(
-      "pushid-simulate", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"});
+      "pushid-formation", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"});
   EXPECT_EQ(line.exit_code, 0) << line.err;
   EXPECT_TRUE(Contains(line.out, "10 drawn futures"));
 }

@@ -65,10 +65,11 @@ TEST_F(LayoutTest, AReportOfManyParameters) {
 
 TEST_F(LayoutTest, PicturesOfAFormation) {
   const std::string model = FitModel();
-  const AppRun run = RunApp(
-      "pushid-simulate", {"--model=" + model, "--formation=line", "--people=5",
-                          "--svg_out=" + Path("wave.svg"), "--forces_svg_out=" + Path("forces.svg"),
-                          "--strip_out=" + Path("strip.svg"), "--html_out=" + Path("wave.html")});
+  const AppRun run =
+      RunApp("pushid-formation",
+             {"--model=" + model, "--formation=line", "--people=5", "--svg_out=" + Path("wave.svg"),
+              "--forces_svg_out=" + Path("forces.svg"), "--strip_out=" + Path("strip.svg"),
+              "--html_out=" + Path("wave.html")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* svg : {"wave.svg", "forces.svg", "strip.svg"}) {
     SCOPED_TRACE(svg);

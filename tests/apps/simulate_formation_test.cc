@@ -1,4 +1,4 @@
-// pushid-simulate --formation: from a model to tables, CSV, BVH and pictures; what it refuses.
+// pushid-formation: from a model to tables, CSV, BVH and pictures; what it refuses.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -28,7 +28,7 @@ class SimulateFormationTest : public AppTest {
 
   AppRun Simulate(std::vector<std::string> flags) {
     flags.insert(flags.begin(), model_);
-    return RunApp("pushid-simulate", flags, 60);
+    return RunApp("pushid-formation", flags, 60);
   }
 
   std::string alone_;  // path
@@ -81,7 +81,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
       {model_, "--recordings=" + Path("line/manifest.json"), "--json_out=" + Path("scores.json")});
   ASSERT_EQ(scores.exit_code, 0) << scores.err;
   EXPECT_TRUE(Refused(RunApp("pushid-report", {model_, "--truth=" + Path("line/manifest.json")}),
-                      {"a formation of pushid-simulate", "the model"}));
+                      {"a formation of pushid-formation", "the model"}));
   EXPECT_LT(Json(Path("scores.json"))["mean"]["hipADE_m"].get<double>(), 1e-9) << scores.out;
 }
 
@@ -97,8 +97,8 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   nlohmann::ordered_json json = Json(alone_);
   json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",
                       "recording 'b': b.bvh has gaps"};
-  const AppRun run = RunApp("pushid-simulate", {"--model=" + WriteText("warned.json", json.dump()),
-                                                "--formation=line", "--people=1"});
+  const AppRun run = RunApp("pushid-formation", {"--model=" + WriteText("warned.json", json.dump()),
+                                                 "--formation=line", "--people=1"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out,
                        "moved by 2 cm or more\nwarning of the fit: ends behind the start\n"
@@ -124,12 +124,12 @@ TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
 }
 
 TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
-  const AppRun run = RunApp("pushid-simulate", {"--model=" + alone_, "--formation=line"});
+  const AppRun run = RunApp("pushid-formation", {"--model=" + alone_, "--formation=line"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.err, "people will not affect each other"));
   EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
   const AppRun one =
-      RunApp("pushid-simulate", {"--model=" + alone_, "--formation=grid", "--people=1"});
+      RunApp("pushid-formation", {"--model=" + alone_, "--formation=grid", "--people=1"});
   EXPECT_EQ(one.err, "");
 }
 
@@ -177,16 +177,14 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--push=0"}, {"--push", "'0'", "impulse"}},
       {{"--formation=line", "--push=nan"}, {"--push", "'nan'"}},
       {{"--formation=line", "--set=mew=1"}, {"--set", "'mew'"}},
-      {{"--formation=line", "--out=x"}, {"--out", "--formation"}},
-      {{"--formation=line", "--noise=0.1"}, {"--noise", "--formation"}},
+      {{"--formation=line", "--out=x"}, {"no flag --out", "--csv_out"}},
+      {{"--formation=line", "--noise=0.1"}, {"no flag --noise"}},
       {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
       {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},
       {{"--formation=line", "--people=41", "--forces_svg_out=x"}, {"--forces_svg_out", "40"}},
       {{"--formation=line", "--forces_own_scale"}, {"--forces_own_scale", "--forces_svg_out"}},
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
-      {{"--out=" + Path("made"), "--spacing=1"}, {"--spacing needs --formation"}},
-      {{"--out=" + Path("made"), "--svg_out=x"}, {"--svg_out needs --formation"}},
-      {{"--out=" + Path("made"), "--as_setting=row"}, {"--as_setting needs --formation"}},
+      {{"--spacing=1"}, {"--formation is missing", "line, diamond or grid"}},
       {{"--formation=line", "--push=80@0,80@3", "--duration=2"}, {"--duration", "at 3 s"}},
       {{"--formation=line", "--csv_out=" + Path("o"), "--forces_out=" + Path("./o")},
        {"--csv_out and --forces_out", "file of its own"}},
@@ -196,8 +194,19 @@ TEST_F(SimulateFormationTest, BadUsage) {
     SCOPED_TRACE(one.flags.back());
     EXPECT_TRUE(Refused(Simulate(one.flags), one.says));
   }
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--formation=line"}), {"--model", "pushid-fit"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {"--formation=line"}), {"--model", "pushid-fit"}));
   EXPECT_EQ(CountFiles(), files) << "something was written";
+}
+
+TEST_F(SimulateFormationTest, TheOldSpellingRunsTheSameProgram) {
+  const std::vector<std::string> flags = {model_, "--formation=line", "--people=2"};
+  const AppRun old = RunApp("pushid-simulate", flags), now = RunApp("pushid-formation", flags);
+  ASSERT_EQ(old.exit_code, 0) << old.err;
+  EXPECT_EQ(old.out, now.out);
+  EXPECT_EQ(old.err,
+            "pushid-simulate: note: --formation moved to pushid-formation; this spelling works "
+            "until version 0.4\n" +
+                now.err);
 }
 
 }  // namespace

@@ -45,6 +45,34 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
   EXPECT_TRUE(Contains(report.out, "6 of 6 intervals cover the truth"));
 }
 
+// Rows of people who touch, as preset group fits them.
+TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
+  const std::string manifest =
+      Simulate("made", {"--people=6", "--group_size=3", "--recordings_per_person=3", "--noise=0"});
+  EXPECT_TRUE(Contains(run_.out, "18 recordings of 6 people in rows of 3"));
+  EXPECT_TRUE(Contains(run_.out, "contact_stiffness"));
+  const AppRun fit =
+      RunApp("pushid-fit",
+             {"--recordings=" + manifest, "--setting=groups", "--preset=group", "--pool=none",
+              "--preset_priors=false", "--settling_weight=0", "--mode_weight=0",
+              "--function_tolerance=1e-12", "--model_out=" + Path("model.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  const nlohmann::ordered_json truth = Json(manifest)["synthetic"]["truth"];
+  const auto model = Json(Path("model.json"));
+  for (const char* name : {"mu", "Kp_theta", "contact_stiffness", "contact_distance",
+                           "contact_kappa", "contact_damping", "tail_exponent"}) {
+    const double expected = truth[name];
+    EXPECT_NEAR(model["values"][name].get<double>(), expected, 1e-3 * std::abs(expected)) << name;
+  }
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path("no"), "--group_size=9"}),
+                      {"--group_size is 9", "between 1 and 4"}));
+  // A model of people alone does not make people touch.
+  const AppRun alone = RunApp(
+      "pushid-simulate", {"--model=" + FitModel(), "--group_size=2", "--out=" + Path("apart")});
+  EXPECT_EQ(alone.exit_code, 0);
+  EXPECT_TRUE(Contains(alone.err, "do not act on each other"));
+}
+
 // Feet that hold, with default flags: errors of the fit hold the truth of most parameters.
 TEST_F(SimulateAppTest, TheTruthMayStand) {
   const std::string manifest = Simulate("made", {"--truth_stance=threshold", "--people=5"});

@@ -249,7 +249,7 @@ def crowd(journey):
     journey.run("pushid-fit", "--recordings=people/manifest.json", "--preset=group", "--model_out=group.json",
                 "--fix=contact_stiffness,contact_distance,contact_kappa,contact_damping")
     line = ["--model=group.json", "--formation=line", "--people=10", "--spacing=0.45", "--push=80"]
-    told = journey.run("pushid-simulate", *line, "--svg_out=wave.svg", "--csv_out=line.csv", "--html_out=line.html",
+    told = journey.run("pushid-formation", *line, "--svg_out=wave.svg", "--csv_out=line.csv", "--html_out=line.html",
                        "--restoration=rigid", "--bvh_out=line")
     need("10" in told, "the table of the line has no tenth person")
     for name in ("wave.svg", "line.csv", "line.html"):

@@ -76,7 +76,7 @@ def likelihood():
 
 
 def horizons():
-    check = studies.fit("single", "--horizon_check").json["horizon_check"]
+    check = studies.check(studies.fit("single"), "--horizon_check").json["horizon_check"]
     rows = [[refit["name"], *map(with_error, refit["values"], refit["standard_errors"])]
             for refit in check["refits"] if not refit["failure"]]
     parameters = check["parameters"]

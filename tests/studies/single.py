@@ -69,7 +69,7 @@ def depends():
 
 
 def intervals():
-    model = fit("--profile", "--bootstrap=199").json
+    model = studies.check(fit(), "--profile", "--bootstrap=199").json
     profiles = {p["name"]: p for p in model["profiles"]}
     resampled = {p["name"]: p for p in model["bootstrap"]["parameters"]}
     rows = []

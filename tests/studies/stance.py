@@ -71,7 +71,7 @@ def sways():
     model = studies.fit("single", STANCE).path
     rows = []
     for impulse in IMPULSES:
-        out = studies.run("pushid-simulate", f"--model={model}", "--formation=line", "--people=1",
+        out = studies.run("pushid-formation", f"--model={model}", "--formation=line", "--people=1",
                           f"--push={impulse}", "--push_duration=0.7", "--duration=6", out="csv_out").text
         lines = out.splitlines()
         row = dict(zip(lines[1].replace("x m", "x_m").replace("y m", "y_m").replace("onset s", "onset_s")

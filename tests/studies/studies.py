@@ -79,6 +79,11 @@ def fit(setting, *arguments):
     return on_recordings("pushid-fit", setting, *arguments, out="model_out")
 
 
+def check(fitted, *arguments):
+    """The checks of a fit; `path` is the model with them."""
+    return run("pushid-check", f"--model={fitted.path}", f"--recordings={MANIFEST}", *arguments, out="model_out")
+
+
 def number(value, digits=3):
     """To so many significant digits, without an exponent: 2860, 0.409, -0.24."""
     if value == 0.0 or not math.isfinite(value):

@@ -1,6 +1,6 @@
 """A push that travels through ten people in a line, by the model fitted to the recordings of groups.
 
-transcript  the run of pushid-simulate --formation (ident/formations/README.md)
+transcript  the run of pushid-formation (ident/formations/README.md)
 pushes      how far it goes by push and parameters (ident/formations/README.md)
 
 Half a minute on one core for the fit, seconds for the rest.
@@ -14,11 +14,11 @@ LINE = ["--formation=line", "--people=10", "--spacing=0.45"]
 
 def simulate(*flags):
     model = studies.fit("groups", "--preset=group").path
-    return studies.run("pushid-simulate", f"--model={model}", *LINE, *flags, out=None).text
+    return studies.run("pushid-formation", f"--model={model}", *LINE, *flags, out=None).text
 
 
 def transcript():
-    return studies.transcript("pushid-simulate --model=group.json " + " ".join(LINE) + " --push=80",
+    return studies.transcript("pushid-formation --model=group.json " + " ".join(LINE) + " --push=80",
                               simulate("--push=80"))
 
 

@@ -1,4 +1,4 @@
-// pushid-simulate --formation --generator, as a user runs it after pushid-train-generator, and what
+// pushid-formation --generator, as a user runs it after pushid-train-generator, and what
 // is said of pushes that a generator has not learned from.
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class FormationGeneratorTest : public AppTest {
     std::vector<std::string> flags = {"--model=" + Path("model.json"), "--formation=diamond",
                                       "--people=5", "--duration=1", "--generator=" + Path("g")};
     flags.insert(flags.end(), more.begin(), more.end());
-    return RunApp("pushid-simulate", flags);
+    return RunApp("pushid-formation", flags);
   }
 };
 
@@ -88,7 +88,7 @@ TEST_F(FormationGeneratorTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Simulate({"--generator=" + Path("particles")}),
                       {"a generator of particles", "--kind=diffusion"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path("o"), "--generator=" + Path("g")}),
-                      {"--generator needs --formation"}));
+                      {"no flag --generator"}));
 }
 
 }  // namespace

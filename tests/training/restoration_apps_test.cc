@@ -100,9 +100,9 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
   EXPECT_TRUE(Contains(html, "</html>"));
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page must stand alone";
   const AppRun simulate = RunApp(
-      "pushid-simulate", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
-                          "--poses_from=" + manifest_, "--html_out=" + Path("f.html"),
-                          "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
+      "pushid-formation", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
+                           "--poses_from=" + manifest_, "--html_out=" + Path("f.html"),
+                           "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
   ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
   EXPECT_TRUE(Contains(simulate.err, "--more_settings=groups")) << "it saw people alone";
@@ -314,8 +314,9 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
           {"--id=" + id_, "--out=" + Path("m.bvh"), "--restoration=rigid", "--postprocess=magic"},
           {"--postprocess", "magic", "fade"});
   refused("pushid-animate", {"--id=" + id_}, {"--out"});
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {model_, "--formation=line", "--joints_out=x.csv"}),
-                      {"--joints_out", "--restoration"}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-formation", {model_, "--formation=line", "--joints_out=x.csv"}),
+              {"--joints_out", "--restoration"}));
 }
 
 }  // namespace

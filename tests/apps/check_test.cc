@@ -1,0 +1,113 @@
+// pushid-check: the checks of a model's file are those of a fit that has just ended; what it
+// refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class CheckTest : public AppTest {
+ protected:
+  AppRun Check(const std::string& model, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"--model=" + model, Recordings()});
+    return RunApp("pushid-check", flags);
+  }
+
+  // Without what changes from run to run, and without the order of flags.
+  static nlohmann::ordered_json Lasting(const std::string& path) {
+    nlohmann::ordered_json json = Json(path);
+    json.erase("run");
+    json.erase("changed_flags");
+    return json;
+  }
+};
+
+// A model from its file has lost nothing that a refit starts from: whatever it is made of.
+TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
+  const std::vector<std::string> checks = {
+      "--profile=mu", "--bootstrap=9", "--bootstrap_by=recording",
+      "--push_check", "--prior_check", "--horizon_check"};
+  const std::vector<std::vector<std::string>> fits = {
+      {},
+      {"--pool=mu", "--pool_by=subject", "--sigmas=fixed", "--seed=3"},
+      {"--self_force=linear,mlp:2"},
+      {"--resample=2"}};
+  for (const std::vector<std::string>& fit : fits) {
+    SCOPED_TRACE(fit.empty() ? "default" : fit[0]);
+    std::vector<std::string> all = fit;
+    all.insert(all.end(), checks.begin(), checks.end());
+    const std::string old = FitModel("old.json", all);
+    EXPECT_TRUE(Contains(fit_.err, "pushid-fit: note: --profile moved to pushid-check"));
+    const std::string plain = FitModel("plain.json", fit);
+    EXPECT_EQ(fit_.err.find("note"), std::string::npos);
+    const AppRun run = Check(plain, checks);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(Contains(run.out, "model with the checks written to " + plain));
+    EXPECT_EQ(Lasting(plain).dump(1), Lasting(old).dump(1));
+  }
+}
+
+TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
+  const std::string model = FitModel();
+  const std::string before = ReadText(model);
+  const AppRun run = Check(model, {"--prior_check", "--model_out=" + Path("checked.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Json(Path("checked.json")).contains("prior_check"));
+  const AppRun printed = Check(model, {"--design=mu", "--population"});
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_TRUE(Contains(printed.out, "standard error of mu"));
+  EXPECT_TRUE(Contains(printed.out, "on the log of tail_gain"));
+  EXPECT_EQ(ReadText(model), before);
+  // Checks add up.
+  ASSERT_EQ(Check(model, {"--prior_check", "--model_out=" + model}).exit_code, 0);
+  ASSERT_EQ(Check(model, {"--bootstrap=3"}).exit_code, 0);
+  EXPECT_TRUE(Json(model).contains("prior_check"));
+  EXPECT_TRUE(Json(model).contains("bootstrap"));
+}
+
+TEST_F(CheckTest, FilesAreReadAsTheFitReadThem) {
+  const std::string model = FitModel("model.json", {"--resample_fps=30", "--lowpass_hz=8"});
+  EXPECT_EQ(Check(model, {"--prior_check"}).exit_code, 0);
+  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--lowpass_hz=5"}),
+                      {"recording " + id_, "is not what the model was fitted to"}));
+}
+
+TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
+  const std::string model = FitModel("model.json", {"--leave_out=" + id_});
+  EXPECT_EQ(Check(model, {"--prior_check"}).exit_code, 0) << "those of the model, by id";
+  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--setting=single"}),
+                      {"recording " + id_ + " is none of those", "leave --setting and --ids"}));
+  const std::string whole = FitModel("whole.json");
+  EXPECT_TRUE(Refused(Check(whole, {"--prior_check", "--leave_out=" + id_}),
+                      {"recording " + id_ + " is missing", "--leave_out"}));
+  const std::string heavier = ChangedManifest(
+      [](nlohmann::ordered_json& json) { json["recordings"][0]["subjects"][0]["mass_kg"] = 90.5; });
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, heavier, "--prior_check"}),
+                      {"recording " + id_ + " is not what the model was fitted to", "manifest"}));
+  const std::string fewer =
+      ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"].erase(0); });
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--prior_check"}), {id_}));
+}
+
+TEST_F(CheckTest, WhatItRefuses) {
+  const std::string model = FitModel();
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {Recordings(), "--prior_check"}), {"--model"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + model, "--prior_check"}),
+                      {"--recordings is missing"}));
+  EXPECT_TRUE(Refused(Check(model, {}), {"nothing is asked", "--profile", "--bootstrap"}));
+  EXPECT_TRUE(Refused(Check(model, {"--bootstrap=1"}), {"--bootstrap must be 0"}));
+  EXPECT_TRUE(Refused(Check(model, {"--profile=mew"}), {"--profile", "mew"}));
+  EXPECT_TRUE(Refused(Check(model, {"--design=mew"}), {"--design: 'mew'", "choose from all"}));
+  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--bootstrap_file=" + Path("b")}),
+                      {"--bootstrap_file needs --bootstrap=N"}));
+  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--seed=-1"}), {"--seed", "-1"}));
+  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--preset=ldp"}), {"no flag --preset"}));
+}
+
+}  // namespace
+}  // namespace pushid

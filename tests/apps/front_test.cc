@@ -1,0 +1,72 @@
+// pushid in front of the programs: commands, help, misspelt commands, completion.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+using FrontTest = AppTest;
+
+TEST_F(FrontTest, ACommandIsTheProgramWithItsExitCode) {
+  EXPECT_EQ(RunApp("pushid", {"report", "--help"}).out, RunApp("pushid-report", {"--help"}).out);
+  EXPECT_EQ(RunApp("pushid", {"help", "report"}).out, RunApp("pushid-report", {"--help"}).out);
+  const AppRun fit = RunApp("pushid", {"fit", Recordings(), "--model_out=" + Path("model.json")});
+  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_TRUE(Contains(fit.out, "model written to"));
+  EXPECT_TRUE(Refused(RunApp("pushid", {"fit"}), {"pushid-fit: error: --recordings is missing"}));
+  EXPECT_TRUE(Contains(RunApp("pushid", {"--version"}).out, "pushid 0."));
+}
+
+TEST_F(FrontTest, MisspeltCommands) {
+  EXPECT_TRUE(Refused(RunApp("pushid", {"reprot"}), {"'reprot'", "did you mean 'report'?"}));
+  EXPECT_TRUE(Refused(RunApp("pushid", {"help", "fitt"}), {"did you mean 'fit'?"}));
+  EXPECT_TRUE(Refused(RunApp("pushid", {"--fit"}), {"'--fit'", "pushid help"}));
+  EXPECT_TRUE(Refused(RunApp("pushid", {"completion", "csh"}), {"bash, zsh and fish", "'csh'"}));
+}
+
+// Every program that was built is a command.
+TEST_F(FrontTest, HelpListsAllPrograms) {
+  const std::string help = RunApp("pushid", {"help"}).out;
+  EXPECT_EQ(RunApp("pushid", {}).out, help);
+  for (const auto& entry : std::filesystem::directory_iterator(PUSHID_BIN_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const bool study = name.find("study") != std::string::npos || name == "pushid-benchmarks";
+    if (name.rfind("pushid-", 0) != 0 || study) continue;
+    EXPECT_TRUE(Contains(help, "\n  " + name.substr(7) + " ")) << name;
+  }
+}
+
+TEST_F(FrontTest, CompletionKnowsFlagsAndTheirWords) {
+  for (const char* shell : {"bash", "zsh", "fish"}) {
+    SCOPED_TRACE(shell);
+    const AppRun run = RunApp("pushid", {"completion", shell});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(Contains(run.out, "settling_weight"));
+    EXPECT_TRUE(Contains(run.out, "slide threshold"));  // --stance
+    EXPECT_EQ(run.out.find("minloglevel"), std::string::npos);
+  }
+}
+
+// What bash itself makes of the script.
+TEST_F(FrontTest, BashCompletes) {
+  const auto completed = [this](const std::string& words, int at) {
+    const std::string script = "source <(\"" + std::string(PUSHID_BIN_DIR) +
+                               "/pushid\" completion bash)\nCOMP_WORDS=(" + words +
+                               ")\nCOMP_CWORD=" + std::to_string(at) +
+                               "\ncompopt() { :; }\n_pushid\necho \"${COMPREPLY[@]}\"\n";
+    return RunProgram("/bin/bash", {WriteText("complete.sh", script)});
+  };
+  EXPECT_EQ(completed("pushid fi", 1).out, "fit\n");
+  EXPECT_EQ(completed("pushid fit --settling_", 2).out, "--settling_weight=\n");
+  EXPECT_EQ(completed("pushid-fit --stance = thr", 3).out, "threshold\n");
+  EXPECT_EQ(completed("pushid check --prior", 2).out, "--prior_check\n");
+  EXPECT_EQ(completed("pushid-fit --prof", 1).out, "\n") << "a flag that moved";
+}
+
+}  // namespace
+}  // namespace pushid
