@@ -19,7 +19,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/fitted_model.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/python/bindings.h"
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"

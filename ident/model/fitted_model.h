@@ -81,7 +81,7 @@ struct Provenance {
 
 struct FittedModel {
   FitResult fit;
-  std::vector<Profile> profiles;       // empty unless asked for (confidence.h)
+  std::vector<Profile> profiles;       // empty unless asked for (checks/model_checks.h)
   std::optional<Bootstrap> bootstrap;  // absent unless asked for
   std::vector<Advice> advice;          // report/advice.h
   Provenance provenance;

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/report/report_text.h"

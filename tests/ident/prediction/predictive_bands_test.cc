@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

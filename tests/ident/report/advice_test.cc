@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "tests/ident/fit_samples.h"
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/fit/interval_agreement.h"
 #include "ident/problem/fit_problem.h"

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/report/refits_text.h"
 #include "ident/uncertainty/prior_check.h"

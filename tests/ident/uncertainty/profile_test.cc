@@ -8,7 +8,7 @@
 
 #include <array>
 
-#include "ident/fit/confidence.h"
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/solver/solver.h"
 #include "residuals/cost_functions/prior_residual.h"
