@@ -13,7 +13,7 @@
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/fit/model_rollout.h"
-#include "ident/forecasts/long_forecast.h"
+#include "ident/forecasts/group_forecasts.h"
 #include "ident/model/model_json.h"
 #include "ident/prediction/online_predictor.h"
 

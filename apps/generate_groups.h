@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "apps/flags/generate_flags.h"
-#include "ident/forecasts/group_spread.h"
+#include "ident/forecasts/group_forecasts.h"
 #include "ident/model/identified_model.h"
 
 namespace pushid {

@@ -16,7 +16,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_report.h"
-#include "ident/bodies/peer_files.h"
+#include "ident/peers/peer_files.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"

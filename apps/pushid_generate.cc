@@ -50,7 +50,7 @@ Result<ForecastScene> SceneOfPerson(const LoadedGenerator& loaded, const Generat
 // One recording as it is shown: a person of it and what particles make of that, or the whole group.
 MaybeError ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
                     const BodyRecording& recording, const std::optional<IdentifiedModel>& physics) {
-  if (loaded.kind == GeneratorKind::kDiffusion) {
+  if (RowOf(loaded.kind).groups) {
     const Result<std::vector<std::string>> files = ShowGroup(loaded, flags, recording, physics);
     if (!files.ok()) return files.error();
     for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
@@ -105,7 +105,7 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   }
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
-  if (flags.samples > 0 && loaded.kind == GeneratorKind::kDiffusion) {
+  if (flags.samples > 0 && RowOf(loaded.kind).groups) {
     const Result<GroupSpread> spread = SpreadOf(loaded, flags, bodies.value(), physics.value());
     if (!spread.ok()) return Fail(spread.error());
     std::printf("\n%s", SpreadText(spread.value()).c_str());

@@ -18,11 +18,9 @@
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_json.h"
 #include "ident/problem/parallel.h"
-#include "ident/training/best_forecast.h"
-#include "ident/training/curve_json.h"
-#include "ident/training/curve_svg.h"
 #include "ident/training/generator_crossvalidation.h"
 #include "ident/training/restoration_data.h"
+#include "ident/training/training_curve.h"
 
 namespace {
 
@@ -102,7 +100,7 @@ Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
   if (flags.physics) return *flags.physics;
   Result<FitOptions> options = MakeFitOptions({}, &pendulums);
   if (!options.ok()) return options;
-  options.value().num_threads = flags.options.diffusion.num_threads;
+  options.value().num_threads = flags.options.num_threads;
   if (MaybeError error = PrepareFit(pendulums, &options.value())) return *error;
   return options;
 }
@@ -126,8 +124,8 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   if (!physics.ok()) return physics.error();
   BestForecastOptions options;
   options.chain.fit = physics.value();
-  options.chain.training.seed = flags.options.particles.seed;
-  options.chain.training.num_threads = flags.options.diffusion.num_threads;
+  options.chain.training.seed = flags.options.seed;
+  options.chain.training.num_threads = flags.options.num_threads;
   // A generator of few steps, a try, is compared with a restoration of few.
   options.chain.training.effort =
       static_cast<double>(flags.options.diffusion.steps) / DiffusionTrainingOptions{}.steps;
@@ -185,12 +183,12 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   }
   learnt = all;
   if (flags.held_out > 0.0 && all.size() > 1) {
-    SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.particles.seed,
-                 &learnt, &held);
+    SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.seed, &learnt,
+                 &held);
   }
   std::vector<GroupHips> hips;
   if (flags.pendulum_input) {
-    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.diffusion.seed);
+    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.seed);
   }
   GeneratorSamples samples = SamplesOf(bodies.value(), learnt, held, flags.observed, hips);
   if (flags.accuracy == ForecastAccuracy::kBest) {
@@ -204,7 +202,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
 int Run() {
   const Result<TrainGeneratorFlags> flags = TrainGeneratorFlagsFromCommandLine();
   if (!flags.ok()) return Fail(flags.error());
-  SetBlasThreads(flags.value().options.particles.num_threads);
+  SetBlasThreads(flags.value().options.num_threads);
   return flags.value().data == GeneratorData::kCmu ? FromClips(flags.value())
                                                    : FromPushes(flags.value());
 }

@@ -15,9 +15,8 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/training/curve_json.h"
-#include "ident/training/curve_svg.h"
-#include "ident/training/restoration_training_run.h"
+#include "ident/training/restoration_chain.h"
+#include "ident/training/training_curve.h"
 
 namespace {
 

@@ -26,14 +26,14 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 
 // The order of each room's subfolders; "" is the room itself.
 const std::map<std::string, std::vector<std::string>> kFloors = {
-    {"models", {"", "restoration", "generators"}},
+    {"models", {"", "restoration", "peers", "generators"}},
     {"datasets",
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
     {"residuals", {"kernels", "", "sensitivities", "lockstep", "cost_functions", "adjoint"}},
     {"ident",
-     {"figures", "parameters", "problem", "solver", "uncertainty", "diagnostics", "model", "fit",
-      "prediction", "validation", "push", "bodies", "generators", "forecasts", "training",
-      "formations", "report", "report/page", "checks", ""}},
+     {"figures",   "parameters", "problem",    "solver", "uncertainty", "diagnostics", "model",
+      "fit",       "prediction", "validation", "push",   "bodies",      "peers",       "generators",
+      "forecasts", "training",   "formations", "report", "report/page", "checks",      ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 

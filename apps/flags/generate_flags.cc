@@ -4,7 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/diffusion_flags.h"
+#include "apps/flags/kind_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
@@ -30,26 +30,11 @@ DEFINE_int32(
     "number of sampled futures per window, for coverage, CRPS, energy score and the fan in "
     "pictures; for groups by diffusion, for how often the recorded hips lie among them; 0: none");
 DEFINE_uint64(seed, kFlags.seed, "seed of the sampled futures");
-DEFINE_double(ridge_share, -1.0, "share of the linear forecast in the blend; -1: as trained");
-DEFINE_bool(project_bones, kFlags.changes.project_bones,
-            "keep the bone lengths of the last observed frame");
-DEFINE_double(noise_memory, kFlags.changes.noise_memory,
-              "sampled futures: correlation of the noise between one frame and the next");
-DEFINE_double(noise_scale, kFlags.changes.noise_scale,
-              "sampled futures: factor on the learned noise");
-DEFINE_bool(correlated_noise, kFlags.changes.correlated_noise,
-            "sampled futures: noise is correlated across coordinates, like the errors of the "
-            "drift; off: independent");
-DEFINE_bool(
-    mirror, kFlags.changes.mirror,
-    "average with the forecast of the mirror image: like a second network, without training one");
 DEFINE_int32(
     observed, kFlags.observed,
     "diffusion: number of observed frames, 1 for the first poses and the push; 0: as trained");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with and to show");
-DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
-              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 DEFINE_int32(frames, kFlags.frames,
              "diffusion: length of the forecast, frames, also past the recording's end; a table "
              "shows the motion of all groups second by second; 0: as long as the recording");
@@ -78,18 +63,12 @@ MaybeError CheckRanges() {
   if (FLAGS_samples != 0) {
     if (MaybeError error = CheckRange("samples", FLAGS_samples, kLeastSamples, 10000)) return error;
   }
-  if (FLAGS_ridge_share != -1.0) {
-    if (MaybeError error = CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0)) return error;
-  }
   for (const MaybeError& error :
-       {CheckRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99),
-        CheckRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0),
-        CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
+       {CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
         CheckRange("person", FLAGS_person, 0, 1e6), CheckRange("poses", FLAGS_poses, 2, 40),
         CheckRange("target_window", FLAGS_target_window, -1, 1e9),
         CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
         CheckRange("observed", FLAGS_observed, 0, 1000),
-        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
         CheckRange("frames", FLAGS_frames, 0, 10000),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
     if (error) return error;
@@ -126,20 +105,17 @@ MaybeError CheckData(const GenerateFlags& flags) {
 }  // namespace
 
 MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
-  const bool diffuses = kind == GeneratorKind::kDiffusion;
-  const bool pushes = flags.data == GeneratorData::kPushes;
-  if (pushes && !diffuses && flags.samples > 0 && !flags.Shows()) {
-    return Error{
-        "with pushes and particles, --samples only adds a fan to --poses_out, --strip_out or "
-        "--page_out; give one of them"};
+  const GeneratorKindRow& row = RowOf(kind);
+  if (flags.data == GeneratorData::kPushes && !row.groups && flags.samples > 0 && !flags.Shows()) {
+    return Error{"with pushes and " + NameOf(kind) +
+                 ", --samples only adds a fan to --poses_out, --strip_out or --page_out; give one "
+                 "of them"};
   }
-  std::vector<const char*> foreign = {"ridge_share", "project_bones",    "noise_memory",
-                                      "noise_scale", "correlated_noise", "mirror",
-                                      "person"};
-  if (!diffuses) {
-    foreign = DiffusionFlagNames();
-    foreign.insert(foreign.end(), {"observed", "physics", "frames", "push_spread"});
-  }
+  std::vector<const char*> foreign;
+  for (const auto& other : KindFlags<GenerateFlags>::ForeignTo(kind)) foreign.push_back(other.flag);
+  if (row.groups) foreign.push_back("person");
+  if (!row.groups) foreign.insert(foreign.end(), {"physics", "frames"});
+  if (!row.any_observed) foreign.push_back("observed");
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
@@ -153,22 +129,13 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   for (const MaybeError& error :
        {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges()}) {
+        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges(),
+        KindFlags<GenerateFlags>::ReadAll(&flags)}) {
     if (error) return *error;
   }
-  const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
-  if (!diffusion.ok()) return diffusion.error();
   if (!Given("dataset") && Given("recordings")) flags.data = GeneratorData::kPushes;
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
-  if (FLAGS_ridge_share >= 0.0) flags.changes.ridge_share = FLAGS_ridge_share;
-  flags.changes.project_bones = FLAGS_project_bones;
-  flags.changes.noise_memory = FLAGS_noise_memory;
-  flags.changes.noise_scale = FLAGS_noise_scale;
-  flags.changes.diffusion = diffusion.value();
-  flags.changes.diffusion.push_spread = FLAGS_push_spread;
-  flags.changes.correlated_noise = FLAGS_correlated_noise;
-  flags.changes.mirror = FLAGS_mirror;
   flags.changes.seed = FLAGS_seed;
   flags.observed = FLAGS_observed;
   flags.frames = FLAGS_frames;

@@ -34,7 +34,7 @@ struct GenerateFlags {
 };
 Result<GenerateFlags> GenerateFlagsFromCommandLine();
 
-// Flags that say something to generators of the other kind alone.
+// Errors: flags that say something to generators of another kind alone.
 MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
 
 }  // namespace pushid

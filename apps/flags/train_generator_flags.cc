@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/kind_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/scheme_flags.h"
 #include "ident/model/model_json.h"
@@ -12,10 +13,16 @@
 namespace {
 const pushid::TrainGeneratorFlags kFlags;
 const pushid::GeneratorTrainingOptions kOptions;
-const pushid::ParticleTrainingOptions kParticles;
-const pushid::DiffusionTrainingOptions kDiffusion;
 const char* const kOfKind = "0: default of the kind";
 std::string OfKind(const std::string& what) { return what + "; " + kOfKind; }
+std::string KindHelp() {
+  std::string kinds;
+  for (const pushid::GeneratorKindRow& row : pushid::kGeneratorKinds) {
+    kinds += (kinds.empty() ? "" : " or ") + std::string(row.name) + " (" + row.what + ")";
+  }
+  return "kind of generator: " + kinds;
+}
+const std::string kKind = KindHelp();
 const std::string kObserved = OfKind(
     "pushes: number of observed frames (diffusion: in use and in scoring); 1: the first pose and "
     "the push");
@@ -25,9 +32,7 @@ const std::string kBatch = OfKind("batch size of a step: windows, or groups of p
 const std::string kRate = OfKind("peak learning rate, after the warm-up");
 }  // namespace
 
-DEFINE_string(kind, pushid::NameOf(kOptions.kind),
-              "kind of generator: particles (displacements with learned drift and noise) or "
-              "diffusion (whole groups of interacting people)");
+DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
 DEFINE_string(dataset, pushid::NameOf(kFlags.data),
               "training data: cmu (motion-capture clips in --folder) or pushes (--recordings; "
               "required by diffusion)");
@@ -59,47 +64,22 @@ DEFINE_int32(samples, kFlags.samples,
              "how often it lies among them; 0: none");
 DEFINE_double(push_spread, kFlags.changes.diffusion.push_spread,
               "diffusion, --samples: spread of the logarithm of the push between sampled futures");
-DEFINE_string(pooling, pushid::NameOf(kDiffusion.structure.pooling),
-              "diffusion: interaction between people: local (by distance, ahead and behind), mean "
-              "(all equal), attention, none");
-DEFINE_double(bystanders, kDiffusion.bystanders,
-              "diffusion: fraction of the training groups to which people far away are added");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_int32(seeds, 0, kSeeds.c_str());
 DEFINE_int32(steps, 0, kSteps.c_str());
-DEFINE_int32(noise_steps, kParticles.noise_steps,
-             "training steps of the noise; 0: do not learn noise");
 DEFINE_int32(batch, 0, kBatch.c_str());
 DEFINE_double(learning_rate, 0.0, kRate.c_str());
-DEFINE_double(jitter, kParticles.jitter,
-              "noise added to the input pose, in its standard deviations");
-DEFINE_string(cell, pushid::NameOf(kParticles.structure.cell), "memory of the network: gru, lstm");
-DEFINE_bool(
-    skip, kParticles.structure.skip,
-    "initialize the drift with the last displacement and add a linear function of the last nine");
-DEFINE_bool(pose_operator, kParticles.structure.pose_operator,
-            "predict displacements and sum them; off: predict the next pose itself");
-DEFINE_bool(particles, kParticles.structure.particles,
-            "displacements are an input besides the pose; off: poses only, as input and output");
 DEFINE_bool(correction, kOptions.correction,
             "cmu: correct the error of the summed displacements over the whole forecast by a few "
             "low frequencies");
-DEFINE_double(squared_weight, kParticles.squared,
-              "weight of squared distances (SDE's Eq. 10) in the loss");
-DEFINE_double(bone_weight, kParticles.bones, "weight of bone lengths (SDE's Eq. 11) in the loss");
-DEFINE_double(critic_weight, kParticles.critic,
-              "weight of a Wasserstein critic (SDE's Eq. 12) in the loss");
-DEFINE_string(
-    noise_loss, pushid::NameOf(kParticles.noise_loss),
-    "loss of the noise: likelihood, or squared (without the determinant; its noise vanishes)");
 DEFINE_double(ridge_share, kOptions.ridge_share,
               "cmu: share of the linear forecast in the blend; 0: none");
 DEFINE_double(ridge_penalty, kOptions.ridge_penalty,
               "cmu: ridge penalty of the linear forecast, m^2");
 DEFINE_double(checkpoint_seconds, kOptions.checkpoint_seconds,
               "time between two checkpoints in --out");
-DEFINE_uint64(seed, kParticles.seed, "the first of --seeds, and the seed of the folds");
-DEFINE_int32(num_threads, kParticles.num_threads,
+DEFINE_uint64(seed, kOptions.seed, "the first of --seeds, and the seed of the folds");
+DEFINE_int32(num_threads, kOptions.num_threads,
              "threads of the training; only a single thread is bit-reproducible");
 
 namespace pushid {
@@ -107,21 +87,13 @@ namespace {
 
 bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
 
-constexpr int kShownToDiffusion = 1;  // frames
-
 MaybeError CheckRanges() {
   for (const MaybeError& error :
        {CheckRange("seeds", FLAGS_seeds, 0, 20), CheckRange("steps", FLAGS_steps, 0, 1e6),
-        CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6),
         CheckRange("batch", FLAGS_batch, 0, 4096), CheckRange("observed", FLAGS_observed, 0, 1000),
         CheckRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0),
         CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("samples", FLAGS_samples, 0, 10000),
         CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
-        CheckRange("bystanders", FLAGS_bystanders, 0.0, 1.0),
-        CheckRange("jitter", FLAGS_jitter, 0.0, 100.0),
-        CheckRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6),
-        CheckRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6),
-        CheckRange("critic_weight", FLAGS_critic_weight, 0.0, 1e6),
         CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0),
         CheckRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12),
         CheckRange("held_out", FLAGS_held_out, 0.0, 0.5),
@@ -132,9 +104,17 @@ MaybeError CheckRanges() {
   return std::nullopt;
 }
 
-// Flags of the other data, or of the other kind, would do nothing.
+MaybeError OfOtherKinds(GeneratorKind kind) {
+  for (const auto& foreign : KindFlags<TrainGeneratorFlags>::ForeignTo(kind)) {
+    if (!Given(foreign.flag)) continue;
+    return Error{std::string("--") + foreign.flag + " needs --kind=" + NameOf(foreign.of)};
+  }
+  return std::nullopt;
+}
+
+// Flags of the other data, or of another kind, would do nothing.
 MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
-  const bool is_cmu = data == GeneratorData::kCmu, diffuses = kind == GeneratorKind::kDiffusion;
+  const bool is_cmu = data == GeneratorData::kCmu, groups = RowOf(kind).groups;
   const auto refuse = [](std::initializer_list<const char*> flags,
                          const std::string& goes_with) -> MaybeError {
     for (const char* flag : flags) {
@@ -142,21 +122,18 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
     }
     return std::nullopt;
   };
-  if (is_cmu && diffuses) {
-    return Error{"--kind=diffusion trains on pushed groups; give --dataset=pushes"};
+  if (is_cmu && groups) {
+    return Error{"--kind=" + NameOf(kind) + " trains on pushed groups; give --dataset=pushes"};
   }
   const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
-  const std::string particles = "--kind=particles", diffusion = "--kind=diffusion";
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
                : refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty"},
                         cmu),
-        diffuses ? refuse({"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles",
-                           "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
-                          particles)
-                 : refuse({"pooling", "bystanders", "physics", "blend", "pendulum_input", "samples",
-                           "accuracy"},
-                          diffusion),
+        OfOtherKinds(kind),
+        groups ? MaybeError()
+               : refuse({"physics", "blend", "pendulum_input", "samples", "accuracy"},
+                        "--kind=" + GeneratorKindNames(" or ", true)),
         FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
         FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;
@@ -199,42 +176,30 @@ MaybeError CheckData(GeneratorKind kind, GeneratorData data) {
   return std::nullopt;
 }
 
-void SetDiffusion(DiffusionTrainingOptions* diffusion) {
-  if (FLAGS_steps > 0) diffusion->steps = FLAGS_steps;
-  if (FLAGS_batch > 0) diffusion->groups = FLAGS_batch;
-  if (FLAGS_learning_rate > 0.0) diffusion->learning_rate = FLAGS_learning_rate;
-  diffusion->bystanders = FLAGS_bystanders;
-  diffusion->seed = FLAGS_seed;
-  diffusion->num_threads = FLAGS_num_threads;
-}
-
 }  // namespace
 
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   TrainGeneratorFlags flags;
-  ParticleTrainingOptions& particles = flags.options.particles;
-  for (const MaybeError& error :
-       {ParseName("--kind", FLAGS_kind, &flags.options.kind),
-        ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
-        ParseName("--pooling", FLAGS_pooling, &flags.options.diffusion.structure.pooling),
-        ParseName("--cell", FLAGS_cell, &particles.structure.cell),
-        ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss), CheckRanges()}) {
+  flags.steps = FLAGS_steps;
+  flags.batch = FLAGS_batch;
+  flags.learning_rate = FLAGS_learning_rate;
+  GeneratorTrainingOptions& options = flags.options;
+  for (const MaybeError& error : {ParseName("--kind", FLAGS_kind, &options.kind),
+                                  ParseName("--dataset", FLAGS_dataset, &flags.data),
+                                  ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
+                                  CheckRanges(), KindFlags<TrainGeneratorFlags>::ReadAll(&flags)}) {
     if (error) return *error;
   }
   const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
   if (!scheme.ok()) return scheme.error();
   flags.scheme = scheme.value();
-  if (!Given("dataset") && flags.options.kind == GeneratorKind::kDiffusion) {
-    flags.data = GeneratorData::kPushes;
-  }
-  if (MaybeError error = CheckData(flags.options.kind, flags.data)) return *error;
+  const GeneratorKindRow& kind = RowOf(options.kind);
+  if (!Given("dataset") && kind.groups) flags.data = GeneratorData::kPushes;
+  if (MaybeError error = CheckData(options.kind, flags.data)) return *error;
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
   flags.folder = FLAGS_folder;
   flags.with_validation = FLAGS_with_validation;
-  const bool diffuses = flags.options.kind == GeneratorKind::kDiffusion;
-  if (diffuses) flags.observed = kShownToDiffusion;
-  if (FLAGS_observed > 0) flags.observed = FLAGS_observed;
+  flags.observed = FLAGS_observed > 0 ? FLAGS_observed : kind.observed;
   flags.held_out = FLAGS_held_out;
   flags.out = FLAGS_out;
   flags.crossvalidate = FLAGS_crossvalidate;
@@ -242,26 +207,13 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   flags.changes.diffusion.blend = FLAGS_blend;
   flags.changes.diffusion.push_spread = FLAGS_push_spread;
   flags.samples = FLAGS_samples;
-  if (diffuses) flags.options.seeds = 1;
-  if (FLAGS_seeds > 0) flags.options.seeds = FLAGS_seeds;
-  SetDiffusion(&flags.options.diffusion);
-  flags.options.correction = FLAGS_correction;
-  flags.options.ridge_share = FLAGS_ridge_share;
-  flags.options.ridge_penalty = FLAGS_ridge_penalty;
-  flags.options.checkpoint_seconds = FLAGS_checkpoint_seconds;
-  particles.structure.skip = FLAGS_skip;
-  particles.structure.pose_operator = FLAGS_pose_operator;
-  particles.structure.particles = FLAGS_particles;
-  if (FLAGS_steps > 0) particles.steps = FLAGS_steps;
-  particles.noise_steps = FLAGS_noise_steps;
-  if (FLAGS_batch > 0) particles.batch = FLAGS_batch;
-  if (FLAGS_learning_rate > 0.0) particles.learning_rate = FLAGS_learning_rate;
-  particles.jitter = FLAGS_jitter;
-  particles.squared = FLAGS_squared_weight;
-  particles.bones = FLAGS_bone_weight;
-  particles.critic = FLAGS_critic_weight;
-  particles.seed = FLAGS_seed;
-  particles.num_threads = FLAGS_num_threads;
+  options.seeds = FLAGS_seeds > 0 ? FLAGS_seeds : kind.seeds;
+  options.seed = FLAGS_seed;
+  options.num_threads = FLAGS_num_threads;
+  options.correction = FLAGS_correction;
+  options.ridge_share = FLAGS_ridge_share;
+  options.ridge_penalty = FLAGS_ridge_penalty;
+  options.checkpoint_seconds = FLAGS_checkpoint_seconds;
   if (FLAGS_physics.empty()) return flags;
   const Result<FittedModel> physics = ReadFittedModel(FLAGS_physics);
   if (!physics.ok()) return physics.error();

@@ -18,9 +18,11 @@ struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   GeneratorData data = GeneratorData::kCmu;
   ForecastAccuracy accuracy = ForecastAccuracy::kUsual;
+  int steps = 0, batch = 0;      // 0: those of the kind
+  double learning_rate = 0.0;    // 0: that of the kind
   std::string folder;            // of clips
   bool with_validation = false;  // learn from the validation clips too
-  int observed = 20;             // frames of a push that the generator is shown
+  int observed = 0;              // frames of a push that the generator is shown
   double held_out = 0.15;        // share of the recordings that only show how the training goes
   std::string out;               // folder of the generator
   int crossvalidate = 0;         // folds, instead of writing a generator; 0: off

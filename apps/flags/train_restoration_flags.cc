@@ -12,10 +12,20 @@
 #include "models/learned_terms.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");
-DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name,
-              "kind of restoration: window (fast, default), cvae (LDP's chain), or a peer for "
-              "--peer of pushid-evaluate: simlpe (siMLPe, which continues 12 given frames), mrt "
-              "(MRT, which continues 20 given frames of a whole group)");
+namespace {
+std::string KindsThat(bool follow_pendulum) {
+  std::string kinds;
+  for (const pushid::RestorationKindRow& row : pushid::kRestorationKinds) {
+    if (!row.trained || row.follows_pendulum != follow_pendulum) continue;
+    kinds += (kinds.empty() ? "" : ", ") + std::string(row.name) + " (" + row.what + ")";
+  }
+  return kinds;
+}
+const std::string kKind = "kind of restoration: " + KindsThat(true) +
+                          ", or a peer for --peer of pushid-evaluate: " + KindsThat(false);
+}  // namespace
+
+DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name, kKind.c_str());
 DEFINE_string(mrt_size, pushid::NameOf(pushid::RestorationTrainingOptions{}.mrt_size),
               "mrt: small (0.3 million weights), or published (the published widths, 5 million)");
 DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
@@ -60,29 +70,44 @@ DEFINE_int32(num_threads, pushid::RestorationTrainingOptions{}.num_threads,
 namespace pushid {
 namespace {
 
+// Flags of one kind alone, which must be at their defaults with others.
+struct FlagOfKind {
+  const char* flag;
+  const char* given;  // as the command line has it
+  RestorationKind kind;
+};
+constexpr FlagOfKind kFlagsOfKinds[] = {
+    {"mrt_size", "--mrt_size", RestorationKind::kMrt},
+    {"halves", "--nohalves", RestorationKind::kCvae},
+};
+
+bool AtDefault(const char* flag) {
+  return gflags::GetCommandLineFlagInfoOrDie(flag).current_value ==
+         gflags::GetCommandLineFlagInfoOrDie(flag).default_value;
+}
+
 // What goes with which kind.
 MaybeError CheckKind(RestorationKind kind, RestorationView view) {
-  if (view != RestorationView::kPendulum && !RowOf(kind).follows_pendulum) {
+  const RestorationKindRow& row = RowOf(kind);
+  if (view != RestorationView::kPendulum && !row.follows_pendulum) {
     return Error{"--sees is for kinds that follow a pendulum, and --kind=" + FLAGS_kind +
                  " continues recorded bodies"};
   }
-  if (view == RestorationView::kNeighbours && kind != RestorationKind::kWindow) {
+  if (view == RestorationView::kNeighbours && !row.sees_neighbours) {
     return Error{"--sees=neighbours needs --kind=window"};
   }
-  if (FLAGS_mrt_size != NameOf(RestorationTrainingOptions{}.mrt_size) &&
-      kind != RestorationKind::kMrt) {
-    return Error{"--mrt_size needs --kind=mrt"};
+  for (const FlagOfKind& own : kFlagsOfKinds) {
+    if (kind == own.kind || AtDefault(own.flag)) continue;
+    return Error{std::string(own.given) + " needs --kind=" + Name(own.kind)};
   }
-  if (ObservedFrames() > 0 && !RowOf(kind).follows_pendulum) {
+  if (ObservedFrames() > 0 && !row.follows_pendulum) {
     return Error{
         "--observed is for predicted pendulums; a peer always gets the number of frames that "
         "--kind=" +
         FLAGS_kind + " takes"};
   }
-  const bool chain = kind == RestorationKind::kCvae;
-  if (!FLAGS_halves && !chain) return Error{"--nohalves needs --kind=cvae"};
-  if (FLAGS_coordinates == Name(RestorationTrainingOptions{}.coordinates)) return std::nullopt;
-  if (!chain || view == RestorationView::kPose) {
+  if (AtDefault("coordinates")) return std::nullopt;
+  if (kind != RestorationKind::kCvae || view == RestorationView::kPose) {
     return Error{
         "--coordinates needs --kind=cvae --sees=pendulum: without a pendulum there is no tip"};
   }
@@ -116,7 +141,7 @@ MaybeError CheckFlags() {
   }
   if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
-      (*kind != RestorationKind::kWindow || view != RestorationView::kPendulum)) {
+      (!RowOf(*kind).differentiable || view != RestorationView::kPendulum)) {
     return Error{"--body_weight needs --kind=window and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};

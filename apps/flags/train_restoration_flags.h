@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "ident/training/restoration_training_run.h"
+#include "ident/training/restoration_chain.h"
 
 namespace pushid {
 

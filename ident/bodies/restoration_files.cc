@@ -5,11 +5,10 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/bodies/kind_makers.h"
+#include "ident/bodies/restoration_kinds.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
-#include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {
@@ -41,8 +40,6 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder, const cha
 
 namespace {
 
-using MadeRestoration = Result<std::unique_ptr<Restoration>>;
-
 Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
   RestorationView view = RestorationView::kPendulum;
   const std::string name = file.settings->value(kViewKey, NameOf(view));
@@ -50,8 +47,10 @@ Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& p
   return view;
 }
 
-MadeRestoration MakeWindow(const RestorationFile& file, const std::string& path,
-                           TensorReader* reader) {
+}  // namespace
+
+Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
+                                                const std::string& path, TensorReader* reader) {
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
   const int inputs = WindowInputRows(view.value());
@@ -62,8 +61,8 @@ MadeRestoration MakeWindow(const RestorationFile& file, const std::string& path,
   return std::unique_ptr<Restoration>(new WindowRestoration(std::move(weights)));
 }
 
-MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
-                         TensorReader* reader) {
+Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const std::string& path,
+                                              TensorReader* reader) {
   const std::string name = file.settings->value(kCvaeCoordinatesKey, Name(CvaeCoordinates::kTip));
   const std::optional<CvaeCoordinates> coordinates = CvaeCoordinatesFromName(name);
   if (!coordinates) {
@@ -81,20 +80,14 @@ MadeRestoration MakeCvae(const RestorationFile& file, const std::string& path,
   return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(layout, reader), draws));
 }
 
-constexpr KindMaker<Restoration> kMakers[] = {
-    {RestorationKind::kWindow, MakeWindow},
-    {RestorationKind::kCvae, MakeCvae},
-};
-
-}  // namespace
-
 std::string RestorationJsonFile(const std::string& folder) {
   return JsonFileOf(kRestorationFolder, folder);
 }
 
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder) {
-  return MakeByKind(kMakers, file, RestorationJsonFile(folder), "a peer is named by --peer");
+  return MakeByKind(kRestorationMakers, file, RestorationJsonFile(folder),
+                    "a peer is named by --peer");
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {

@@ -8,9 +8,8 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
-#include "models/restoration/restoration_kind.h"
-#include "models/restoration/tensors.h"
 
 namespace pushid {
 

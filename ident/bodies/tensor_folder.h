@@ -13,7 +13,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
-#include "models/restoration/tensors.h"
+#include "models/restoration/dense_network.h"
 
 namespace pushid {
 

@@ -202,11 +202,11 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
 MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
                                LoadedGenerator* loaded) {
   GeneratorSettings& settings = loaded->settings;
-  if (loaded->kind != GeneratorKind::kDiffusion) {
+  if (!RowOf(loaded->kind).groups) {
     return Error{"--" + flag + " names a generator of " + NameOf(loaded->kind) +
                  ", whose people do not interact: only the pushed would move; give one that "
                  "pushid-train-generator --kind=" +
-                 NameOf(GeneratorKind::kDiffusion) + " wrote"};
+                 GeneratorKindNames(" or ", true) + " wrote"};
   }
   if (!AtRateOf(settings, scene.dt)) {
     return Error{"--" + flag + " names a generator that was trained at " +

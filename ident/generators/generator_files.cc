@@ -6,8 +6,6 @@
 #include "datasets/files/number_text.h"
 #include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
-#include "ident/generators/generator_kinds.h"
-#include "ident/parameters/option_names.h"
 
 namespace pushid {
 namespace {
@@ -18,13 +16,6 @@ TensorFolderKind GeneratorFolder(const char* flag) {
   return {"generator", flag, "pushid-train-generator --out", 1};
 }
 constexpr int kMostParticles = 1000;
-
-std::string KindNames() {
-  std::string names;
-  for (const auto& row : Names(GeneratorKind{}))
-    names += (names.empty() ? "" : ", ") + std::string(row.name);
-  return names;
-}
 
 bool IsKind(const std::string& name) {
   GeneratorKind kind;
@@ -85,7 +76,7 @@ Json SettingsJson(const TrainedNetworks& trained) {
     json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
   }
   for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(Name(kind));
-  std::visit([&json](const auto& of_kind) { json.update(KindJson(of_kind)); }, trained.of_kind);
+  json.update(trained.of_kind->Settings());
   return json;
 }
 
@@ -114,37 +105,45 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.training = folder.training;
   Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
          "observed, predicted and rate_hz must be positive");
-  if (folder.kind == NameOf(GeneratorKind::kDiffusion)) {
-    trained.of_kind = ReadDiffusion(json, settings, reader);
-  } else {
-    trained.of_kind = ReadParticles(json, settings, reader);
-  }
+  GeneratorKind kind{};
+  ParseName("kind", folder.kind, &kind);  // ReadTensorFolder has checked it
+  trained.of_kind = RowOf(kind).read(json, settings, reader);
   return trained;
 }
 
 }  // namespace
 
+std::string GeneratorKindNames(const char* between, bool of_groups) {
+  std::string names;
+  for (const GeneratorKindRow& row : kGeneratorKinds) {
+    if (of_groups && !row.groups) continue;
+    names += (names.empty() ? "" : between) + std::string(row.name);
+  }
+  return names;
+}
+
+int ReadMembers(const Json& json) {
+  constexpr int kMostMembers = 100;
+  const int members = json.at("members");
+  Demand(members >= 1 && members <= kMostMembers, "members must be 1 to 100");
+  return members;
+}
+
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
-  TensorFolder content;
-  content.kind = NameOf(trained.kind());
-  content.settings = SettingsJson(trained);
-  content.training = trained.settings.training;
-  std::visit([&content](const auto& of_kind) { AddTensors(of_kind, &content.tensors); },
-             trained.of_kind);
-  return WriteTensorFolder(GeneratorFolder("--out"), folder, content);
+  return WriteTensorFolder(GeneratorFolder("--out"), folder,
+                           {NameOf(trained.kind()), SettingsJson(trained),
+                            trained.settings.training, trained.of_kind->Tensors()});
 }
 
 std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
                                                const GeneratorChanges& changes) {
-  return std::visit(
-      [&](const auto& of_kind) { return MakeOfKind(trained.settings, of_kind, changes); },
-      trained.of_kind);
+  return trained.of_kind->Make(trained.settings, changes);
 }
 
 Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
                                       const char* flag) {
   const Result<TensorFolder> read =
-      ReadTensorFolder(GeneratorFolder(flag), folder, KindNames(), IsKind);
+      ReadTensorFolder(GeneratorFolder(flag), folder, GeneratorKindNames(", "), IsKind);
   if (!read.ok()) return read.error();
   const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
   TensorReader reader(read.value().tensors);
@@ -158,10 +157,7 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!reader.problem().empty()) {
     return Error{reader.problem() + "; train again with this version", path};
   }
-  const auto* particles = std::get_if<TrainedParticles>(&trained.of_kind);
-  if (particles && changes.ridge_share.value_or(0.0) > 0.0 && particles->ridge_share <= 0.0) {
-    return Error{"this generator was trained without a ridge; leave out --ridge_share", path};
-  }
+  if (const MaybeError error = trained.of_kind->Check(changes)) return Error{error->message, path};
   return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes),
                          nullptr};
 }

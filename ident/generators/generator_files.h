@@ -7,10 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "ident/generators/generator_kinds.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 #include "models/push.h"
@@ -50,22 +50,11 @@ struct GeneratorSettings {
   KeptJson training{};                   // provenance
 };
 
-// The networks of a generator of particles, and of one of diffusion.
-struct TrainedParticles {
-  std::vector<ParticleNetwork> members;  // of one structure
-  RidgeForecast ridge;                   // empty where ridge_share is 0
-  double ridge_share = 0.0;
-  double jitter = 0.0;  // of the pose in training, and in sampled futures
-};
-struct TrainedDiffusion {
-  std::vector<DiffusionNetwork> members;  // of one structure
-};
-
 struct TrainedNetworks {
   GeneratorSettings settings;
-  std::variant<TrainedParticles, TrainedDiffusion> of_kind;  // in the order of GeneratorKind
+  SharedNetworks of_kind;
 
-  GeneratorKind kind() const { return static_cast<GeneratorKind>(of_kind.index()); }
+  GeneratorKind kind() const { return of_kind->kind(); }
 };
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
@@ -75,18 +64,6 @@ struct LoadedGenerator {
   GeneratorSettings settings;
   std::unique_ptr<MotionGenerator> generator;
   std::unique_ptr<Restoration> restoration;  // that forecasts in its place; usually none
-};
-
-// What may differ from the training; unset: as trained. Each kind has its own.
-struct GeneratorChanges {
-  std::optional<double> ridge_share;
-  bool project_bones = ParticleGeneratorOptions{}.project_bones;
-  double noise_memory = ParticleGeneratorOptions{}.noise_memory;
-  double noise_scale = ParticleGeneratorOptions{}.noise_scale;
-  bool correlated_noise = ParticleGeneratorOptions{}.correlated_noise;
-  bool mirror = ParticleGeneratorOptions{}.mirror;
-  DiffusionGeneratorOptions diffusion = {};
-  uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
 };
 
 // flag: what names the folder, for messages. Errors: no such folder, settings or tensors that are

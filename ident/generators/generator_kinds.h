@@ -1,45 +1,145 @@
-// ident: what the files of each kind of generator hold beside the settings of all, and how one is
-// made of them. Of generator_files.cc alone.
+// ident: the kinds of generators, one row each.
 //
-// The readers throw nlohmann's exceptions, and Error's text where something does not fit.
+// A new kind is a value and two rows here, and files of its own: the generator and its trainer
+// (models/generators/), a class derived from KindNetworks, the two functions that the rows name
+// (the trainer's in ident/training/), and its flags (apps/flags/kind_flags.h). Both programs then
+// accept it as --kind.
+//
+// The tables are two, because nothing but pushid-train-generator needs LibTorch: whoever reads a
+// table links what stands in it.
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
 
-#include "ident/generators/generator_files.h"
+#include "datasets/files/error.h"
 #include "ident/parameters/option_names.h"
-#include "models/restoration/tensors.h"
+#include "models/generators/diffusion_generator.h"
+#include "models/generators/diffusion_trainer.h"
+#include "models/generators/particle_generator.h"
+#include "models/generators/particle_trainer.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 
+struct GeneratorSettings;         // ident/generators/generator_files.h
+struct GeneratorSamples;          // ident/training/generator_training.h
+struct GeneratorTrainingOptions;  // ident/training/generator_training.h
+
+enum class GeneratorKind { kParticles, kDiffusion };
+
+// What may differ from the training; unset: as trained.
+struct GeneratorChanges {
+  std::optional<double> ridge_share;
+  ParticleGeneratorOptions particles = {};
+  DiffusionGeneratorOptions diffusion = {};
+  uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
+};
+
+// Options of every seed's training, by kind.
+struct KindTrainingOptions {
+  ParticleTrainingOptions particles;
+  DiffusionTrainingOptions diffusion;
+};
+
+// The networks of a generator, by its kind.
+class KindNetworks {
+ public:
+  virtual ~KindNetworks() = default;
+  virtual GeneratorKind kind() const = 0;
+  // Beside the settings of all kinds.
+  virtual nlohmann::ordered_json Settings() const = 0;
+  virtual TensorList Tensors() const = 0;
+  // Errors: changes that these networks do not allow.
+  virtual MaybeError Check(const GeneratorChanges&) const { return std::nullopt; }
+  virtual std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
+                                                const GeneratorChanges& changes) const = 0;
+};
+using SharedNetworks = std::shared_ptr<const KindNetworks>;
+
+// settings: as Settings() says; of_all: what every kind has. Throws nlohmann's exceptions, and
+// Demand's where something does not fit.
+using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
+                                       const GeneratorSettings& of_all, TensorReader* reader);
+GeneratorReader ReadParticles, ReadDiffusion;
+
+struct GeneratorKindRow {
+  GeneratorKind kind;
+  const char* name;
+  const char* what;  // for the list of kinds on the command line
+  // People of a call see each other: whole groups that are pushed, which physics may blend with.
+  // Otherwise it forecasts people one by one, and motion capture too.
+  bool groups;
+  bool any_observed;  // trained for any number of frames shown, so that others may be shown in use
+  int observed;       // frames of a push that it is shown, if no flag says otherwise
+  int seeds;          // networks that are averaged, likewise
+  GeneratorReader* read;
+};
+
+inline constexpr GeneratorKindRow kGeneratorKinds[] = {
+    {GeneratorKind::kParticles, "particles", "displacements with learned drift and noise", false,
+     false, 20, 3, ReadParticles},
+    {GeneratorKind::kDiffusion, "diffusion", "whole groups of interacting people", true, true, 1, 1,
+     ReadDiffusion},
+};
+
+// run: takes the trainer of every seed, in turn, to its end, with checkpoints of this key.
+using SeedRunner = std::function<MaybeError(Trainer* trainer, const std::string& key)>;
+// Errors: nothing to learn from; those of run.
+using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
+                                                const GeneratorTrainingOptions& options,
+                                                const SeedRunner& run);
+GeneratorTrainer TrainParticles, TrainDiffusion;
+inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, TrainDiffusion};
+
+inline constexpr size_t kNumGeneratorKinds = std::size(kGeneratorKinds);
+static_assert(std::size(kGeneratorTrainers) == kNumGeneratorKinds, "a kind has no trainer");
+
+constexpr EnumNames<GeneratorKind, kNumGeneratorKinds> Names(GeneratorKind) {
+  EnumNames<GeneratorKind, kNumGeneratorKinds> names = {};
+  for (size_t i = 0; i < kNumGeneratorKinds; ++i) {
+    names[i] = {kGeneratorKinds[i].name, kGeneratorKinds[i].kind};
+  }
+  return names;
+}
+constexpr bool GeneratorRowsAreInOrder() {
+  for (size_t i = 0; i < kNumGeneratorKinds; ++i) {
+    if (kGeneratorKinds[i].kind != static_cast<GeneratorKind>(i)) return false;
+  }
+  return true;
+}
+static_assert(GeneratorRowsAreInOrder(), "RowOf finds a row by its kind's value");
+constexpr const GeneratorKindRow& RowOf(GeneratorKind kind) {
+  return kGeneratorKinds[static_cast<size_t>(kind)];
+}
+
+// "particles, diffusion"; of_groups: those that forecast whole groups alone.
+std::string GeneratorKindNames(const char* between, bool of_groups = false);
+
+// For readers of settings.
 inline void Demand(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error(what);
 }
-template <typename Value>
-void ParseSetting(const nlohmann::ordered_json& json, const char* key, Value* value) {
-  const MaybeError error = ParseName(key, json.at(key).get<std::string>(), value);
+template <typename Json, typename Value>
+void ParseSetting(const Json& json, const char* key, Value* value) {
+  const MaybeError error = ParseName(key, json.at(key).template get<std::string>(), value);
   if (error) throw std::runtime_error(error->message);
 }
-// How many networks a file has; their tensors are called MemberName(0), ...
+// How many networks a file has.
 int ReadMembers(const nlohmann::ordered_json& json);
+// What their tensors are called.
 inline std::string MemberName(size_t member) { return "member" + std::to_string(member); }
-
-nlohmann::ordered_json KindJson(const TrainedParticles& trained);
-nlohmann::ordered_json KindJson(const TrainedDiffusion& trained);
-
-void AddTensors(const TrainedParticles& trained, TensorList* tensors);
-void AddTensors(const TrainedDiffusion& trained, TensorList* tensors);
-
-TrainedParticles ReadParticles(const nlohmann::ordered_json& json,
-                               const GeneratorSettings& settings, TensorReader* reader);
-TrainedDiffusion ReadDiffusion(const nlohmann::ordered_json& json,
-                               const GeneratorSettings& settings, TensorReader* reader);
-
-std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
-                                            const TrainedParticles& trained,
-                                            const GeneratorChanges& changes);
-std::unique_ptr<MotionGenerator> MakeOfKind(const GeneratorSettings& settings,
-                                            const TrainedDiffusion& trained,
-                                            const GeneratorChanges& changes);
+template <typename Network>
+TensorList TensorsOf(const std::vector<Network>& members) {
+  TensorList tensors;
+  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m), members[m], &tensors);
+  return tensors;
+}
 
 }  // namespace pushid

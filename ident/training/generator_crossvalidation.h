@@ -6,7 +6,7 @@
 //   generator_unblended        without the physics that the forecast is blended with
 //   generator_blend_0.25       the same with another share of physics, where such are compared
 //   rigid                      those physics alone, first poses carried by the rods' tips
-//   generator_shown_20         of diffusion, which is trained for it: shown 20 frames, no physics
+//   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics
 //   static, constant_velocity  as in body_evaluation.h
 #pragma once
 
@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "ident/bodies/body_evaluation.h"
-#include "ident/forecasts/group_spread.h"
+#include "ident/forecasts/group_forecasts.h"
 #include "ident/problem/folds.h"
 #include "ident/training/generator_training.h"
-#include "ident/training/restoration_training_run.h"
+#include "ident/training/restoration_chain.h"
 
 namespace pushid {
 
@@ -46,5 +46,28 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
                                                    const GeneratorTrainingOptions& options,
                                                    const GeneratorValidationOptions& validation,
                                                    const RunProgress& progress = nullptr);
+
+// Whatever forecasts groups best. Physics, restored bodies and diffusion are trained in
+// every fold and judged on the recordings held out; the nearest in the mean joint error is the
+// choice, and all three are then trained on all recordings, for whoever wants another.
+
+struct BestForecastOptions {
+  RestorationRunOptions chain;  // physics in its fit, and the restoration
+  GeneratorTrainingOptions generator;
+  GeneratorValidationOptions validation;  // folds; blends are those compared
+};
+
+struct ForecastCandidate {
+  std::string name;
+  ForecastChoice choice;
+  BodySummary summary;
+};
+// The best first.
+Result<std::vector<ForecastCandidate>> CompareForecasts(
+    const std::vector<BodyRecording>& recordings, const BestForecastOptions& options,
+    const RunProgress& progress = nullptr);
+
+std::string CandidatesText(const std::vector<ForecastCandidate>& candidates);
+nlohmann::ordered_json ToJson(const std::vector<ForecastCandidate>& candidates);
 
 }  // namespace pushid

@@ -1,9 +1,9 @@
-// ident: seeds trained one after the other.
+// ident: trainings of generators: seeds one after the other, and the kinds' own.
 #include "ident/training/generator_training.h"
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/training/restoration_training_checkpoint.h"
+#include "ident/generators/trained_networks.h"
 
 namespace pushid {
 namespace {
@@ -74,39 +74,23 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
                 hash);
 }
 
+// The options of a seed.
+template <typename Options>
+Options OfSeed(Options options, int index, const TrainerOptions& of_all) {
+  options.seed = of_all.seed + static_cast<uint64_t>(index);
+  options.num_threads = of_all.num_threads;
+  return options;
+}
+
 std::string SeedsCheckpoint(const std::string& path, int index) {
   return path.empty() ? "" : path + "." + std::to_string(index + 1);
 }
 
-// One seed, from its checkpoint on, to its end. Points go to the curve of all.
-template <typename Trainer>
-MaybeError RunToEnd(Trainer* trainer, const std::string& key, int steps, int index,
-                    const GeneratorTrainingOptions& options, const TrainingProgress& progress,
-                    TrainedGenerator* trained) {
-  Checkpoint checkpoint(SeedsCheckpoint(options.checkpoint, index), key,
-                        options.checkpoint_seconds);
-  std::string state;
-  std::vector<TrainingPoint> curve;
-  if (checkpoint.Load(&state, &curve) && trainer->Resume(state)) {
-    trained->resumed = true;
-  } else {
-    curve.clear();
-  }
-  while (!trainer->Done()) {
-    TrainingPoint point = trainer->RunRound();
-    point.stage = "seed " + std::to_string(index + 1) + ", " + point.stage;
-    curve.push_back(point);
-    if (progress) progress(point, (index + 1.0 * point.epoch / steps) / options.seeds);
-    // A seed that is done stays on disk until all are.
-    if (!checkpoint.Due() && !(trainer->Done() && !options.checkpoint.empty())) continue;
-    if (MaybeError error = checkpoint.Save(trainer->State(), curve)) return *error;
-  }
-  trained->curve.insert(trained->curve.end(), curve.begin(), curve.end());
-  return std::nullopt;
-}
+}  // namespace
 
-MaybeError TrainParticles(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
-                          const TrainingProgress& progress, TrainedGenerator* trained) {
+Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
+                                      const GeneratorTrainingOptions& options,
+                                      const SeedRunner& run) {
   const int window = options.particles.from_start
                          ? options.particles.observed + 1
                          : options.particles.observed + options.particles.predicted;
@@ -116,63 +100,62 @@ MaybeError TrainParticles(const GeneratorSamples& samples, const GeneratorTraini
     return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
                  " frames"};
   }
-  TrainedParticles particles;
-  particles.jitter = options.particles.jitter;
+  const auto particles = std::make_shared<TrainedParticles>();
+  particles->jitter = options.particles.jitter;
   for (int index = 0; index < options.seeds; ++index) {
-    ParticleTrainingOptions of_seed = options.particles;
-    of_seed.seed += static_cast<uint64_t>(index);
+    const ParticleTrainingOptions of_seed = OfSeed(options.particles, index, options);
     ParticleTrainer trainer(samples.settings.layout, samples.learnt, samples.held, of_seed);
-    if (MaybeError error =
-            RunToEnd(&trainer, KeyOf(samples, of_seed), of_seed.steps + of_seed.noise_steps, index,
-                     options, progress, trained)) {
-      return error;
-    }
-    particles.members.push_back(trainer.Network());
+    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return *error;
+    particles->members.push_back(trainer.Network());
   }
   if (options.ridge_share > 0.0) {
     RidgeFit fit;
     for (const Trajectories& motion : samples.ridge) {
       fit.Add(motion, samples.settings.observed, samples.settings.predicted);
     }
-    particles.ridge = fit.Solve(options.ridge_penalty);
-    particles.ridge_share = options.ridge_share;
+    particles->ridge = fit.Solve(options.ridge_penalty);
+    particles->ridge_share = options.ridge_share;
   }
-  trained->networks.of_kind = std::move(particles);
-  return std::nullopt;
+  return SharedNetworks(particles);
 }
 
-MaybeError TrainDiffusion(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
-                          const TrainingProgress& progress, TrainedGenerator* trained) {
+Result<SharedNetworks> TrainDiffusion(const GeneratorSamples& samples,
+                                      const GeneratorTrainingOptions& options,
+                                      const SeedRunner& run) {
   if (samples.groups.empty()) {
     return Error{"there is nothing to train on: diffusion is trained on recordings of pushes"};
   }
-  TrainedDiffusion diffusion;
+  const auto diffusion = std::make_shared<TrainedDiffusion>();
   for (int index = 0; index < options.seeds; ++index) {
-    DiffusionTrainingOptions of_seed = options.diffusion;
-    of_seed.seed += static_cast<uint64_t>(index);
+    const DiffusionTrainingOptions of_seed = OfSeed(options.diffusion, index, options);
     DiffusionTrainer trainer(samples.groups, samples.held_groups, of_seed);
-    if (MaybeError error = RunToEnd(&trainer, KeyOf(samples, of_seed), of_seed.steps, index,
-                                    options, progress, trained)) {
-      return error;
-    }
-    diffusion.members.push_back(trainer.Network());
+    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return *error;
+    diffusion->members.push_back(trainer.Network());
   }
-  trained->networks.of_kind = std::move(diffusion);
-  return std::nullopt;
+  return SharedNetworks(diffusion);
 }
-
-}  // namespace
 
 Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
                                         const GeneratorTrainingOptions& options,
                                         const TrainingProgress& progress) {
   TrainedGenerator trained;
-  trained.networks.settings = samples.settings;
-  const auto train = options.kind == GeneratorKind::kDiffusion ? TrainDiffusion : TrainParticles;
-  if (MaybeError error = train(samples, options, progress, &trained)) return *error;
-  for (int index = 0; index < options.seeds; ++index) {
-    Checkpoint(SeedsCheckpoint(options.checkpoint, index), "", 0.0).Remove();
-  }
+  int index = 0;
+  const SeedRunner run = [&](Trainer* trainer, const std::string& key) {
+    const auto told = [&](TrainingPoint* point) {
+      point->stage = "seed " + std::to_string(index + 1) + ", " + point->stage;
+      if (progress) progress(*point, (index + trainer->ShareDone()) / options.seeds);
+    };
+    const CheckpointOptions checkpoint = {SeedsCheckpoint(options.checkpoint, index),
+                                          options.checkpoint_seconds};
+    const MaybeError error = RunToEnd(trainer, key, checkpoint, told, &trained);
+    ++index;
+    return error;
+  };
+  GeneratorTrainer* train = kGeneratorTrainers[static_cast<size_t>(options.kind)];
+  Result<SharedNetworks> networks = train(samples, options, run);
+  if (!networks.ok()) return networks.error();
+  trained.networks = {samples.settings, std::move(networks.value())};
+  for (int i = 0; i < index; ++i) RemoveCheckpoint(SeedsCheckpoint(options.checkpoint, i));
   return trained;
 }
 

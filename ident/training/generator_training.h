@@ -2,29 +2,23 @@
 // them, with checkpoints. Needs LibTorch (behind models/).
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
 #include "datasets/loading/mocap_folder.h"
 #include "ident/generators/push_particles.h"
-#include "ident/training/restoration_training.h"
-#include "models/generators/diffusion_trainer.h"
-#include "models/generators/particle_trainer.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/training/training_run.h"
 
 namespace pushid {
 
-struct GeneratorTrainingOptions {
+// TrainerOptions::seed is the first network's.
+struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainingOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
-  ParticleTrainingOptions particles;  // of every seed; seed is the first one's
-  DiffusionTrainingOptions diffusion;
-  int seeds = 3;  // networks that are averaged
+  int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
   bool correction =
       true;  // cmu: of the whole forecast at once (models/generators/particle_network.h)
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double ridge_penalty = 1e-2;  // m^2
-  std::string checkpoint;       // file, one per seed beside it; empty: none
-  double checkpoint_seconds = 20.0;
 };
 
 struct GeneratorSamples {
@@ -53,10 +47,9 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 // Options that the data decide: frames of a window, where it starts, controls, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
-struct TrainedGenerator {
+// Stages of the curve are "seed 1, drift", ...
+struct TrainedGenerator : TrainingCourse {
   TrainedNetworks networks;
-  std::vector<TrainingPoint> curve;  // stages "seed 1, drift", ...
-  bool resumed = false;
 };
 
 // Errors: nothing to learn from, a checkpoint that cannot be written. A checkpoint of other data or

@@ -1,14 +1,44 @@
-// ident: samples to tensors, epochs, checkpoints.
+// ident: trainings of restorations, and what `window` and `cvae` learn from.
 #include "ident/training/restoration_training.h"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "ident/training/restoration_training_kinds.h"
-#include "models/restoration/window_features.h"
+#include "datasets/files/content_hash.h"
+#include "ident/bodies/restoration_kinds.h"
+#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {
 namespace {
+
+// A hash of everything the samples hold.
+std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
+  ContentHash hash;
+  const auto add = [&hash](const auto& values) {
+    hash.Add({reinterpret_cast<const char*>(values.data()),
+              static_cast<size_t>(values.size()) * sizeof(double)});
+  };
+  for (const RestorationSample& sample : samples) {
+    add(sample.person().first_pose);
+    for (const auto& q : sample.person().q) add(q);
+    add(sample.person().push.velocity);
+    add(sample.person().push.place);
+    for (const Pose& pose : sample.motion) add(pose);
+  }
+  return hash.Hex();
+}
+
+// What a training depends on.
+std::string KeyOfTraining(const std::vector<RestorationSample>& training,
+                          const std::vector<RestorationSample>& held,
+                          const RestorationTrainingOptions& options) {
+  return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
+         NameOf(options.view) + (options.halves ? " halves " : " whole ") +
+         NameOf(options.mrt_size) + " " + std::to_string(options.effort) + " " +
+         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+}
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
 RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, RestorationView view,
@@ -33,70 +63,119 @@ RegressionSamples WindowSamples(const std::vector<RestorationSample>& samples, R
   return all;
 }
 
+std::vector<CvaeSequence> Sequences(const std::vector<RestorationSample>& samples,
+                                    const CvaeLayout& layout) {
+  std::vector<CvaeSequence> sequences;
+  for (const RestorationSample& sample : samples) {
+    const RestorationInput person = Resampled(sample.person(), 1.0 / kCvaeRate);
+    const BodyMotion motion =
+        Resampled(sample.motion, sample.person().dt, person.dt, static_cast<int>(person.q.size()));
+    BodyFrames frames = FramesOf(person, motion, layout);
+    sequences.push_back(
+        {std::move(frames.lower), std::move(frames.upper), PendulumFrames(person, layout)});
+  }
+  return sequences;
+}
+
+Scaling ScalingOfAll(const std::vector<CvaeSequence>& sequences,
+                     Eigen::MatrixXf CvaeSequence::*part) {
+  Eigen::Index columns = 0, at = 0;
+  for (const CvaeSequence& s : sequences) columns += (s.*part).cols();
+  Eigen::MatrixXf all((sequences.front().*part).rows(), columns);
+  for (const CvaeSequence& s : sequences) {
+    all.middleCols(at, (s.*part).cols()) = s.*part;
+    at += (s.*part).cols();
+  }
+  return ScalingOf(all);
+}
+
+void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
+  for (CvaeSequence& s : *sequences) {
+    s.lower = scalings.lower.Scaled(s.lower);
+    if (scalings.layout.halves) s.upper = scalings.upper.Scaled(s.upper);
+    if (scalings.layout.pendulum) s.pendulum = scalings.pendulum.Scaled(s.pendulum);
+  }
+}
+
 constexpr int kWindowEpochs = 40;
 
-Result<TrainedRestoration> TrainWindow(const std::vector<RestorationSample>& training,
-                                       const std::vector<RestorationSample>& held,
-                                       const RestorationTrainingOptions& options,
-                                       const TrainingProgress& progress) {
-  WindowWeights weights;
-  const RegressionSamples learnt = WindowSamples(training, options.view, &weights.inputs);
-  const RegressionSamples judged = WindowSamples(held, options.view, &weights.inputs);
-  TrainedRestoration trained;
-  const Result<DenseNetwork> network =
-      TrainDense(learnt, judged, kWindowEpochs, KeyOfTraining(training, held, options), options,
-                 progress, &trained);
-  if (!network.ok()) return network.error();
-  (*trained.file.settings)[kViewKey] = NameOf(options.view);
-  AddTensors("inputs", weights.inputs, &trained.file.tensors);
-  AddTensors("network", network.value(), &trained.file.tensors);
-  return trained;
-}
-
 }  // namespace
 
-Result<DenseNetwork> TrainDense(const RegressionSamples& learnt, const RegressionSamples& judged,
-                                int epochs, const std::string& key,
-                                const RestorationTrainingOptions& options,
-                                const TrainingProgress& progress, TrainedRestoration* trained) {
+Result<RestorationTraining> TrainWindow(const std::vector<RestorationSample>& training,
+                                        const std::vector<RestorationSample>& held,
+                                        const RestorationTrainingOptions& options) {
+  Scaling inputs;
+  const RegressionSamples learnt = WindowSamples(training, options.view, &inputs);
+  const RegressionSamples judged = WindowSamples(held, options.view, &inputs);
+  const auto trainer = DenseTrainer(learnt, judged, kWindowEpochs, options);
+  const auto finish = [trainer, inputs, view = options.view](RestorationFile* file) {
+    (*file->settings)[kViewKey] = NameOf(view);
+    AddTensors("inputs", inputs, &file->tensors);
+    AddTensors("network", trainer->Best(), &file->tensors);
+  };
+  return RestorationTraining{trainer, finish};
+}
+
+Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& training,
+                                      const std::vector<RestorationSample>& held,
+                                      const RestorationTrainingOptions& options) {
+  CvaeWeights scalings;
+  scalings.layout = {options.coordinates, options.view == RestorationView::kPendulum,
+                     options.halves};
+  std::vector<CvaeSequence> learnt = Sequences(training, scalings.layout);
+  std::vector<CvaeSequence> judged = Sequences(held, scalings.layout);
+  scalings.lower = ScalingOfAll(learnt, &CvaeSequence::lower);
+  if (scalings.layout.halves) scalings.upper = ScalingOfAll(learnt, &CvaeSequence::upper);
+  if (scalings.layout.pendulum) scalings.pendulum = ScalingOfAll(learnt, &CvaeSequence::pendulum);
+  Scale(scalings, &learnt);
+  Scale(scalings, &judged);
+  CvaeOptions cvae;
+  for (int& steps : cvae.steps) steps = EpochsOf(steps, options);
+  static_cast<TrainerOptions&>(cvae) = options;
+  const auto trainer =
+      std::make_shared<CvaeTrainer>(std::move(learnt), std::move(judged), scalings, cvae);
+  const auto finish = [trainer, options](RestorationFile* file) {
+    file->tensors = ToTensors(trainer->Best());
+    *file->settings = {{kViewKey, NameOf(options.view)},
+                       {kCvaeCoordinatesKey, Name(options.coordinates)},
+                       {kCvaeHalvesKey, options.halves}};
+  };
+  return RestorationTraining{trainer, finish};
+}
+
+int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
+  return std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
+}
+
+std::shared_ptr<RegressionTrainer> DenseTrainer(const RegressionSamples& learnt,
+                                                const RegressionSamples& judged, int epochs,
+                                                const RestorationTrainingOptions& options) {
   RegressionOptions regression;
   regression.epochs = EpochsOf(epochs, options);
-  regression.seed = options.seed;
-  regression.num_threads = options.num_threads;
-  RegressionTrainer trainer(learnt, judged, regression);
-  if (MaybeError error = RunEpochs(&trainer, regression.epochs, key, options, progress, trained)) {
-    return *error;
-  }
-  return trainer.Best();
+  static_cast<TrainerOptions&>(regression) = options;
+  return std::make_shared<RegressionTrainer>(learnt, judged, regression);
 }
-
-namespace {
-
-struct Trainer {
-  RestorationKind kind;
-  Result<TrainedRestoration> (*train)(const std::vector<RestorationSample>& training,
-                                      const std::vector<RestorationSample>& held,
-                                      const RestorationTrainingOptions& options,
-                                      const TrainingProgress& progress);
-};
-
-constexpr Trainer kTrainers[] = {
-    {RestorationKind::kWindow, TrainWindow},
-    {RestorationKind::kCvae, TrainCvae},
-    {RestorationKind::kSimlpe, TrainSimlpe},
-    {RestorationKind::kMrt, TrainMrt},
-};
-
-}  // namespace
 
 Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,
                                             const std::vector<RestorationSample>& held,
                                             const RestorationTrainingOptions& options,
                                             const TrainingProgress& progress) {
-  for (const Trainer& trainer : kTrainers) {
-    if (trainer.kind != options.kind) continue;
-    Result<TrainedRestoration> trained = trainer.train(training, held, options, progress);
-    if (trained.ok()) trained.value().file.kind = options.kind;
+  for (const KindTrainer& row : kRestorationTrainers) {
+    if (row.kind != options.kind) continue;
+    const Result<RestorationTraining> of_kind = row.train(training, held, options);
+    if (!of_kind.ok()) return of_kind.error();
+    Trainer* trainer = of_kind.value().trainer.get();
+    TrainedRestoration trained;
+    const auto told = [&](TrainingPoint* point) {
+      if (progress) progress(*point, trainer->ShareDone());
+    };
+    if (MaybeError error =
+            RunToEnd(trainer, KeyOfTraining(training, held, options), options, told, &trained)) {
+      return *error;
+    }
+    RemoveCheckpoint(options.checkpoint);
+    trained.file.kind = options.kind;
+    of_kind.value().finish(&trained.file);
     return trained;
   }
   return Error{std::string("--kind is '") + Name(options.kind) +

@@ -2,39 +2,44 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_data.h"
+#include "ident/training/training_run.h"
+#include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_features.h"
-#include "models/restoration/mrt_network.h"
 #include "models/restoration/regression_trainer.h"
-#include "models/restoration/restoration_view.h"
+#include "models/restoration/restoration.h"
 
 namespace pushid {
 
-struct RestorationTrainingOptions {
+struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   RestorationKind kind = RestorationKind::kWindow;
   RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
   bool halves = true;                                   // of kCvae: lower, then upper body
   MrtSize mrt_size = MrtSize::kSmall;                   // of kMrt
   double effort = 1.0;                                  // multiplies the number of steps
-  uint64_t seed = 1;
-  int num_threads = 1;
-  std::string checkpoint;            // file; empty: none
-  double checkpoint_seconds = 20.0;  // between two
 };
 
-// done: share of all steps, 0 .. 1.
-using TrainingProgress = std::function<void(const TrainingPoint& point, double done)>;
-
-struct TrainedRestoration {
+struct TrainedRestoration : TrainingCourse {
   RestorationFile file;
-  std::vector<TrainingPoint> curve;
-  bool resumed = false;
 };
+
+// What a kind's own function returns (ident/bodies/restoration_kinds.h).
+struct RestorationTraining {
+  std::shared_ptr<Trainer> trainer;
+  std::function<void(RestorationFile* file)> finish;  // settings and tensors of the trained
+};
+// `epochs` times the options' effort.
+int EpochsOf(int epochs, const RestorationTrainingOptions& options);
+// A dense network trained on these samples.
+std::shared_ptr<RegressionTrainer> DenseTrainer(const RegressionSamples& learnt,
+                                                const RegressionSamples& judged, int epochs,
+                                                const RestorationTrainingOptions& options);
 
 // training, held: samples to learn from and to stop early by. Errors: a kind without training, a
 // checkpoint that cannot be written. A checkpoint of other data or options is not used.

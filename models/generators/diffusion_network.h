@@ -22,7 +22,7 @@
 
 #include "models/enum_names.h"
 #include "models/generators/diffusion_features.h"
-#include "models/restoration/tensors.h"
+#include "models/restoration/dense_network.h"
 
 namespace pushid {
 

@@ -1,5 +1,4 @@
-// models: training of the diffusion network, with LibTorch behind it and nothing of LibTorch in
-// front; used as particle_trainer.h is.
+// models: training of the diffusion network.
 //
 // A step takes some groups, each in the mirror or not, a little turned, larger or smaller, shows
 // some of the first frames or none, adds noise of a random time t, and charges the estimate of x_0:
@@ -12,19 +11,18 @@
 // cosine, gradients clipped; what is used is the exponential mean of the weights.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "models/generators/diffusion_network.h"
-#include "models/restoration/regression_trainer.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 
 using ObservedGroup = std::vector<ObservedMotion>;  // all frames of everybody
 
-struct DiffusionTrainingOptions {
+struct DiffusionTrainingOptions : TrainerOptions {
   DiffusionStructure structure;
   int steps = 1500;
   int groups = 8;         // of a step
@@ -39,30 +37,25 @@ struct DiffusionTrainingOptions {
   double turn = 0.12;        // rad, largest
   double size = 0.05;        // share, largest
   double dt = 1.0 / 60.0;    // s
-  uint64_t seed = 1;
-  int num_threads = 1;
 };
 
 inline constexpr int kDiffusionRound = 50;  // steps of a point of the curve
 
-class DiffusionTrainer {
+class DiffusionTrainer : public Trainer {
  public:
   DiffusionTrainer(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
                    const DiffusionTrainingOptions& options);
-  ~DiffusionTrainer();
-  DiffusionTrainer(const DiffusionTrainer&) = delete;
-  DiffusionTrainer& operator=(const DiffusionTrainer&) = delete;
+  ~DiffusionTrainer() override;
 
-  bool Done() const;
+  bool Done() const override;
   // Mean losses of some steps; of the held groups, always in the same noise, at the end.
-  TrainingPoint RunRound();
+  TrainingPoint RunRound() override;
+  double ShareDone() const override;
+  std::string State() const override;
+  bool Resume(const std::string& state) override;
   DiffusionNetwork Network() const;  // of the mean weights
   // What LibTorch estimates from this noisy motion; for comparison with GroupDenoiser.
   Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy, double t);
-
-  std::string State() const;
-  // False when the state is not one of this training.
-  bool Resume(const std::string& state);
 
  private:
   struct Torch;

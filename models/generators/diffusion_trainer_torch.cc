@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "models/generators/diffusion_batches_torch.h"
-#include "models/generators/diffusion_schedule.h"
+#include "models/generators/diffusion_generator.h"
 #include "models/generators/diffusion_trainer.h"
 
 namespace pushid {
@@ -48,6 +48,14 @@ struct DiffusionTrainer::Torch {
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
   std::unique_ptr<torch::optim::AdamW> optimizer;
   int step = 0;
+
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    fields->Part("module", module.get());
+    fields->Part("mean", mean.get());
+    fields->Part("optimizer", optimizer.get());
+    fields->Numbers("step", &step);
+  }
 
   // time: [person].
   torch::Tensor Estimate(DiffusionModule* of, const torch::Tensor& noisy, const torch::Tensor& time,
@@ -95,10 +103,7 @@ struct DiffusionTrainer::Torch {
     const torch::Tensor loss = Loss(Estimate(module.get(), noisy, time, batch), batch);
     SetLearningRate(optimizer.get(),
                     options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up));
-    optimizer->zero_grad();
-    loss.backward();
-    torch::nn::utils::clip_grad_norm_(module->parameters(), options.clip);
-    optimizer->step();
+    Improve(optimizer.get(), loss, module->parameters(), options.clip);
     Average();
     return loss.item<double>();
   }
@@ -130,16 +135,12 @@ struct DiffusionTrainer::Torch {
 DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
                                    const std::vector<ObservedGroup>& held,
                                    const DiffusionTrainingOptions& options) {
-  torch::set_num_threads(options.num_threads);
-  torch::manual_seed(options.seed);
+  StartTraining(options);
   torch_ = std::make_unique<Torch>(learnt, held, options);
   Torch& t = *torch_;
   t.module = std::make_shared<DiffusionModule>(options.structure, options.dropout);
   t.mean = std::make_shared<DiffusionModule>(options.structure, options.dropout);
-  torch::NoGradGuard no_grad;
-  const auto now = t.module->parameters();
-  const auto means = t.mean->parameters();
-  for (size_t i = 0; i < now.size(); ++i) means[i].copy_(now[i]);
+  CopyWeights(*t.module, t.mean.get());
   t.mean->eval();
   t.optimizer = std::make_unique<torch::optim::AdamW>(
       t.module->parameters(),
@@ -149,6 +150,10 @@ DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
 DiffusionTrainer::~DiffusionTrainer() = default;
 
 bool DiffusionTrainer::Done() const { return torch_->step >= torch_->options.steps; }
+
+double DiffusionTrainer::ShareDone() const {
+  return static_cast<double>(torch_->step) / torch_->options.steps;
+}
 
 TrainingPoint DiffusionTrainer::RunRound() {
   Torch& t = *torch_;
@@ -174,22 +179,8 @@ Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
   return ToMatrix(estimate.narrow(2, 0, frames).transpose(1, 2).flatten(0, 1)).transpose();
 }
 
-std::string DiffusionTrainer::State() const {
-  torch::serialize::OutputArchive archive;
-  WritePart("module", *torch_->module, &archive);
-  WritePart("mean", *torch_->mean, &archive);
-  WritePart("optimizer", *torch_->optimizer, &archive);
-  WriteProgress(torch_->step, &archive);
-  return Archived(archive);
-}
+std::string DiffusionTrainer::State() const { return StateOf(torch_.get()); }
 
-bool DiffusionTrainer::Resume(const std::string& state) {
-  return Unarchived(state, [this](torch::serialize::InputArchive* archive) {
-    ReadPart("module", archive, torch_->module.get());
-    ReadPart("mean", archive, torch_->mean.get());
-    ReadPart("optimizer", archive, torch_->optimizer.get());
-    torch_->step = ReadProgress(archive);
-  });
-}
+bool DiffusionTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

@@ -10,16 +10,10 @@
 
 #include <vector>
 
-#include "models/enum_names.h"
 #include "models/normal_source.h"
 #include "models/particles.h"
 
 namespace pushid {
-
-enum class GeneratorKind { kParticles, kDiffusion };
-constexpr EnumNames<GeneratorKind, 2> Names(GeneratorKind) {
-  return {{{"particles", GeneratorKind::kParticles}, {"diffusion", GeneratorKind::kDiffusion}}};
-}
 
 // What is seen of a person, and what acts on them.
 struct ObservedMotion {

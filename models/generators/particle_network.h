@@ -30,7 +30,7 @@
 
 #include "models/enum_names.h"
 #include "models/generators/motion_generator.h"
-#include "models/restoration/tensors.h"
+#include "models/restoration/dense_network.h"
 
 namespace pushid {
 

@@ -1,8 +1,4 @@
-// models: training of particles, with LibTorch behind it and nothing of LibTorch in front.
-//
-//   ParticleTrainer trainer(layout, learnt, held, options);
-//   while (!trainer.Done()) Show(trainer.RunRound());
-//   Use(trainer.Network());
+// models: training of particles.
 //
 // The drift first: windows of observed and forecast frames, own output fed back in the forecast,
 // mean distance of joints with frame t weighing 1/t. Then the noise, with the drift as it is: the
@@ -11,13 +7,12 @@
 // say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "models/generators/particle_network.h"
-#include "models/restoration/regression_trainer.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 
@@ -35,7 +30,7 @@ struct LearntParticles {
   Eigen::MatrixXf controls = {};
 };
 
-struct ParticleTrainingOptions {
+struct ParticleTrainingOptions : TrainerOptions {
   ParticleStructure structure;
   int observed = 25, predicted = 25;  // frames of a window
   bool from_start = false;   // windows begin where the motion does, and may be longer than it
@@ -52,31 +47,26 @@ struct ParticleTrainingOptions {
   double critic = 0.0;    // of a Wasserstein critic with gradient penalty (Eq. 12)
   NoiseLoss noise_loss = NoiseLoss::kLikelihood;
   std::vector<float> mirrored_controls;  // the sign of each control in the mirror
-  uint64_t seed = 1;
-  int num_threads = 1;
 };
 
 inline constexpr int kParticleRound = 50;   // steps of a point of the curve
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
 
-class ParticleTrainer {
+class ParticleTrainer : public Trainer {
  public:
   ParticleTrainer(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
                   const std::vector<LearntParticles>& held, const ParticleTrainingOptions& options);
-  ~ParticleTrainer();
-  ParticleTrainer(const ParticleTrainer&) = delete;
-  ParticleTrainer& operator=(const ParticleTrainer&) = delete;
+  ~ParticleTrainer() override;
 
-  bool Done() const;
+  bool Done() const override;
   // Mean losses of some steps; of the held windows (fixed, not jittered) at the end.
-  TrainingPoint RunRound();
+  TrainingPoint RunRound() override;
+  double ShareDone() const override;
+  std::string State() const override;
+  bool Resume(const std::string& state) override;
   ParticleNetwork Network() const;
   // What LibTorch forecasts without noise; for comparison with ParticleRollout.
   Trajectories Forecast(const ObservedMotion& person, int frames) const;
-
-  std::string State() const;
-  // False when the state is not one of this training.
-  bool Resume(const std::string& state);
 
  private:
   struct Torch;

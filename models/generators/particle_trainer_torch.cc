@@ -41,6 +41,18 @@ struct ParticleTrainer::Torch {
   std::unique_ptr<torch::optim::AdamW> drift, noise, critics;
   int step = 0;
 
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    fields->Part("module", module.get());
+    fields->Part("drift", drift.get());
+    fields->Part("noise", noise.get());
+    if (critic) {
+      fields->Part("critic", critic.get());
+      fields->Part("critics", critics.get());
+    }
+    fields->Numbers("step", &step);
+  }
+
   int AllSteps() const { return options.steps + options.noise_steps; }
   bool InDrift() const { return step < options.steps; }
   bool Done() const { return step >= AllSteps(); }
@@ -66,13 +78,10 @@ struct ParticleTrainer::Torch {
     return (charge * share).sum() / share.sum();
   }
 
-  void Improve(torch::optim::AdamW* optimizer, const std::vector<torch::Tensor>& parameters,
-               const torch::Tensor& loss, double rate) {
+  void ImproveAt(double rate, torch::optim::AdamW* optimizer,
+                 const std::vector<torch::Tensor>& parameters, const torch::Tensor& loss) {
     SetLearningRate(optimizer, rate);
-    optimizer->zero_grad();
-    loss.backward();
-    torch::nn::utils::clip_grad_norm_(parameters, options.clip);
-    optimizer->step();
+    Improve(optimizer, loss, parameters, options.clip);
   }
 
   double DriftStep() {
@@ -89,19 +98,19 @@ struct ParticleTrainer::Torch {
       const torch::Tensor made = critic->Features(forecast, last);
       const torch::Tensor real =
           critic->Features(batch.frames.narrow(1, options.observed, options.predicted), last);
-      Improve(critics.get(), critic->parameters(), critic->Loss(made.detach(), real), rate);
+      ImproveAt(rate, critics.get(), critic->parameters(), critic->Loss(made.detach(), real));
       loss = loss - options.critic * critic->Score(made);
     }
-    Improve(drift.get(), module->DriftParameters(), kLossUnits * loss, rate);
+    ImproveAt(rate, drift.get(), module->DriftParameters(), kLossUnits * loss);
     return shown;
   }
 
   double NoiseStep() {
     const ParticleBatch batch = windows.Draw();
     const torch::Tensor loss = NoiseLossOf(batch, Jitter(batch));
-    Improve(noise.get(), module->NoiseParameters(), loss,
-            options.learning_rate *
-                RateShareToZero(step - options.steps, options.noise_steps, options.warm_up));
+    const double share =
+        RateShareToZero(step - options.steps, options.noise_steps, options.warm_up);
+    ImproveAt(options.learning_rate * share, noise.get(), module->NoiseParameters(), loss);
     return loss.item<double>();
   }
 
@@ -137,8 +146,7 @@ ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
                                  const std::vector<LearntParticles>& learnt,
                                  const std::vector<LearntParticles>& held,
                                  const ParticleTrainingOptions& options) {
-  torch::set_num_threads(options.num_threads);
-  torch::manual_seed(options.seed);
+  StartTraining(options);
   torch_ = std::make_unique<Torch>(layout, learnt, held, options);
   Torch& t = *torch_;
   t.module = std::make_shared<ParticleModule>(t.statistics);
@@ -153,6 +161,10 @@ ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
 ParticleTrainer::~ParticleTrainer() = default;
 
 bool ParticleTrainer::Done() const { return torch_->Done(); }
+
+double ParticleTrainer::ShareDone() const {
+  return static_cast<double>(torch_->step) / torch_->AllSteps();
+}
 
 TrainingPoint ParticleTrainer::RunRound() {
   Torch& t = *torch_;
@@ -179,30 +191,8 @@ Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames)
   return ToMatrix(forecast.squeeze(0)).transpose();
 }
 
-std::string ParticleTrainer::State() const {
-  torch::serialize::OutputArchive archive;
-  WritePart("module", *torch_->module, &archive);
-  WritePart("drift", *torch_->drift, &archive);
-  WritePart("noise", *torch_->noise, &archive);
-  if (torch_->critic) {
-    WritePart("critic", *torch_->critic, &archive);
-    WritePart("critics", *torch_->critics, &archive);
-  }
-  WriteProgress(torch_->step, &archive);
-  return Archived(archive);
-}
+std::string ParticleTrainer::State() const { return StateOf(torch_.get()); }
 
-bool ParticleTrainer::Resume(const std::string& state) {
-  return Unarchived(state, [this](torch::serialize::InputArchive* archive) {
-    ReadPart("module", archive, torch_->module.get());
-    ReadPart("drift", archive, torch_->drift.get());
-    ReadPart("noise", archive, torch_->noise.get());
-    if (torch_->critic) {
-      ReadPart("critic", archive, torch_->critic.get());
-      ReadPart("critics", archive, torch_->critics.get());
-    }
-    torch_->step = ReadProgress(archive);
-  });
-}
+bool ParticleTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

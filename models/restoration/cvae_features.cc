@@ -6,7 +6,6 @@
 #include <iterator>
 #include <numeric>
 
-#include "models/restoration/rotations.h"
 #include "models/restoration/skeleton_fit.h"
 
 namespace pushid {

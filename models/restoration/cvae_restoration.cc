@@ -61,4 +61,146 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
   return motions;
 }
 
+namespace {
+
+Eigen::MatrixXf Stacked(const Eigen::MatrixXf& above, const Eigen::MatrixXf& below) {
+  Eigen::MatrixXf both(above.rows() + below.rows(), above.cols());
+  both << above, below;
+  return both;
+}
+
+Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
+  Eigen::MatrixXf out(layer.weights.rows(), inputs.cols());
+  out.noalias() = layer.weights * inputs;
+  out.colwise() += layer.bias;
+  return out;
+}
+
+// Sum over the experts of share x output.
+Eigen::MatrixXf Blend(const DenseLayer& experts, const Eigen::MatrixXf& inputs,
+                      const Eigen::MatrixXf& shares) {
+  const Eigen::MatrixXf all = Apply(experts, inputs);
+  const Eigen::Index rows = all.rows() / kExperts;
+  Eigen::MatrixXf mixed = Eigen::MatrixXf::Zero(rows, inputs.cols());
+  for (int e = 0; e < kExperts; ++e) {
+    mixed.array() += all.middleRows(e * rows, rows).array().rowwise() * shares.row(e).array();
+  }
+  return mixed;
+}
+
+// e^x over the sum, column by column.
+Eigen::MatrixXf Softmax(const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf shares = values.rowwise() - values.colwise().maxCoeff();
+  shares = shares.array().exp();
+  const Eigen::RowVectorXf sums = shares.colwise().sum();
+  shares.array().rowwise() /= sums.array();
+  return shares;
+}
+
+void AddSampler(const std::string& name, const CvaeSampler& sampler, TensorList* tensors) {
+  AddTensors(name + ".first", sampler.first, tensors);
+  AddTensors(name + ".second", sampler.second, tensors);
+  AddTensors(name + ".mean", sampler.mean, tensors);
+}
+
+void AddDecoder(const std::string& name, const CvaeDecoder& decoder, TensorList* tensors) {
+  AddTensors(name + ".gate", decoder.gate, tensors);
+  AddTensors(name + ".first", decoder.first, tensors);
+  AddTensors(name + ".second", decoder.second, tensors);
+  AddTensors(name + ".last", decoder.last, tensors);
+}
+
+// The next frame by the sampler, or the mean over draws of z where there is no pendulum.
+Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder,
+                          const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
+                          const Eigen::MatrixXf& draws) {
+  if (pendulum.rows() > 0)
+    return decoder.Evaluate(sampler.Evaluate(condition, pendulum), condition);
+  Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
+  for (Eigen::Index k = 1; k < draws.cols(); ++k) {
+    sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
+  }
+  return sum / static_cast<float>(draws.cols());
+}
+
+CvaeSampler TakeSampler(const std::string& name, int condition, TensorReader* reader) {
+  return {TakeLayer(name + ".first", condition + kPendulumFrame, kCvaeHidden, reader),
+          TakeLayer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, reader),
+          TakeLayer(name + ".mean", kCvaeHidden + kPendulumFrame, kLatent, reader)};
+}
+
+CvaeDecoder TakeDecoder(const std::string& name, int condition, int frame, TensorReader* reader) {
+  return {TakeNetwork(name + ".gate", 3, kLatent + condition, kExperts, reader),
+          TakeLayer(name + ".first", kLatent + condition, kExperts * kCvaeHidden, reader),
+          TakeLayer(name + ".second", kLatent + kCvaeHidden, kExperts * kCvaeHidden, reader),
+          TakeLayer(name + ".last", kLatent + kCvaeHidden, kExperts * frame, reader)};
+}
+
+}  // namespace
+
+Eigen::MatrixXf CvaeSampler::Evaluate(const Eigen::MatrixXf& condition,
+                                      const Eigen::MatrixXf& pendulum) const {
+  Eigen::MatrixXf hidden = Apply(first, Stacked(condition, pendulum));
+  ApplyElu(&hidden);
+  hidden = Apply(second, Stacked(hidden, pendulum));
+  ApplyElu(&hidden);
+  return Apply(mean, Stacked(hidden, pendulum));
+}
+
+Eigen::MatrixXf CvaeDecoder::Evaluate(const Eigen::MatrixXf& z,
+                                      const Eigen::MatrixXf& condition) const {
+  const Eigen::MatrixXf inputs = Stacked(z, condition);
+  const Eigen::MatrixXf shares = Softmax(gate.Evaluate(inputs));
+  Eigen::MatrixXf hidden = Blend(first, inputs, shares);
+  ApplyElu(&hidden);
+  hidden = Blend(second, Stacked(z, hidden), shares);
+  ApplyElu(&hidden);
+  return Blend(last, Stacked(z, hidden), shares);
+}
+
+void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
+               const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower) {
+  *lower = NextFrame(weights.lower_sampler, weights.lower_decoder, *lower, pendulum, draws);
+}
+
+void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
+               const Eigen::MatrixXf& draws, const Eigen::MatrixXf& lower, Eigen::MatrixXf* upper) {
+  if (!weights.layout.halves) return;
+  const Eigen::MatrixXf condition =
+      Stacked(*upper, lower.middleRows(3, weights.layout.LowerPositions()));
+  *upper = NextFrame(weights.upper_sampler, weights.upper_decoder, condition, pendulum, draws);
+}
+
+TensorList ToTensors(const CvaeWeights& weights) {
+  const CvaeLayout& layout = weights.layout;
+  TensorList tensors;
+  AddTensors("lower", weights.lower, &tensors);
+  if (layout.halves) AddTensors("upper", weights.upper, &tensors);
+  if (layout.pendulum) {
+    AddTensors("pendulum", weights.pendulum, &tensors);
+    AddSampler("lower_sampler", weights.lower_sampler, &tensors);
+    if (layout.halves) AddSampler("upper_sampler", weights.upper_sampler, &tensors);
+  }
+  AddDecoder("lower_decoder", weights.lower_decoder, &tensors);
+  if (layout.halves) AddDecoder("upper_decoder", weights.upper_decoder, &tensors);
+  return tensors;
+}
+
+CvaeWeights TakeCvae(const CvaeLayout& layout, TensorReader* reader) {
+  const int lower = layout.LowerFrame(), condition = layout.UpperCondition();
+  CvaeWeights weights;
+  weights.layout = layout;
+  weights.lower = TakeScaling("lower", lower, reader);
+  weights.lower_decoder = TakeDecoder("lower_decoder", lower, lower, reader);
+  if (layout.pendulum) {
+    weights.pendulum = TakeScaling("pendulum", kPendulumFrame, reader);
+    weights.lower_sampler = TakeSampler("lower_sampler", lower, reader);
+  }
+  if (!layout.halves) return weights;
+  weights.upper = TakeScaling("upper", layout.UpperFrame(), reader);
+  weights.upper_decoder = TakeDecoder("upper_decoder", condition, layout.UpperFrame(), reader);
+  if (layout.pendulum) weights.upper_sampler = TakeSampler("upper_sampler", condition, reader);
+  return weights;
+}
+
 }  // namespace pushid

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kTeacher = 0.14, kRamp = 0.14;  // shares of a stage's steps
 constexpr double kStandingSpeed = 0.15;          // m/s: slower true ankles should stand
+
 Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest) {
   Tensor all = torch::zeros({static_cast<int64_t>(parts.size()), longest, parts[0]->rows()});
   for (size_t i = 0; i < parts.size(); ++i) {
@@ -49,8 +50,7 @@ void CvaeStages::StartStage() {
     PredictLower(&held);
   }
   optimizer = std::make_unique<torch::optim::AdamW>(
-      Sampler() ? Half().sampler->parameters() : Half().AutoencoderParameters(),
-      torch::optim::AdamWOptions(options.learning_rate).weight_decay(1e-4));
+      Trained(), torch::optim::AdamWOptions(options.learning_rate).weight_decay(1e-4));
   step = 0;
   rollout_left = 0;
   best_loss = kWorstCvaeLoss;
@@ -58,10 +58,7 @@ void CvaeStages::StartStage() {
 
 // Takes the best weights of the stage that ended and goes on to the next.
 void CvaeStages::FinishStage() {
-  torch::NoGradGuard no_grad;
-  const auto& best = Upper() ? best_upper : best_lower;
-  const std::vector<Tensor> from = best->parameters(), to = Half().parameters();
-  for (size_t i = 0; i < to.size(); ++i) to[i].copy_(from[i]);
+  CopyWeights(Upper() ? *best_upper : *best_lower, &Half());
   do ++stage;
   while (stage < 4 && !Has(stage));
 }
@@ -145,11 +142,7 @@ double CvaeStages::Step() {
   Tensor output;
   const Tensor loss = Sampler() ? SamplerLoss(next, condition, pendulum, before, &output)
                                 : AutoencoderLoss(next, condition, &output);
-  optimizer->zero_grad();
-  loss.backward();
-  torch::nn::utils::clip_grad_norm_(
-      Sampler() ? Half().sampler->parameters() : Half().AutoencoderParameters(), 1.0);
-  optimizer->step();
+  Improve(optimizer.get(), loss, Trained(), 1.0);
   const double own = std::clamp((done - kTeacher) / kRamp, 0.0, 1.0);
   const Tensor take = (torch::rand({options.batch, 1}) < own).to(torch::kFloat32);
   state = (take * output.detach() + (1.0 - take) * next).clamp(-kLargestScaled, kLargestScaled);

@@ -1,4 +1,4 @@
-// models: training of LDP's chain, with LibTorch behind it and nothing of LibTorch in front.
+// models: training of LDP's chain.
 //
 // Four stages (those that the layout has), one after the other: the lower autoencoder, its sampler,
 // the upper autoencoder (on lower positions that the finished lower chain predicts), its sampler.
@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "models/restoration/cvae_networks.h"
-#include "models/restoration/regression_trainer.h"  // TrainingPoint
+#include "models/restoration/cvae_restoration.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 
@@ -30,7 +30,7 @@ struct CvaeSequence {
   Eigen::MatrixXf lower, upper, pendulum;
 };
 
-struct CvaeOptions {
+struct CvaeOptions : TrainerOptions {
   std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages, where they are
   int rollout = 8, sampler_rollout = 16;                  // frames
   int batch = 64;
@@ -38,28 +38,23 @@ struct CvaeOptions {
   double learning_rate = 1e-3;
   double kl_weight = 0.005;
   double skate_weight = 0.1;
-  uint64_t seed = 1;
-  int num_threads = 1;
 };
 
-class CvaeTrainer {
+class CvaeTrainer : public Trainer {
  public:
   // scalings: the layout, and for the foot skate, which is in m; they become part of Best().
   CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
               const CvaeWeights& scalings, const CvaeOptions& options);
-  ~CvaeTrainer();
-  CvaeTrainer(const CvaeTrainer&) = delete;
-  CvaeTrainer& operator=(const CvaeTrainer&) = delete;
+  ~CvaeTrainer() override;
 
-  bool Done() const;
-  double ShareDone() const;
+  bool Done() const override;
+  double ShareDone() const override;
   // The held-out loss is the mean error of the joint positions, m, of whole sequences predicted
   // from their first frame: of autoencoders with the encoder's z, of samplers with their own.
-  TrainingPoint RunRound();
+  TrainingPoint RunRound() override;
+  std::string State() const override;
+  bool Resume(const std::string& state) override;
   CvaeWeights Best() const;
-
-  std::string State() const;
-  bool Resume(const std::string& state);
 
   // Of the four stages' networks: 865536, 136960, 1097904, 159232; 0 of stages that are not.
   std::array<int64_t, 4> NumParameters() const;

@@ -12,13 +12,37 @@ const char* const kStageNames[4] = {"lower autoencoder", "lower sampler", "upper
 
 }  // namespace
 
-struct CvaeTrainer::Torch : CvaeStages {};
+struct CvaeTrainer::Torch : CvaeStages {
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    fields->Part("lower", lower.get());
+    fields->Part("best_lower", best_lower.get());
+    if (upper) {
+      fields->Part("upper", upper.get());
+      fields->Part("best_upper", best_upper.get());
+    }
+    int of_stage = stage, of_step = step;
+    double loss = best_loss;
+    int64_t column = at, left = rollout_left;
+    fields->Numbers("counts", &of_stage, &of_step, &rounds, &loss, &column, &left);
+    if (Fields::kReads) {  // the stage first, with its optimizer; then how far it is
+      stage = of_stage;
+      if (stage == 3) PredictLower(&training), PredictLower(&held);
+      if (stage < 4) StartStage();
+      step = of_step, best_loss = loss, at = column, rollout_left = left;
+    }
+    fields->Part("optimizer", optimizer.get());
+    if (rollout_left == 0) return;
+    fields->Tensor("rows", &rows);
+    fields->Tensor("first", &first);
+    fields->Tensor("state", &state);
+  }
+};
 
 CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
                          const CvaeWeights& scalings, const CvaeOptions& options)
     : torch_(std::make_unique<Torch>()) {
-  torch::set_num_threads(options.num_threads);
-  torch::manual_seed(options.seed);
+  StartTraining(options);
   Torch& t = *torch_;
   t.options = options;
   t.scalings = scalings;
@@ -61,11 +85,8 @@ TrainingPoint CvaeTrainer::RunRound() {
   TrainingPoint point = {++t.rounds, sum / std::max(1, steps), t.HeldLoss(), kStageNames[t.stage]};
   // Best of the part in which the network goes on from its own frames.
   if (point.validation_loss < t.best_loss && t.step >= t.Steps(t.stage) / 2) {
-    torch::NoGradGuard no_grad;
     t.best_loss = point.validation_loss;
-    const std::vector<Tensor> from = t.Half().parameters();
-    const std::vector<Tensor> to = (t.Upper() ? t.best_upper : t.best_lower)->parameters();
-    for (size_t i = 0; i < to.size(); ++i) to[i].copy_(from[i]);
+    CopyWeights(t.Half(), (t.Upper() ? t.best_upper : t.best_lower).get());
   }
   if (t.step >= t.Steps(t.stage)) {
     t.FinishStage();
@@ -86,73 +107,17 @@ CvaeWeights CvaeTrainer::Best() const {
 }
 
 std::array<int64_t, 4> CvaeTrainer::NumParameters() const {
-  const auto count = [](const std::vector<Tensor>& parameters) {
-    int64_t sum = 0;
-    for (const Tensor& p : parameters) sum += p.numel();
-    return sum;
-  };
   std::array<int64_t, 4> all = {};
   for (int i = 0; i < 4; ++i) {
     if (!torch_->Has(i)) continue;
     const HalfModule& half = i < 2 ? *torch_->lower : *torch_->upper;
-    all[i] = count(i % 2 == 0 ? half.AutoencoderParameters() : half.sampler->parameters());
+    all[i] = NumNumbers(i % 2 == 0 ? half.AutoencoderParameters() : half.sampler->parameters());
   }
   return all;
 }
 
-std::string CvaeTrainer::State() const {
-  const Torch& t = *torch_;
-  torch::serialize::OutputArchive archive;
-  WritePart("lower", *t.lower, &archive);
-  WritePart("best_lower", *t.best_lower, &archive);
-  if (t.upper) {
-    WritePart("upper", *t.upper, &archive);
-    WritePart("best_upper", *t.best_upper, &archive);
-  }
-  WritePart("optimizer", *t.optimizer, &archive);
-  archive.write("counts",
-                torch::tensor({static_cast<double>(t.stage), static_cast<double>(t.step),
-                               static_cast<double>(t.rounds), t.best_loss,
-                               static_cast<double>(t.at), static_cast<double>(t.rollout_left)},
-                              torch::kFloat64));
-  if (t.rollout_left > 0) {
-    archive.write("rows", t.rows), archive.write("first", t.first), archive.write("state", t.state);
-  }
-  archive.write("random", at::detail::getDefaultCPUGenerator().get_state());
-  return Archived(archive);
-}
+std::string CvaeTrainer::State() const { return StateOf(torch_.get()); }
 
-bool CvaeTrainer::Resume(const std::string& state) {
-  Torch& t = *torch_;
-  return Unarchived(state, [&t](torch::serialize::InputArchive* archive) {
-    Tensor counts, random;
-    archive->read("counts", counts);
-    archive->read("random", random);
-    ReadPart("lower", archive, t.lower.get());
-    ReadPart("best_lower", archive, t.best_lower.get());
-    if (t.upper) {
-      ReadPart("upper", archive, t.upper.get());
-      ReadPart("best_upper", archive, t.best_upper.get());
-    }
-    t.stage = static_cast<int>(counts[0].item<double>());
-    if (t.stage > 2 && t.stage < 4) {
-      t.PredictLower(&t.training);
-      t.PredictLower(&t.held);
-    }
-    if (t.stage < 4) t.StartStage();
-    ReadPart("optimizer", archive, t.optimizer.get());
-    t.step = static_cast<int>(counts[1].item<double>());
-    t.rounds = static_cast<int>(counts[2].item<double>());
-    t.best_loss = counts[3].item<double>();
-    t.at = static_cast<int64_t>(counts[4].item<double>());
-    t.rollout_left = static_cast<int64_t>(counts[5].item<double>());
-    if (t.rollout_left > 0) {
-      archive->read("rows", t.rows), archive->read("first", t.first);
-      archive->read("state", t.state);
-    }
-    auto generator = at::detail::getDefaultCPUGenerator();
-    generator.set_state(random);
-  });
-}
+bool CvaeTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

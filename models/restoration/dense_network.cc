@@ -1,6 +1,7 @@
 // models: forward through dense layers.
 #include "models/restoration/dense_network.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pushid {
@@ -49,6 +50,69 @@ Scaling ScalingOf(const Eigen::MatrixXf& values, float smallest) {
       (wide.colwise() - mean).rowwise().squaredNorm() / std::max<double>(1.0, wide.cols() - 1.0);
   scaling.mean = mean.cast<float>();
   scaling.spread = variance.cwiseSqrt().cast<float>().cwiseMax(smallest);
+  return scaling;
+}
+
+Eigen::MatrixXf TensorReader::Take(const std::string& name, int rows, int columns) {
+  const Eigen::MatrixXf nothing = Eigen::MatrixXf::Zero(std::max(rows, 1), std::max(columns, 1));
+  for (const NamedTensor& tensor : tensors_) {
+    if (tensor.name != name) continue;
+    const Eigen::MatrixXf& values = tensor.values;
+    if ((rows >= 0 && values.rows() != rows) || (columns >= 0 && values.cols() != columns)) {
+      Fail("the tensor " + name + " is " + std::to_string(values.rows()) + " x " +
+           std::to_string(values.cols()) + ", not " + std::to_string(rows) + " x " +
+           std::to_string(columns));
+      return nothing;
+    }
+    if (!values.allFinite()) Fail("the tensor " + name + " has entries that are not numbers");
+    return values;
+  }
+  Fail("the tensor " + name + " is missing");
+  return nothing;
+}
+
+void AddTensors(const std::string& name, const DenseLayer& layer, TensorList* tensors) {
+  tensors->push_back({name + ".weights", layer.weights});
+  tensors->push_back({name + ".bias", layer.bias});
+}
+
+void AddTensors(const std::string& name, const DenseNetwork& network, TensorList* tensors) {
+  for (size_t i = 0; i < network.layers.size(); ++i) {
+    AddTensors(name + "." + std::to_string(i), network.layers[i], tensors);
+  }
+}
+
+void AddTensors(const std::string& name, const Scaling& scaling, TensorList* tensors) {
+  tensors->push_back({name + ".mean", scaling.mean});
+  tensors->push_back({name + ".spread", scaling.spread});
+}
+
+DenseLayer TakeLayer(const std::string& name, int inputs, int outputs, TensorReader* reader) {
+  DenseLayer layer;
+  layer.weights = reader->Take(name + ".weights", outputs, inputs);
+  layer.bias = reader->Take(name + ".bias", static_cast<int>(layer.weights.rows()), 1);
+  return layer;
+}
+
+DenseNetwork TakeNetwork(const std::string& name, int layers, int inputs, int outputs,
+                         TensorReader* reader) {
+  DenseNetwork network;
+  int width = inputs;
+  for (int i = 0; i < layers; ++i) {
+    const int next = i + 1 == layers ? outputs : -1;
+    network.layers.push_back(TakeLayer(name + "." + std::to_string(i), width, next, reader));
+    width = static_cast<int>(network.layers.back().weights.rows());
+  }
+  return network;
+}
+
+Scaling TakeScaling(const std::string& name, int rows, TensorReader* reader) {
+  Scaling scaling;
+  scaling.mean = reader->Take(name + ".mean", rows, 1);
+  scaling.spread = reader->Take(name + ".spread", rows, 1);
+  if (!(scaling.spread.array() > 0.0f).all()) {
+    reader->Fail("the tensor " + name + ".spread must be positive");
+  }
   return scaling;
 }
 

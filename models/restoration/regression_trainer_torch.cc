@@ -1,8 +1,8 @@
 // models: the trainer of dense networks, in LibTorch.
 #include <vector>
 
-#include "models/restoration/epochs_torch.h"
 #include "models/restoration/regression_trainer.h"
+#include "models/restoration/support_torch.h"
 
 namespace pushid {
 namespace {
@@ -54,8 +54,7 @@ RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
                                      const RegressionSamples& validation,
                                      const RegressionOptions& options)
     : torch_(std::make_unique<Torch>()) {
-  torch::set_num_threads(options.num_threads);
-  torch::manual_seed(options.seed);
+  StartTraining(options);
   Torch& t = *torch_;
   t.options = options;
   t.inputs = ToTensor(training.inputs), t.targets = ToTensor(training.targets);
@@ -75,7 +74,11 @@ bool RegressionTrainer::Done() const {
   return torch_->epochs.Done(torch_->options.epochs, torch_->options.patience);
 }
 
-TrainingPoint RegressionTrainer::RunEpoch() {
+double RegressionTrainer::ShareDone() const {
+  return static_cast<double>(torch_->epochs.epoch) / torch_->options.epochs;
+}
+
+TrainingPoint RegressionTrainer::RunRound() {
   Torch& t = *torch_;
   const int64_t batches = t.BatchesPerEpoch();
   const torch::Tensor order = torch::randperm(t.inputs.size(0));
@@ -90,7 +93,7 @@ TrainingPoint RegressionTrainer::RunEpoch() {
     const torch::Tensor loss =
         AbsoluteLoss(t.epochs.network->forward(x), t.targets.index_select(0, rows),
                      t.weights.index_select(0, rows));
-    t.epochs.Step(loss);
+    Improve(t.epochs.optimizer.get(), loss);
     sum += loss.item<double>();
   }
   ++t.epochs.epoch;
@@ -99,14 +102,15 @@ TrainingPoint RegressionTrainer::RunEpoch() {
   const double held =
       AbsoluteLoss(t.epochs.network->forward(t.held_inputs), t.held_targets, t.held_weights)
           .item<double>();
-  t.epochs.Judge(held);
-  return {t.epochs.epoch, sum / static_cast<double>(batches), held};
+  return t.epochs.Judged(sum / static_cast<double>(batches), held);
 }
 
 DenseNetwork RegressionTrainer::Best() const { return torch_->epochs.best->Weights(); }
 
-std::string RegressionTrainer::State() const { return torch_->epochs.State(); }
+std::string RegressionTrainer::State() const { return StateOf(&torch_->epochs); }
 
-bool RegressionTrainer::Resume(const std::string& state) { return torch_->epochs.Resume(state); }
+bool RegressionTrainer::Resume(const std::string& state) {
+  return ResumeFrom(state, &torch_->epochs);
+}
 
 }  // namespace pushid

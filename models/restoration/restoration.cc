@@ -2,6 +2,7 @@
 #include "models/restoration/restoration.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 //   Finish(person, PostprocessOptions(), &bodies[0]);           // postprocess.h
 //
 // All that a restoration knows of a person is the pose at frame 0, mass, rod length and what its
-// view names (restoration_view.h): the pendulum's path, those of the neighbours too, or, to compare
+// view names (restoration_kind.h): the pendulum's path, those of the neighbours too, or, to compare
 // with, no pendulum at all. The order of people changes nothing. Every kind turns a person to the
 // heading at frame 0 first and back at the end.
 #pragma once

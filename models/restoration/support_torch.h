@@ -1,14 +1,18 @@
 // models: LibTorch kept in one place: what the trainers share. Included by *_torch.cc files alone.
 #pragma once
 
-// LibTorch and glog both define LOG and CHECK: a file that includes this includes no glog.
 #include <torch/torch.h>
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "models/restoration/dense_network.h"
+#include "models/restoration/trainer.h"
+
+// LibTorch and glog both define LOG and CHECK: a file that includes this includes no glog.
 
 namespace pushid {
 
@@ -51,52 +55,159 @@ inline void SetLearningRate(torch::optim::AdamW* optimizer, double rate) {
   }
 }
 
-inline std::string Archived(const torch::serialize::OutputArchive& archive) {
-  std::ostringstream stream;
-  const_cast<torch::serialize::OutputArchive&>(archive).save_to(stream);
-  return stream.str();
+inline void Improve(torch::optim::AdamW* optimizer, const torch::Tensor& loss) {
+  optimizer->zero_grad();
+  loss.backward();
+  optimizer->step();
+}
+// The gradient held within `clip`.
+inline void Improve(torch::optim::AdamW* optimizer, const torch::Tensor& loss,
+                    const std::vector<torch::Tensor>& parameters, double clip) {
+  optimizer->zero_grad();
+  loss.backward();
+  torch::nn::utils::clip_grad_norm_(parameters, clip);
+  optimizer->step();
 }
 
-// A module's or an optimizer's state as a part of a training's.
-template <typename Part>
-void WritePart(const char* name, const Part& part, torch::serialize::OutputArchive* archive) {
-  torch::serialize::OutputArchive of_part;
-  part.save(of_part);
-  archive->write(name, of_part);
-}
-template <typename Part>
-void ReadPart(const char* name, torch::serialize::InputArchive* archive, Part* part) {
-  torch::serialize::InputArchive of_part;
-  archive->read(name, of_part);
-  part->load(of_part);
+// Both modules are of one shape.
+inline void CopyWeights(const torch::nn::Module& from, torch::nn::Module* to) {
+  torch::NoGradGuard no_grad;
+  const std::vector<torch::Tensor> source = from.parameters(), target = to->parameters();
+  for (size_t i = 0; i < source.size(); ++i) target[i].copy_(source[i]);
 }
 
-// Reads what Archived wrote; read: takes the archive. False when the state is another training's.
-template <typename Read>
-bool Unarchived(const std::string& state, const Read& read) {
-  try {
+inline int64_t NumNumbers(const std::vector<torch::Tensor>& parameters) {
+  int64_t count = 0;
+  for (const torch::Tensor& parameter : parameters) count += parameter.numel();
+  return count;
+}
+
+inline void StartTraining(const TrainerOptions& options) {
+  torch::set_num_threads(options.num_threads);
+  torch::manual_seed(options.seed);
+}
+
+// The state of a training: one list of its fields, Torch::Keep(StateWriter or StateReader*), serves
+// writing and reading. The random generator belongs to every state.
+class StateWriter {
+ public:
+  static constexpr bool kReads = false;
+  template <typename Kept>
+  void Part(const char* name, Kept* part) {  // a module or an optimizer
+    torch::serialize::OutputArchive of_part;
+    part->save(of_part);
+    archive_.write(name, of_part);
+  }
+  void Tensor(const char* name, torch::Tensor* tensor) { archive_.write(name, *tensor); }
+  template <typename... Number>
+  void Numbers(const char* name, Number*... numbers) {
+    archive_.write(name, torch::tensor({static_cast<double>(*numbers)...}, torch::kFloat64));
+  }
+  std::string Finish() {
+    archive_.write("random", at::detail::getDefaultCPUGenerator().get_state());
+    std::ostringstream stream;
+    archive_.save_to(stream);
+    return stream.str();
+  }
+
+ private:
+  torch::serialize::OutputArchive archive_;
+};
+
+class StateReader {
+ public:
+  static constexpr bool kReads = true;
+  explicit StateReader(const std::string& state) {
     std::istringstream stream(state);
-    torch::serialize::InputArchive archive;
-    archive.load_from(stream);
-    read(&archive);
+    archive_.load_from(stream);
+  }
+  template <typename Kept>
+  void Part(const char* name, Kept* part) {
+    torch::serialize::InputArchive of_part;
+    archive_.read(name, of_part);
+    part->load(of_part);
+  }
+  void Tensor(const char* name, torch::Tensor* tensor) { archive_.read(name, *tensor); }
+  template <typename... Number>
+  void Numbers(const char* name, Number*... numbers) {
+    torch::Tensor all;
+    archive_.read(name, all);
+    all = all.reshape({-1});
+    int64_t i = 0;
+    ((*numbers = static_cast<Number>(all[i++].item<double>())), ...);
+  }
+  void Finish() {
+    torch::Tensor random;
+    archive_.read("random", random);
+    auto generator = at::detail::getDefaultCPUGenerator();
+    generator.set_state(random);
+  }
+
+ private:
+  torch::serialize::InputArchive archive_;
+};
+
+template <typename Torch>
+std::string StateOf(Torch* torch) {
+  StateWriter writer;
+  torch->Keep(&writer);
+  return writer.Finish();
+}
+
+// False when the state is another training's.
+template <typename Torch>
+bool ResumeFrom(const std::string& state, Torch* torch) {
+  try {
+    StateReader reader(state);
+    torch->Keep(&reader);
+    reader.Finish();
     return true;
   } catch (const std::exception&) {
     return false;
   }
 }
 
-// How far a training is, and where its random numbers are.
-inline void WriteProgress(int step, torch::serialize::OutputArchive* archive) {
-  archive->write("step", torch::tensor(step));
-  archive->write("random", at::detail::getDefaultCPUGenerator().get_state());
-}
-inline int ReadProgress(torch::serialize::InputArchive* archive) {
-  torch::Tensor step, random;
-  archive->read("step", step);
-  archive->read("random", random);
-  auto generator = at::detail::getDefaultCPUGenerator();
-  generator.set_state(random);
-  return step.item<int>();
-}
+// Training by epochs that keeps the best one: what the trainers of windows, of siMLPe and of MRT
+// share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
+template <typename Network>
+struct Epochs {
+  std::shared_ptr<Network> network, best;
+  std::unique_ptr<torch::optim::AdamW> optimizer;
+  int epoch = 0, best_epoch = 0;
+  double best_loss = 1e30;
+
+  // Both networks are of one shape.
+  void Start(std::shared_ptr<Network> to_train, std::shared_ptr<Network> to_keep, double rate,
+             double weight_decay) {
+    network = std::move(to_train), best = std::move(to_keep);
+    CopyWeights(*network, best.get());
+    optimizer = std::make_unique<torch::optim::AdamW>(
+        network->parameters(), torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
+  }
+
+  // patience: epochs without a better one.
+  bool Done(int epochs, int patience) const {
+    return epoch >= epochs || epoch - best_epoch >= patience;
+  }
+
+  // The epoch just trained, whose losses are these.
+  TrainingPoint Judged(double loss, double held_loss) {
+    if (held_loss < best_loss) {
+      best_loss = held_loss;
+      best_epoch = epoch;
+      CopyWeights(*network, best.get());
+    }
+    return {epoch, loss, held_loss};
+  }
+
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    fields->Part("network", network.get());
+    fields->Part("best", best.get());
+    fields->Part("optimizer", optimizer.get());
+    fields->Numbers("judged", &best_epoch, &best_loss);
+    fields->Numbers("step", &epoch);
+  }
+};
 
 }  // namespace pushid

@@ -2,9 +2,11 @@
 // no memory of its own, so that nothing can drift.
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
-#include "models/restoration/restoration_view.h"
 
 namespace pushid {
 
@@ -24,5 +26,87 @@ class WindowRestoration : public Restoration {
  private:
   WindowWeights weights_;
 };
+
+// What the window network sees of a person at one frame, and what it says.
+//
+// Everything in the frame of the heading at frame 0, lengths in m, angles in rad:
+//   the pendulum (not with the view `pose`)
+//     per lag of 0, +-2, 4, 6, 8, 12, 16, 24 frames (at 60 Hz; by time at other rates):
+//       cart x, y against now (at lag 0: against frame 0), theta, phi against frame 0      60
+//     per lag of 0, +-6, +-12: rates of x, y, theta, phi                                   20
+//   the person
+//     time since the push begins (at most 2 s), mass, rod length, leg length                4
+//     of frame 0: theta, phi, and knees, ankles, wrists, head against the hip              23
+//   the neighbours (`neighbours`): neighbour_features.h                                   104
+//   the push (`pose`): impulse over the mass of who is pushed (x, y), m/s; its duration, s; the hip
+//     of who is pushed against the person's, at frame 0 (x, y)                              5
+// Lags beyond an end see the end. No number depends on where the person stands or on what the
+// network said before.
+//
+// The output, 63: every other joint against the hip, less the same at frame 0; with `pose` also the
+// way of the hip since frame 0, 3, which otherwise goes with the rod's tip.
+
+inline constexpr std::array<int, 15> kWindowLags = {0, -2, -4, -6, -8, -12, -16, -24,
+                                                    2, 4,  6,  8,  12, 16,  24};
+inline constexpr std::array<int, 5> kWindowRateLags = {0, -12, -6, 6, 12};
+inline constexpr double kWindowLagRate = 60.0;  // Hz
+inline constexpr int kWindowPendulumInputs =
+    4 * static_cast<int>(kWindowLags.size() + kWindowRateLags.size());
+
+// The pendulum's part of the inputs at a frame. Value: 4 x columns, of a turned path or of its
+// derivatives; rows: kWindowPendulumInputs x columns.
+template <typename Value, typename Rows>
+void FillPendulumInputs(const FramePath<Value>& path, double dt, int frame, Rows&& rows) {
+  const double frames_per_lag = 1.0 / (kWindowLagRate * dt);
+  const Value now = path.At(frame);
+  int row = 0;
+  for (const int lag : kWindowLags) {
+    const Value q = path.At(frame + lag * frames_per_lag);
+    const Value& base = lag == 0 ? path.First() : now;
+    rows.middleRows(row, 2) = q.topRows(2) - base.topRows(2);
+    rows.middleRows(row + 2, 2) = q.bottomRows(2) - path.First().bottomRows(2);
+    row += 4;
+  }
+  for (const int lag : kWindowRateLags) {
+    rows.middleRows(row, 4) = path.RateAt(frame + lag * frames_per_lag);
+    row += 4;
+  }
+}
+
+int WindowInputRows(RestorationView view);
+int WindowOutputRows(RestorationView view);
+
+// The person's part, which no pendulum changes: a column per frame.
+Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person);
+
+// A column per frame, of person n.
+Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,
+                             RestorationView view);
+
+// The true outputs of a recorded motion (as many frames as q has, or fewer).
+Eigen::MatrixXf WindowTargets(const RestorationInput& person, const BodyMotion& motion,
+                              RestorationView view);
+
+// From outputs to a motion.
+BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::MatrixXf& outputs,
+                             RestorationView view);
+
+// What the window network sees of a person's neighbours.
+//
+// The nearest at frame 0 in each of four quarters (ahead, behind, to the left, to the right,
+// between the diagonals of the heading at frame 0), if anybody is there within 2 m, hip to hip:
+//   at frame 0: its hip against the person's (x, y), m; its rod length, m; how near, exp(-(d/m)^2)
+//   4 per lag of 0, +-6, +-12, 24 frames (at 60 Hz; by time at other rates): its hip against the
+//     person's, less the same at frame 0 (x, y), m; how near 18
+//   now: velocity of its hip against the person's (x, y), m/s; its theta and phi, rad 4
+// Zeros where nobody is. Hips are the tips of the rods. In the mirror left and right change places
+// by themselves, and the order of people changes nothing: of two just as near the one further left,
+// or else ahead, counts.
+
+inline constexpr int kNeighbourQuarters = 4, kNumbersPerNeighbour = 26;
+inline constexpr int kNeighbourInputs = kNeighbourQuarters * kNumbersPerNeighbour;
+
+// The neighbours' part of the inputs of person n: kNeighbourInputs x frames of q.
+Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int n);
 
 }  // namespace pushid

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "models/restoration/window_features.h"
+#include "models/restoration/window_restoration.h"
 
 namespace pushid {
 namespace {

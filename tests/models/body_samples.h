@@ -7,7 +7,6 @@
 #include "datasets/files/random.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/restoration.h"
-#include "models/restoration/window_features.h"
 #include "models/restoration/window_restoration.h"
 #include "models/skeleton_mapping.h"
 

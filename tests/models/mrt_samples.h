@@ -1,7 +1,7 @@
 // An MRT of random weights and groups that walk, for tests.
 #pragma once
 
-#include "models/restoration/mrt_network.h"
+#include "models/peers/mrt_network.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -1,8 +1,7 @@
 // The training curve: stages apart, the best point marked.
-#include "ident/training/curve_svg.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/training/training_curve.h"
 #include "tests/test_support.h"
 
 namespace pushid {

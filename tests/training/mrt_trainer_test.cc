@@ -1,6 +1,6 @@
 // The trainer of MRT: it learns, repeats itself, goes on where it was broken off, and what it
 // returns is the network that LibTorch trained.
-#include "models/restoration/mrt_trainer.h"
+#include "models/peers/mrt_trainer.h"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ TEST(MrtTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
   MrtOptions options = QuickMrt();
   options.epochs = 12;
   MrtTrainer trainer(WalkingGroups(), WalkingGroups(), options);
-  const TrainingPoint first = trainer.RunEpoch();
+  const TrainingPoint first = trainer.RunRound();
   double best = first.validation_loss;
-  while (!trainer.Done()) best = std::min(best, trainer.RunEpoch().validation_loss);
+  while (!trainer.Done()) best = std::min(best, trainer.RunRound().validation_loss);
   EXPECT_LT(best, 0.7 * first.validation_loss);
   const MrtPeer peer(trainer.Best());
   double error = 0.0;
@@ -53,7 +53,7 @@ TEST(MrtTrainerTest, TheNetworkWithoutLibTorchIsTheTrainedOne) {
     options.size = size;
     options.windows = 4;
     MrtTrainer trainer(WalkingGroups(), WalkingGroups(), options);
-    trainer.RunEpoch();
+    trainer.RunRound();
     const MrtView view = MrtViewOf(WalkingGroup(3, 20), 19, 1);
     const Eigen::MatrixXf ways = PredictedWays(trainer.Best(), view);
     EXPECT_GT(ways.norm(), 0.1);
@@ -79,7 +79,7 @@ TEST(MrtTrainerTest, ParametersAreAsManyAsTheirMatricesHave) {
 
 TEST(MrtTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const auto trained = [](MrtTrainer* trainer) {
-    while (!trainer->Done()) trainer->RunEpoch();
+    while (!trainer->Done()) trainer->RunRound();
     TensorList tensors;
     AddTensors(trainer->Best(), &tensors);
     return tensors;
@@ -87,7 +87,7 @@ TEST(MrtTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   MrtTrainer whole(WalkingGroups(), WalkingGroups(), QuickMrt());
   const TensorList one = trained(&whole);
   MrtTrainer broken(WalkingGroups(), WalkingGroups(), QuickMrt());
-  for (int i = 0; i < 2; ++i) broken.RunEpoch();
+  for (int i = 0; i < 2; ++i) broken.RunRound();
   const std::string state = broken.State();  // before another trainer sows the draws
   MrtTrainer resumed(WalkingGroups(), WalkingGroups(), QuickMrt());
   ASSERT_TRUE(resumed.Resume(state));
@@ -111,7 +111,7 @@ TEST(MrtTrainerTest, TakesTheGroupsThatAreLongEnough) {
   groups.push_back({WalkingGroup(2, 30)}), held.push_back({WalkingGroup(2, 20)});
   const auto first_loss = [](const std::vector<MrtGroup>& training,
                              const std::vector<MrtGroup>& judged) {
-    return MrtTrainer(training, judged, QuickMrt()).RunEpoch().validation_loss;
+    return MrtTrainer(training, judged, QuickMrt()).RunRound().validation_loss;
   };
   EXPECT_EQ(first_loss(groups, held), first_loss(WalkingGroups(), WalkingGroups()));
 }

@@ -34,16 +34,16 @@ RegressionOptions QuickRegression() {
 
 DenseNetwork TrainedInOneGo() {
   RegressionTrainer trainer(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  while (!trainer.Done()) trainer.RunEpoch();
+  while (!trainer.Done()) trainer.RunRound();
   return trainer.Best();
 }
 
 TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
   const RegressionSamples held = Samples(200, 2);
   RegressionTrainer trainer(Samples(1000, 1), held, QuickRegression());
-  const TrainingPoint first = trainer.RunEpoch();
+  const TrainingPoint first = trainer.RunRound();
   double best = first.validation_loss;
-  while (!trainer.Done()) best = std::min(best, trainer.RunEpoch().validation_loss);
+  while (!trainer.Done()) best = std::min(best, trainer.RunRound().validation_loss);
   EXPECT_LT(best, 0.5 * first.validation_loss);
   const double error = (trainer.Best().Evaluate(held.inputs) - held.targets).cwiseAbs().mean();
   EXPECT_NEAR(error, best, 1e-5);
@@ -52,11 +52,11 @@ TEST(RegressionTrainerTest, LearnsAndReportsWhatItsWeightsDo) {
 TEST(RegressionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   const DenseNetwork one = TrainedInOneGo(), again = TrainedInOneGo();
   RegressionTrainer broken(Samples(1000, 1), Samples(200, 2), QuickRegression());
-  for (int i = 0; i < 5; ++i) broken.RunEpoch();
+  for (int i = 0; i < 5; ++i) broken.RunRound();
   const std::string state = broken.State();
   RegressionTrainer resumed(Samples(1000, 1), Samples(200, 2), QuickRegression());
   ASSERT_TRUE(resumed.Resume(state));
-  while (!resumed.Done()) resumed.RunEpoch();
+  while (!resumed.Done()) resumed.RunRound();
   for (size_t i = 0; i < one.layers.size(); ++i) {
     EXPECT_EQ(one.layers[i].weights, again.layers[i].weights);
     EXPECT_EQ(one.layers[i].weights, resumed.Best().layers[i].weights);
@@ -74,7 +74,7 @@ TEST(RegressionTrainerTest, StopsEarlyWhereNothingGetsBetter) {
   options.patience = 5;
   RegressionTrainer trainer(noise, held, options);
   int epochs = 0;
-  while (!trainer.Done()) trainer.RunEpoch(), ++epochs;
+  while (!trainer.Done()) trainer.RunRound(), ++epochs;
   EXPECT_LT(epochs, 200);
 }
 

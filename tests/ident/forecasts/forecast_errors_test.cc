@@ -1,9 +1,8 @@
 // Errors of forecasts: by hand, and the check values of the published clips.
-#include "ident/forecasts/forecast_errors.h"
-
 #include <nlohmann/json.hpp>
 
-#include "models/generators/ridge_forecast.h"
+#include "ident/forecasts/forecast_spread.h"
+#include "models/generators/particle_generator.h"
 #include "tests/mocap_support.h"
 #include "tests/test_support.h"
 

@@ -1,11 +1,9 @@
 // Long forecasts by the second, and groups among their sampled futures.
-#include "ident/forecasts/long_forecast.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "ident/forecasts/group_spread.h"
+#include "ident/forecasts/group_forecasts.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/generators/trained_networks.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 
@@ -39,8 +40,9 @@ class GeneratorFilesTest : public TempDirTest {
     WriteText("g/generator.json", text.replace(at, from.size(), to));
     return ErrorOf(Path("g"));
   }
-  TrainedParticles& Particles() { return std::get<TrainedParticles>(trained_.of_kind); }
-  TrainedNetworks trained_;
+  TrainedParticles& Particles() { return *particles_; }
+  const std::shared_ptr<TrainedParticles> particles_ = std::make_shared<TrainedParticles>();
+  TrainedNetworks trained_ = {{}, particles_};
   const std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
 };
 
@@ -63,7 +65,7 @@ TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   GeneratorChanges changes;
   changes.ridge_share = 1.0;
-  changes.project_bones = false;
+  changes.particles.project_bones = false;
   const auto loaded = LoadGenerator(Path("g"), changes);
   ASSERT_TRUE(loaded.ok());
   EXPECT_LT((loaded.value().generator->Forecast(people_, 6)[0] -

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "models/restoration/planted_feet.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -2,8 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "models/restoration/cvae_features.h"
-#include "models/restoration/neighbour_features.h"
-#include "models/restoration/window_features.h"
+#include "models/restoration/window_restoration.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -1,0 +1,37 @@
+// apps: flags of pushid-generate that say something to generators of diffusion alone.
+#include <gflags/gflags.h>
+
+#include "apps/flags/command_line.h"
+#include "apps/flags/diffusion_flags.h"
+#include "apps/flags/generate_flags.h"
+#include "apps/flags/kind_flags.h"
+
+namespace {
+const pushid::GeneratorChanges kChanges;
+}  // namespace
+
+DEFINE_double(push_spread, kChanges.diffusion.push_spread,
+              "diffusion, --samples: spread of the logarithm of the push between sampled futures");
+
+namespace pushid {
+namespace {
+
+MaybeError ReadDiffusionFlags(GenerateFlags* flags) {
+  const Result<DiffusionGeneratorOptions> options = DiffusionOptionsFromCommandLine();
+  if (!options.ok()) return options.error();
+  flags->changes.diffusion = options.value();
+  flags->changes.diffusion.push_spread = FLAGS_push_spread;
+  return CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0);
+}
+
+std::vector<const char*> DiffusionNames() {
+  std::vector<const char*> names = DiffusionFlagNames();
+  names.push_back("push_spread");
+  return names;
+}
+
+const KindFlags<GenerateFlags> kDiffusionFlags(GeneratorKind::kDiffusion, DiffusionNames(),
+                                               ReadDiffusionFlags);
+
+}  // namespace
+}  // namespace pushid

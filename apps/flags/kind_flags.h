@@ -1,0 +1,56 @@
+// apps: flags of one kind of generator alone. Each kind has them in a file of its own, where they
+// register themselves as flags do:
+//
+//   const KindFlags<GenerateFlags> kFlagsOfKind(GeneratorKind::kWaves, {"wave_height"}, Read);
+#pragma once
+
+#include <vector>
+
+#include "ident/generators/generator_kinds.h"
+
+namespace pushid {
+
+// Flags: what the program's own flags are read into.
+template <typename Flags>
+class KindFlags {
+ public:
+  // read: checks them, and puts what they say into its argument; also what the kind makes of flags
+  // that several kinds have.
+  KindFlags(GeneratorKind kind, std::vector<const char*> names, MaybeError (*read)(Flags* flags))
+      : kind_(kind), names_(std::move(names)), read_(read) {
+    All().push_back(this);
+  }
+
+  static MaybeError ReadAll(Flags* flags) {
+    for (const KindFlags* of_kind : All()) {
+      if (MaybeError error = of_kind->read_(flags)) return error;
+    }
+    return std::nullopt;
+  }
+
+  // Those of other kinds, which say nothing to this one, with the kind that each belongs to.
+  struct Foreign {
+    const char* flag;
+    GeneratorKind of;
+  };
+  static std::vector<Foreign> ForeignTo(GeneratorKind kind) {
+    std::vector<Foreign> foreign;
+    for (const KindFlags* other : All()) {
+      if (other->kind_ == kind) continue;
+      for (const char* flag : other->names_) foreign.push_back({flag, other->kind_});
+    }
+    return foreign;
+  }
+
+ private:
+  static std::vector<const KindFlags*>& All() {
+    static std::vector<const KindFlags*> all;
+    return all;
+  }
+
+  GeneratorKind kind_;
+  std::vector<const char*> names_;
+  MaybeError (*read_)(Flags* flags);
+};
+
+}  // namespace pushid

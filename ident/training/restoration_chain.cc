@@ -1,0 +1,173 @@
+// ident: trainings from recordings.
+#include "ident/training/restoration_chain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "ident/bodies/body_data.h"
+#include "ident/fit/recording_effect.h"
+#include "ident/peers/peer_files.h"
+#include "ident/prediction/online_predictor.h"
+#include "ident/problem/parallel.h"
+#include "ident/validation/crossvalidation.h"
+
+namespace pushid {
+namespace {
+
+// Those of the positions, or none where nothing was made.
+template <typename Value>
+std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
+  std::vector<Value> picked;
+  if (from.empty()) return picked;
+  for (int k : positions) picked.push_back(from[k]);
+  return picked;
+}
+
+std::vector<int> All(const std::vector<BodyRecording>& recordings) {
+  std::vector<int> all(recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+// The largest change of a free parameter relative to its value.
+double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
+  double largest = 0.0;
+  for (const Parameter p : before.table.Free()) {
+    const double from = before.parameters[p], to = after.parameters[p];
+    largest = std::max(largest, std::abs(to - from) / std::max(std::abs(from), 1e-12));
+  }
+  return largest;
+}
+
+// A restoration beside its baselines; a peer alone.
+Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
+                                const RestorationRunOptions& options,
+                                const BodyRecording& recording) {
+  BodyScores scores;
+  if (!RowOf(file.kind).follows_pendulum) {
+    const auto peer = MakePeer(file, "");
+    if (!peer.ok()) return peer.error();
+    ScorePeer(*peer.value(), recording, &scores);
+    return scores;
+  }
+  const auto restoration = MakeRestoration(file, "");
+  if (!restoration.ok()) return restoration.error();
+  ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
+                   options.observed);
+  return scores;
+}
+
+}  // namespace
+
+Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
+                                               const std::vector<int>& among,
+                                               const RestorationRunOptions& options,
+                                               const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  std::vector<RolloutPath<double>> paths;
+  if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
+      options.training.view != RestorationView::kPose) {
+    paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
+                             options.training.seed, [&](int fold, int folds) {
+                               if (progress) {
+                                 progress("predicting pendulums out of fold",
+                                          static_cast<double>(fold) / folds);
+                               }
+                             });
+  }
+  std::vector<int> learnt, judged;
+  SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
+  if (learnt.empty() || judged.empty()) {
+    return Error{
+        "there are too few recordings to train on and to hold out for early stopping; at least two "
+        "are needed"};
+  }
+  auto training =
+      MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);
+  for (RestorationSample& sample :
+       MakeSamples(options.more, All(options.more), {}, options.mirrored)) {
+    training.push_back(std::move(sample));
+  }
+  const auto held = MakeSamples(recordings, Picked(among, judged), Picked(paths, judged), false);
+  return TrainRestoration(training, held, options.training,
+                          [&](const TrainingPoint& point, double done) {
+                            if (!progress) return;
+                            progress(point.stage + (point.stage.empty() ? "" : ", ") + "epoch " +
+                                         std::to_string(point.epoch),
+                                     done);
+                          });
+}
+
+Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
+                                const std::vector<int>& among, const RestorationRunOptions& options,
+                                const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  RestorationRunOptions now = options;
+  now.fit.body_weight = 0.0;
+  now.training.checkpoint.clear();  // one would be of one training, not of the whole
+  std::optional<IdentifiedModel> model = IdentifiedModel();  // a peer has no pendulum
+  if (RowOf(options.training.kind).follows_pendulum) model = FitTo(pendulums, among, now.fit);
+  if (!model) return Error{"the pendulum's fit found no usable optimum"};
+  Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
+  if (!trained.ok()) return trained.error();
+  TrainedChain chain{std::move(*model), std::move(trained.value())};
+  if (options.fit.body_weight <= 0.0) return chain;
+  now.fit.body_weight = options.fit.body_weight;
+  for (bool moves = true; moves && chain.rounds < options.rounds; ++chain.rounds) {
+    const auto restoration = MakeRestoration(chain.restoration.file, "");
+    if (!restoration.ok()) return restoration.error();
+    const auto body = MakeBodyData(*restoration.value(), Picked(recordings, among));
+    if (!body.ok()) return body.error();
+    now.fit.body = body.value();
+    model = FitTo(pendulums, among, now.fit);
+    if (!model) return Error{"the pendulum's fit to bodies found no usable optimum"};
+    moves = LargestChange(chain.model, *model) > kWholeTolerance;
+    trained = TrainFromRecordings(recordings, among, now, progress);
+    if (!trained.ok()) return trained.error();
+    chain.model = std::move(*model);
+    chain.restoration = std::move(trained.value());
+  }
+  return chain;
+}
+
+Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
+                                           const RestorationRunOptions& options, FoldScheme scheme,
+                                           int folds, const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  const int total = static_cast<int>(recordings.size());
+  const auto made = MakeFolds(pendulums, scheme, folds, 1, options.training.seed);
+  if (!made.ok()) return made.error();
+  ChainValidation validation;
+  std::vector<std::map<std::string, BodyScore>> by_recording(total);
+  for (const Fold& fold : made.value()) {
+    const std::vector<int> train = Others(fold.held_out, total);
+    const auto told = [&](const std::string& step, double done) {
+      if (progress) progress(fold.name + ", " + step, done);
+    };
+    const double before = Now();
+    Result<TrainedChain> chain = TrainChain(recordings, train, options, told);
+    if (!chain.ok()) return Error{fold.name + ": " + chain.error().message};
+    validation.training_seconds.push_back(Now() - before);
+    validation.rounds.push_back(chain.value().rounds);
+    IdentifiedModel& model = chain.value().model;
+    if (options.observed > 0 && RowOf(options.training.kind).follows_pendulum) {
+      model.recording_effect = FitRecordingEffect(model, Picked(pendulums, train));
+      if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
+    }
+    for (int i : fold.held_out) {
+      const Result<BodyScores> scores =
+          ScoreTrained(chain.value().restoration.file, model, options, recordings[i]);
+      if (!scores.ok()) return scores.error();
+      for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
+    }
+  }
+  BodyScores all;
+  for (const auto& scores : by_recording) {
+    for (const auto& [name, score] : scores) all[name].push_back(score);
+  }
+  validation.evaluation = SummarizeAll(recordings, all);
+  return validation;
+}
+
+}  // namespace pushid
