@@ -56,8 +56,9 @@ Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
   const int inputs = WindowInputRows(view.value());
   WindowWeights weights;
   weights.view = view.value();
-  weights.inputs = TakeScaling("inputs", inputs, reader);
-  weights.network = TakeNetwork("network", 3, inputs, WindowOutputRows(view.value()), reader);
+  TensorFields fields(reader);
+  fields.Scales("inputs", inputs, &weights.inputs);
+  fields.Network("network", 3, inputs, WindowOutputRows(view.value()), &weights.network);
   return std::unique_ptr<Restoration>(new WindowRestoration(std::move(weights)));
 }
 

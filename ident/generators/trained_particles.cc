@@ -59,8 +59,9 @@ SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings
   }
   if (trained.ridge_share <= 0.0) return networks;
   Demand(settings.observed > kRidgeDisplacements, "the ridge needs more observed frames");
-  const DenseLayer ridge =
-      TakeLayer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted, reader);
+  DenseLayer ridge;
+  TensorFields(reader).Layer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted,
+                             &ridge);
   trained.ridge = {ridge.weights, ridge.bias};
   return networks;
 }

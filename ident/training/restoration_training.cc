@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/content_hash.h"
+#include "datasets/files/input_file.h"
 #include "ident/bodies/restoration_kinds.h"
 #include "models/restoration/cvae_trainer.h"
 #include "models/restoration/window_restoration.h"

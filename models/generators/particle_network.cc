@@ -151,54 +151,50 @@ Eigen::MatrixXf CorrectionSines(int frames) {
   return sines;
 }
 
+namespace {
+
+void ListTensors(const std::string& name, int coordinates, ParticleNetwork* network,
+                 TensorFields* fields) {
+  const ParticleStructure& structure = network->structure;
+  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
+  fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
+  fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
+  if (structure.controls > 0) {
+    fields->Matrix(name + ".control_spread", structure.controls, 1, &network->control_spread);
+  }
+  const int gates = structure.NumGates() * kParticleHidden;
+  fields->Layer(name + ".input", structure.NumInputs(coordinates), gates, &network->input);
+  fields->Layer(name + ".recurrent", kParticleHidden, gates, &network->recurrent);
+  fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
+  fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
+  if (structure.correlated_noise) {
+    fields->Matrix(name + ".noise_mix", coordinates, coordinates, &network->noise_mix);
+  }
+  if (structure.corrected_frames > 0) {
+    const int terms = kCorrectionTerms * coordinates;
+    fields->Layer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden,
+                  &network->correction_hidden);
+    fields->Layer(name + ".correction", kCorrectionHidden, terms, &network->correction);
+  }
+  if (structure.HasSkip()) {
+    fields->Matrix(name + ".skip", coordinates, kSkipSteps * coordinates, &network->skip);
+  }
+}
+
+}  // namespace
+
 void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors) {
-  tensors->push_back({name + ".pose_mean", network.pose_mean});
-  tensors->push_back({name + ".pose_spread", network.pose_spread});
-  tensors->push_back({name + ".step_spread", network.step_spread});
-  if (network.structure.controls > 0) {
-    tensors->push_back({name + ".control_spread", network.control_spread});
-  }
-  AddTensors(name + ".input", network.input, tensors);
-  AddTensors(name + ".recurrent", network.recurrent, tensors);
-  AddTensors(name + ".drift", network.drift, tensors);
-  AddTensors(name + ".noise", network.noise, tensors);
-  if (network.structure.correlated_noise) {
-    tensors->push_back({name + ".noise_mix", network.noise_mix});
-  }
-  if (network.structure.corrected_frames > 0) {
-    AddTensors(name + ".correction_hidden", network.correction_hidden, tensors);
-    AddTensors(name + ".correction", network.correction, tensors);
-  }
-  if (network.structure.HasSkip()) tensors->push_back({name + ".skip", network.skip});
+  ParticleNetwork written = network;
+  TensorFields fields(tensors);
+  ListTensors(name, network.num_coordinates(), &written, &fields);
 }
 
 ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& structure,
                               int coordinates, TensorReader* reader) {
   ParticleNetwork network;
   network.structure = structure;
-  network.pose_mean = reader->Take(name + ".pose_mean", coordinates, 1);
-  network.pose_spread = reader->Take(name + ".pose_spread", coordinates, 1);
-  network.step_spread = reader->Take(name + ".step_spread", coordinates, 1);
-  if (structure.controls > 0) {
-    network.control_spread = reader->Take(name + ".control_spread", structure.controls, 1);
-  }
-  const int gates = structure.NumGates() * kParticleHidden;
-  network.input = TakeLayer(name + ".input", structure.NumInputs(coordinates), gates, reader);
-  network.recurrent = TakeLayer(name + ".recurrent", kParticleHidden, gates, reader);
-  network.drift = TakeLayer(name + ".drift", kParticleHidden, coordinates, reader);
-  network.noise = TakeLayer(name + ".noise", kParticleHidden, coordinates, reader);
-  if (structure.correlated_noise) {
-    network.noise_mix = reader->Take(name + ".noise_mix", coordinates, coordinates);
-  }
-  if (structure.corrected_frames > 0) {
-    const int terms = kCorrectionTerms * coordinates;
-    network.correction_hidden =
-        TakeLayer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden, reader);
-    network.correction = TakeLayer(name + ".correction", kCorrectionHidden, terms, reader);
-  }
-  if (structure.HasSkip()) {
-    network.skip = reader->Take(name + ".skip", coordinates, kSkipSteps * coordinates);
-  }
+  TensorFields fields(reader);
+  ListTensors(name, coordinates, &network, &fields);
   return network;
 }
 

@@ -115,83 +115,59 @@ std::vector<BodyMotion> MrtPeer::Continue(const std::vector<BodyMotion>& people,
 
 namespace {
 
-void AddNorm(const std::string& name, const MrtNorm& norm, TensorList* tensors) {
-  tensors->push_back({name + ".scale", norm.scale});
-  tensors->push_back({name + ".shift", norm.shift});
+void ListNorm(const std::string& name, int width, MrtNorm* norm, TensorFields* fields) {
+  fields->Matrix(name + ".scale", width, 1, &norm->scale);
+  fields->Matrix(name + ".shift", width, 1, &norm->shift);
 }
 
-MrtNorm TakeNorm(const std::string& name, int width, TensorReader* reader) {
-  return {reader->Take(name + ".scale", width, 1), reader->Take(name + ".shift", width, 1)};
-}
-
-void AddLayers(const std::string& name, const std::vector<MrtLayer>& layers, TensorList* tensors) {
-  for (size_t i = 0; i < layers.size(); ++i) {
-    const std::string of_layer = name + "." + std::to_string(i);
-    AddTensors(of_layer + ".query", layers[i].query, tensors);
-    AddTensors(of_layer + ".key", layers[i].key, tensors);
-    AddTensors(of_layer + ".value", layers[i].value, tensors);
-    AddTensors(of_layer + ".join", layers[i].join, tensors);
-    AddNorm(of_layer + ".after_attention", layers[i].after_attention, tensors);
-    AddTensors(of_layer + ".widen", layers[i].widen, tensors);
-    AddTensors(of_layer + ".narrow", layers[i].narrow, tensors);
-    AddNorm(of_layer + ".after_dense", layers[i].after_dense, tensors);
-  }
-}
-
-std::vector<MrtLayer> TakeLayers(const std::string& name, const MrtWidths& widths,
-                                 TensorReader* reader) {
+void ListLayers(const std::string& name, const MrtWidths& widths, std::vector<MrtLayer>* layers,
+                TensorFields* fields) {
   const int width = widths.width, all_heads = widths.heads * widths.head;
-  std::vector<MrtLayer> layers;
+  layers->resize(widths.layers);
   for (int i = 0; i < widths.layers; ++i) {
     const std::string of_layer = name + "." + std::to_string(i);
-    MrtLayer layer;
-    layer.query = TakeLayer(of_layer + ".query", width, all_heads, reader);
-    layer.key = TakeLayer(of_layer + ".key", width, all_heads, reader);
-    layer.value = TakeLayer(of_layer + ".value", width, all_heads, reader);
-    layer.join = TakeLayer(of_layer + ".join", all_heads, width, reader);
-    layer.after_attention = TakeNorm(of_layer + ".after_attention", width, reader);
-    layer.widen = TakeLayer(of_layer + ".widen", width, widths.inner, reader);
-    layer.narrow = TakeLayer(of_layer + ".narrow", widths.inner, width, reader);
-    layer.after_dense = TakeNorm(of_layer + ".after_dense", width, reader);
-    layers.push_back(std::move(layer));
+    MrtLayer& layer = (*layers)[i];
+    fields->Layer(of_layer + ".query", width, all_heads, &layer.query);
+    fields->Layer(of_layer + ".key", width, all_heads, &layer.key);
+    fields->Layer(of_layer + ".value", width, all_heads, &layer.value);
+    fields->Layer(of_layer + ".join", all_heads, width, &layer.join);
+    ListNorm(of_layer + ".after_attention", width, &layer.after_attention, fields);
+    fields->Layer(of_layer + ".widen", width, widths.inner, &layer.widen);
+    fields->Layer(of_layer + ".narrow", widths.inner, width, &layer.narrow);
+    ListNorm(of_layer + ".after_dense", width, &layer.after_dense, fields);
   }
-  return layers;
+}
+
+void ListTensors(MrtWeights* weights, TensorFields* fields) {
+  const MrtWidths widths = WidthsOf(weights->size);
+  constexpr int kOutputs = kMrtPoseRows * kMrtFrames;
+  fields->Scales("scaling.tokens", kMrtPoseRows * kMrtTokens, &weights->scalings.tokens);
+  fields->Scales("scaling.query", kMrtQueryRows, &weights->scalings.query);
+  fields->Scales("scaling.outputs", kOutputs, &weights->scalings.outputs);
+  fields->Layer("local_token", kMrtPoseRows, widths.width, &weights->local_token);
+  fields->Layer("global_token", kMrtPoseRows, widths.width, &weights->global_token);
+  fields->Layer("place", kMrtPlaceRows, widths.width, &weights->place);
+  fields->Layer("query", kMrtQueryRows, widths.width, &weights->query);
+  fields->Matrix("coefficients", widths.width, kMrtTokens, &weights->coefficients);
+  ListLayers("local", widths, &weights->local, fields);
+  ListLayers("global", widths, &weights->global, fields);
+  ListLayers("decoder", widths, &weights->decoder, fields);
+  fields->Layer("output", widths.width, kOutputs, &weights->output);
 }
 
 }  // namespace
 
 void AddTensors(const MrtWeights& weights, TensorList* tensors) {
-  AddTensors("scaling.tokens", weights.scalings.tokens, tensors);
-  AddTensors("scaling.query", weights.scalings.query, tensors);
-  AddTensors("scaling.outputs", weights.scalings.outputs, tensors);
-  AddTensors("local_token", weights.local_token, tensors);
-  AddTensors("global_token", weights.global_token, tensors);
-  AddTensors("place", weights.place, tensors);
-  AddTensors("query", weights.query, tensors);
-  tensors->push_back({"coefficients", weights.coefficients});
-  AddLayers("local", weights.local, tensors);
-  AddLayers("global", weights.global, tensors);
-  AddLayers("decoder", weights.decoder, tensors);
-  AddTensors("output", weights.output, tensors);
+  MrtWeights written = weights;
+  TensorFields fields(tensors);
+  ListTensors(&written, &fields);
 }
 
 MrtWeights TakeMrt(MrtSize size, TensorReader* reader) {
-  const MrtWidths widths = WidthsOf(size);
-  constexpr int kOutputs = kMrtPoseRows * kMrtFrames;
   MrtWeights weights;
   weights.size = size;
-  weights.scalings = {TakeScaling("scaling.tokens", kMrtPoseRows * kMrtTokens, reader),
-                      TakeScaling("scaling.query", kMrtQueryRows, reader),
-                      TakeScaling("scaling.outputs", kOutputs, reader)};
-  weights.local_token = TakeLayer("local_token", kMrtPoseRows, widths.width, reader);
-  weights.global_token = TakeLayer("global_token", kMrtPoseRows, widths.width, reader);
-  weights.place = TakeLayer("place", kMrtPlaceRows, widths.width, reader);
-  weights.query = TakeLayer("query", kMrtQueryRows, widths.width, reader);
-  weights.coefficients = reader->Take("coefficients", widths.width, kMrtTokens);
-  weights.local = TakeLayers("local", widths, reader);
-  weights.global = TakeLayers("global", widths, reader);
-  weights.decoder = TakeLayers("decoder", widths, reader);
-  weights.output = TakeLayer("output", widths.width, kOutputs, reader);
+  TensorFields fields(reader);
+  ListTensors(&weights, &fields);
   return weights;
 }
 

@@ -64,8 +64,9 @@ void AddTensors(const SimlpeWeights& weights, TensorList* tensors) {
 
 SimlpeWeights TakeSimlpe(TensorReader* reader) {
   SimlpeWeights weights;
-  weights.inputs = TakeScaling("inputs", kSimlpeInputs, reader);
-  weights.network = TakeNetwork("network", 3, kSimlpeInputs, kSimlpeOutputs, reader);
+  TensorFields fields(reader);
+  fields.Scales("inputs", kSimlpeInputs, &weights.inputs);
+  fields.Network("network", 3, kSimlpeInputs, kSimlpeOutputs, &weights.network);
   return weights;
 }
 

@@ -97,19 +97,6 @@ Eigen::MatrixXf Softmax(const Eigen::MatrixXf& values) {
   return shares;
 }
 
-void AddSampler(const std::string& name, const CvaeSampler& sampler, TensorList* tensors) {
-  AddTensors(name + ".first", sampler.first, tensors);
-  AddTensors(name + ".second", sampler.second, tensors);
-  AddTensors(name + ".mean", sampler.mean, tensors);
-}
-
-void AddDecoder(const std::string& name, const CvaeDecoder& decoder, TensorList* tensors) {
-  AddTensors(name + ".gate", decoder.gate, tensors);
-  AddTensors(name + ".first", decoder.first, tensors);
-  AddTensors(name + ".second", decoder.second, tensors);
-  AddTensors(name + ".last", decoder.last, tensors);
-}
-
 // The next frame by the sampler, or the mean over draws of z where there is no pendulum.
 Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder,
                           const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
@@ -121,19 +108,6 @@ Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder
     sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
   }
   return sum / static_cast<float>(draws.cols());
-}
-
-CvaeSampler TakeSampler(const std::string& name, int condition, TensorReader* reader) {
-  return {TakeLayer(name + ".first", condition + kPendulumFrame, kCvaeHidden, reader),
-          TakeLayer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, reader),
-          TakeLayer(name + ".mean", kCvaeHidden + kPendulumFrame, kLatent, reader)};
-}
-
-CvaeDecoder TakeDecoder(const std::string& name, int condition, int frame, TensorReader* reader) {
-  return {TakeNetwork(name + ".gate", 3, kLatent + condition, kExperts, reader),
-          TakeLayer(name + ".first", kLatent + condition, kExperts * kCvaeHidden, reader),
-          TakeLayer(name + ".second", kLatent + kCvaeHidden, kExperts * kCvaeHidden, reader),
-          TakeLayer(name + ".last", kLatent + kCvaeHidden, kExperts * frame, reader)};
 }
 
 }  // namespace
@@ -171,35 +145,54 @@ void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
   *upper = NextFrame(weights.upper_sampler, weights.upper_decoder, condition, pendulum, draws);
 }
 
-TensorList ToTensors(const CvaeWeights& weights) {
-  const CvaeLayout& layout = weights.layout;
-  TensorList tensors;
-  AddTensors("lower", weights.lower, &tensors);
-  if (layout.halves) AddTensors("upper", weights.upper, &tensors);
+namespace {
+
+void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
+                 TensorFields* fields) {
+  fields->Layer(name + ".first", condition + kPendulumFrame, kCvaeHidden, &sampler->first);
+  fields->Layer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, &sampler->second);
+  fields->Layer(name + ".mean", kCvaeHidden + kPendulumFrame, kLatent, &sampler->mean);
+}
+
+void ListDecoder(const std::string& name, int condition, int frame, CvaeDecoder* decoder,
+                 TensorFields* fields) {
+  fields->Network(name + ".gate", 3, kLatent + condition, kExperts, &decoder->gate);
+  fields->Layer(name + ".first", kLatent + condition, kExperts * kCvaeHidden, &decoder->first);
+  fields->Layer(name + ".second", kLatent + kCvaeHidden, kExperts * kCvaeHidden, &decoder->second);
+  fields->Layer(name + ".last", kLatent + kCvaeHidden, kExperts * frame, &decoder->last);
+}
+
+void ListTensors(CvaeWeights* weights, TensorFields* fields) {
+  const CvaeLayout& layout = weights->layout;
+  const int lower = layout.LowerFrame(), upper = layout.UpperFrame();
+  const int condition = layout.UpperCondition();
+  fields->Scales("lower", lower, &weights->lower);
+  if (layout.halves) fields->Scales("upper", upper, &weights->upper);
   if (layout.pendulum) {
-    AddTensors("pendulum", weights.pendulum, &tensors);
-    AddSampler("lower_sampler", weights.lower_sampler, &tensors);
-    if (layout.halves) AddSampler("upper_sampler", weights.upper_sampler, &tensors);
+    fields->Scales("pendulum", kPendulumFrame, &weights->pendulum);
+    ListSampler("lower_sampler", lower, &weights->lower_sampler, fields);
+    if (layout.halves) ListSampler("upper_sampler", condition, &weights->upper_sampler, fields);
   }
-  AddDecoder("lower_decoder", weights.lower_decoder, &tensors);
-  if (layout.halves) AddDecoder("upper_decoder", weights.upper_decoder, &tensors);
+  ListDecoder("lower_decoder", lower, lower, &weights->lower_decoder, fields);
+  if (!layout.halves) return;
+  ListDecoder("upper_decoder", condition, upper, &weights->upper_decoder, fields);
+}
+
+}  // namespace
+
+TensorList ToTensors(const CvaeWeights& weights) {
+  CvaeWeights written = weights;
+  TensorList tensors;
+  TensorFields fields(&tensors);
+  ListTensors(&written, &fields);
   return tensors;
 }
 
 CvaeWeights TakeCvae(const CvaeLayout& layout, TensorReader* reader) {
-  const int lower = layout.LowerFrame(), condition = layout.UpperCondition();
   CvaeWeights weights;
   weights.layout = layout;
-  weights.lower = TakeScaling("lower", lower, reader);
-  weights.lower_decoder = TakeDecoder("lower_decoder", lower, lower, reader);
-  if (layout.pendulum) {
-    weights.pendulum = TakeScaling("pendulum", kPendulumFrame, reader);
-    weights.lower_sampler = TakeSampler("lower_sampler", lower, reader);
-  }
-  if (!layout.halves) return weights;
-  weights.upper = TakeScaling("upper", layout.UpperFrame(), reader);
-  weights.upper_decoder = TakeDecoder("upper_decoder", condition, layout.UpperFrame(), reader);
-  if (layout.pendulum) weights.upper_sampler = TakeSampler("upper_sampler", condition, reader);
+  TensorFields fields(reader);
+  ListTensors(&weights, &fields);
   return weights;
 }
 

@@ -87,33 +87,25 @@ void AddTensors(const std::string& name, const Scaling& scaling, TensorList* ten
   tensors->push_back({name + ".spread", scaling.spread});
 }
 
-DenseLayer TakeLayer(const std::string& name, int inputs, int outputs, TensorReader* reader) {
-  DenseLayer layer;
-  layer.weights = reader->Take(name + ".weights", outputs, inputs);
-  layer.bias = reader->Take(name + ".bias", static_cast<int>(layer.weights.rows()), 1);
-  return layer;
+void TensorFields::Layer(const std::string& name, int inputs, int outputs, DenseLayer* layer) {
+  Matrix(name + ".weights", outputs, inputs, &layer->weights);
+  Matrix(name + ".bias", static_cast<int>(layer->weights.rows()), 1, &layer->bias);
 }
 
-DenseNetwork TakeNetwork(const std::string& name, int layers, int inputs, int outputs,
-                         TensorReader* reader) {
-  DenseNetwork network;
+void TensorFields::Network(const std::string& name, int layers, int inputs, int outputs,
+                           DenseNetwork* network) {
+  network->layers.resize(layers);
   int width = inputs;
   for (int i = 0; i < layers; ++i) {
-    const int next = i + 1 == layers ? outputs : -1;
-    network.layers.push_back(TakeLayer(name + "." + std::to_string(i), width, next, reader));
-    width = static_cast<int>(network.layers.back().weights.rows());
+    DenseLayer& layer = network->layers[i];
+    Layer(name + "." + std::to_string(i), width, i + 1 == layers ? outputs : -1, &layer);
+    width = static_cast<int>(layer.weights.rows());
   }
-  return network;
 }
 
-Scaling TakeScaling(const std::string& name, int rows, TensorReader* reader) {
-  Scaling scaling;
-  scaling.mean = reader->Take(name + ".mean", rows, 1);
-  scaling.spread = reader->Take(name + ".spread", rows, 1);
-  if (!(scaling.spread.array() > 0.0f).all()) {
-    reader->Fail("the tensor " + name + ".spread must be positive");
-  }
-  return scaling;
+void TensorFields::Scales(const std::string& name, int rows, Scaling* scaling) {
+  Matrix(name + ".mean", rows, 1, &scaling->mean);
+  Positive(name + ".spread", rows, &scaling->spread);
 }
 
 }  // namespace pushid

@@ -69,13 +69,42 @@ class TensorReader {
   std::string problem_;
 };
 
+// One list of what a network holds serves writing and reading it:
+//
+//   void ListTensors(Weights* weights, TensorFields* fields) {
+//     fields->Layer("query", kInputs, width, &weights->query);
+//     ...
+// Written: appended to the list. Read: taken by name and shape.
+class TensorFields {
+ public:
+  explicit TensorFields(TensorList* written) : written_(written) {}
+  explicit TensorFields(TensorReader* read) : read_(read) {}
+
+  template <typename Values>  // a matrix or a column
+  void Matrix(const std::string& name, int rows, int columns, Values* values) {
+    if (written_ != nullptr) written_->push_back({name, *values});
+    if (read_ != nullptr) *values = read_->Take(name, rows, columns);
+  }
+  void Layer(const std::string& name, int inputs, int outputs, DenseLayer* layer);
+  // `layers` layers; sizes between them are what the tensors say.
+  void Network(const std::string& name, int layers, int inputs, int outputs, DenseNetwork* network);
+  void Scales(const std::string& name, int rows, Scaling* scaling);
+  // A column of positive numbers.
+  template <typename Values>
+  void Positive(const std::string& name, int rows, Values* values) {
+    Matrix(name, rows, 1, values);
+    if (read_ != nullptr && !(values->array() > 0.0f).all()) {
+      read_->Fail("the tensor " + name + " must be positive");
+    }
+  }
+
+ private:
+  TensorList* written_ = nullptr;
+  TensorReader* read_ = nullptr;
+};
+
 void AddTensors(const std::string& name, const DenseNetwork& network, TensorList* tensors);
 void AddTensors(const std::string& name, const DenseLayer& layer, TensorList* tensors);
 void AddTensors(const std::string& name, const Scaling& scaling, TensorList* tensors);
-// A network of `layers` layers; sizes between them are what the tensors say.
-DenseNetwork TakeNetwork(const std::string& name, int layers, int inputs, int outputs,
-                         TensorReader* reader);
-DenseLayer TakeLayer(const std::string& name, int inputs, int outputs, TensorReader* reader);
-Scaling TakeScaling(const std::string& name, int rows, TensorReader* reader);
 
 }  // namespace pushid
