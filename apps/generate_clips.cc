@@ -1,12 +1,11 @@
 // apps: windows of clips forecast and sampled, and paths to a pose.
-#include "apps/generate_clips.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
-#include "apps/show_forecast.h"
+#include "apps/generate.h"
+#include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
@@ -133,6 +132,24 @@ Result<ForecastScene> SceneOfWindow(const LoadedGenerator& loaded, const Generat
 }
 
 }  // namespace
+
+MaybeError ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
+  if (!flags.poses_out.empty()) {
+    const auto files = WritePoses(flags.poses_out, scene);
+    if (!files.ok()) return files.error();
+    for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
+  }
+  const auto write = [](const std::string& file, const std::string& content) -> MaybeError {
+    if (MaybeError error = WriteFileAtomically(file, content)) return error;
+    std::printf("%s\n", file.c_str());
+    return std::nullopt;
+  };
+  if (!flags.strip_out.empty()) {
+    if (MaybeError error = write(flags.strip_out, ForecastStripSvg(scene, flags.poses)))
+      return error;
+  }
+  return flags.page_out.empty() ? std::nullopt : write(flags.page_out, ForecastPageHtml(scene));
+}
 
 int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);

@@ -1,10 +1,9 @@
 // apps: groups forecast and shown.
-#include "apps/generate_groups.h"
-
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/generate.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
@@ -20,13 +19,10 @@
 namespace pushid {
 namespace {
 
-// From the frames that the generator is shown too (one is the first, which everybody has), but from
-// frame 0 where physics go into the network, as in its training.
 Result<Prediction> PredictBeside(const LoadedGenerator& loaded, const IdentifiedModel& physics,
                                  const BodyRecording& recording, int frames) {
-  const bool shows = loaded.settings.observed > 1 && !loaded.settings.pendulum;
-  const int observed = shows ? loaded.settings.observed : 0;
-  Result<Prediction> predicted = PredictFrom(physics, recording.pendulum, observed, frames);
+  Result<Prediction> predicted =
+      PredictFrom(physics, recording.pendulum, ShownToPhysics(loaded.settings), frames);
   if (!predicted.ok() || predicted.value().status.ok) return predicted;
   return Error{"recording " + recording.pendulum.id + ": " + OutsideText(predicted.value().status) +
                    "; leave out --physics",

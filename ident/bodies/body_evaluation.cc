@@ -89,4 +89,13 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
   return evaluation;
 }
 
+BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
+                            const std::vector<std::map<std::string, BodyScore>>& by_recording) {
+  BodyScores all;
+  for (const auto& scores : by_recording) {
+    for (const auto& [name, score] : scores) all[name].push_back(score);
+  }
+  return SummarizeAll(recordings, all);
+}
+
 }  // namespace pushid

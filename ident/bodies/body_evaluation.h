@@ -44,5 +44,8 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
 
 using BodyEvaluation = std::map<std::string, BodySummary>;
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores);
+// The scores of each recording, by name.
+BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
+                            const std::vector<std::map<std::string, BodyScore>>& by_recording);
 
 }  // namespace pushid

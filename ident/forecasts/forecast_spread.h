@@ -1,8 +1,8 @@
-// ident: how well sampled futures spread, by horizon.
+// ident: errors of forecasts, and how well sampled futures spread, by horizon.
 //
 //   coverage      share of coordinates whose truth lies in the central 90 % of the samples;
-//   quantile
-//                 p of n sorted samples stands at place p (n + 1), between two by a straight line
+//                 quantile p of n sorted samples stands at place p (n + 1), between two by a
+//                 straight line
 //   CRPS          mean over coordinates of E|X - y| - E|X - X'| / 2; mm
 //   energy score  the same of whole poses, with their Euclidean distance; mm
 //   best of n     the smallest MPJPE among the samples; smaller with every sample more, so it shows

@@ -1,4 +1,5 @@
-// ident: whether what groups did lies among their sampled futures.
+// ident: groups forecast: whether what they did lies among their sampled futures, and what they do
+// when they are forecast for long.
 //
 //   inside  share of people's frames after those seen in which the recorded hip's x lies between
 //           the smallest and the largest of n samples; (n - 1) / (n + 1) where they are drawn as

@@ -57,6 +57,12 @@ struct TrainedNetworks {
   GeneratorKind kind() const { return of_kind->kind(); }
 };
 
+// Frames that physics beside a generator see, as it does (one is the first, which everybody has);
+// 0 where physics go into the network: then they start at frame 0, as in its training.
+inline int ShownToPhysics(const GeneratorSettings& settings) {
+  return settings.observed > 1 && !settings.pendulum ? settings.observed : 0;
+}
+
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
 
 struct LoadedGenerator {

@@ -29,7 +29,7 @@ class FoldJudge {
     GroupHips hips;
     std::map<std::string, BodyScore> unused;
     if (NeedsHips(validation_.changes)) {
-      Result<GroupHips> predicted = Hips(recording, validation_.observed, &unused);
+      Result<GroupHips> predicted = Hips(recording, trained_.settings, &unused);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
     }
@@ -77,13 +77,11 @@ class FoldJudge {
   }
 
   // Where the fold's physics have everybody; nothing without physics.
-  Result<GroupHips> Hips(const BodyRecording& recording, int observed,
+  Result<GroupHips> Hips(const BodyRecording& recording, const GeneratorSettings& settings,
                          std::map<std::string, BodyScore>* scores) const {
     if (!model_) return GroupHips();
-    // Physics that go into the network start at frame 0, as in its training.
-    const bool shows_physics = observed > 1 && !trained_.settings.pendulum;
     const Result<Prediction> predicted =
-        PredictFrom(*model_, recording.pendulum, shows_physics ? observed : 0);
+        PredictFrom(*model_, recording.pendulum, ShownToPhysics(settings));
     if (!predicted.ok()) return predicted.error();
     if (!predicted.value().status.ok) {
       return Error{"recording " + recording.pendulum.id + ": physics " +
@@ -101,7 +99,7 @@ class FoldJudge {
     settings.observed = observed;
     GroupHips hips;
     if (NeedsHips(changes)) {
-      Result<GroupHips> predicted = Hips(recording, observed, scores);
+      Result<GroupHips> predicted = Hips(recording, settings, scores);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
     }
@@ -166,11 +164,7 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
       if (error) return *error;
     }
   }
-  BodyScores all;
-  for (const auto& scores : by_recording) {
-    for (const auto& [name, score] : scores) all[name].push_back(score);
-  }
-  result.evaluation = SummarizeAll(recordings, all);
+  result.evaluation = SummarizeAll(recordings, by_recording);
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "ident/bodies/body_data.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/fit/recording_effect.h"
 #include "ident/peers/peer_files.h"
 #include "ident/prediction/online_predictor.h"
@@ -162,11 +162,7 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
       for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }
   }
-  BodyScores all;
-  for (const auto& scores : by_recording) {
-    for (const auto& [name, score] : scores) all[name].push_back(score);
-  }
-  validation.evaluation = SummarizeAll(recordings, all);
+  validation.evaluation = SummarizeAll(recordings, by_recording);
   return validation;
 }
 

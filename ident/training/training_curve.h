@@ -1,4 +1,4 @@
-// ident: the course of a training in the file of what was trained.
+// ident: the course of a training, in the file of what was trained and as a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -20,8 +20,6 @@ inline nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve)
   }
   return json;
 }
-
-// The course of a training as a picture.
 
 // Loss against epoch, training and held-out; stages one after the other.
 std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title);

@@ -31,9 +31,7 @@ class Peer {
                                            int frames) const = 0;
 };
 
-// The cosine transform over time, by which the peers read and write motions.
-
-// Orthonormal DCT-II of `frames` values: row k of the matrix gives coefficient k, and the matrix
+// The transform over time by which the peers read and write motions: the orthonormal DCT-II of `frames` values: row k of the matrix gives coefficient k, and the matrix
 // transposed gives the values back.
 inline Eigen::MatrixXd CosineTransform(int frames) {
   Eigen::MatrixXd transform(frames, frames);

@@ -2,7 +2,7 @@
 // y = W_L e(... e(W_1 x + b_1) ...) + b_L, e = ELU (exp(x) - 1 below zero) or max(0, .).
 //
 // Apart from mlp.h, which is in double precision and has derivatives: a restoration has neither
-// need, but poses whole crowds.
+// need, but poses whole crowds. Its numbers are stored as named matrices.
 #pragma once
 
 #include <Eigen/Core>
@@ -44,8 +44,7 @@ inline constexpr float kLargestScaled = 5.0f;
 // Of the columns; a row that hardly varies gets the spread `smallest`.
 Scaling ScalingOf(const Eigen::MatrixXf& values, float smallest = 1e-3f);
 
-// A network's numbers as named matrices, the form in which files hold them.
-
+// The form in which files hold a network's numbers.
 struct NamedTensor {
   std::string name;
   Eigen::MatrixXf values;

@@ -6,7 +6,7 @@
 //   2. The person's own skeleton carries it out (skeleton_fit.h): bones keep their length.
 //   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
 //      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model says
-//      when feet stand (RestorationInput::stands), they stand then (planted_feet.h), unless more
+//      when feet stand (RestorationInput::stands), they stand then (PlantFeet, below), unless more
 //      than one frame was seen: these know better.
 #pragma once
 
@@ -40,7 +40,7 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 // All that the options ask for, in this order.
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);
 
-// Feet that stand while the pendulum's model says so, and land where its cart is.
+// Only the feet, where the model says when they stand: feet that stand while the pendulum's model says so, and land where its cart is.
 //
 //   standing   ankle and toe do not move, however high and fast the restoration has them
 //   stepping   they go where the restoration has them, and rest where it has them rest (the other

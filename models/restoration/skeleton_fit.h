@@ -44,8 +44,8 @@ PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
 // the ankle stays from the target, m.
 double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose);
 
-// Rotations fitted to directions, and the six numbers networks describe them by.
-
+// Rotations, and the six numbers that networks describe them by.
+//
 // The first two columns, one after the other (Zhou et al., On the continuity of rotation
 // representations in neural networks, CVPR 2019): unlike angles or quaternions without jumps.
 using Rotation6d = Eigen::Matrix<double, 6, 1>;

@@ -27,7 +27,7 @@ class WindowRestoration : public Restoration {
   WindowWeights weights_;
 };
 
-// What the window network sees of a person at one frame, and what it says.
+// Inputs and outputs of the network for a person at one frame.
 //
 // Everything in the frame of the heading at frame 0, lengths in m, angles in rad:
 //   the pendulum (not with the view `pose`)
@@ -37,7 +37,7 @@ class WindowRestoration : public Restoration {
 //   the person
 //     time since the push begins (at most 2 s), mass, rod length, leg length                4
 //     of frame 0: theta, phi, and knees, ankles, wrists, head against the hip              23
-//   the neighbours (`neighbours`): neighbour_features.h                                   104
+//   the neighbours (`neighbours`): NeighbourInputs                                        104
 //   the push (`pose`): impulse over the mass of who is pushed (x, y), m/s; its duration, s; the hip
 //     of who is pushed against the person's, at frame 0 (x, y)                              5
 // Lags beyond an end see the end. No number depends on where the person stands or on what the
@@ -91,7 +91,7 @@ Eigen::MatrixXf WindowTargets(const RestorationInput& person, const BodyMotion& 
 BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::MatrixXf& outputs,
                              RestorationView view);
 
-// What the window network sees of a person's neighbours.
+// The inputs from a person's neighbours.
 //
 // The nearest at frame 0 in each of four quarters (ahead, behind, to the left, to the right,
 // between the diagonals of the heading at frame 0), if anybody is there within 2 m, hip to hip:

@@ -1,14 +1,24 @@
-// apps: groups that diffusion forecasts, with physics to blend with, and as pictures and files.
+// apps: parts of pushid-generate: windows of motion capture, and recorded groups, forecast and
+// shown.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/flags/generate_flags.h"
+#include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/group_forecasts.h"
 #include "ident/model/identified_model.h"
 
 namespace pushid {
+
+// What --poses_out, --strip_out and --page_out ask for; their names go to stdout.
+MaybeError ShowForecast(const ForecastScene& scene, const GenerateFlags& flags);
+
+// Windows of clips forecast, judged and shown. Returns the exit code.
+int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags);
 
 // The model of --physics; nothing where none is named.
 Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
