@@ -10,7 +10,7 @@
 #include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
-#include "ident/bodies/body_data.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_table.h"
 #include "ident/problem/parallel.h"

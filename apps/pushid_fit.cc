@@ -14,7 +14,7 @@
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/bodies/body_data.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/parameter_glossary.h"

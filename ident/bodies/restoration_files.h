@@ -5,11 +5,14 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "ident/bodies/body_recording.h"
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
+#include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {
 
@@ -55,5 +58,16 @@ Result<bool> LearnedAlone(const std::string& folder);
 // Both. "rigid" needs no folder: the name is enough.
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder,
                                                      const char* flag = "--restoration");
+
+// What a fit with bodies (FitOptions::body_weight) is told of them.
+
+// Errors: a restoration that is no `window` of the pendulum alone, whose Jacobian is not known.
+Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
+                                                     const std::vector<BodyRecording>& recordings);
+
+// The same from a restoration's folder, which `flag` names, and loaded recordings with all joints.
+Result<std::shared_ptr<const BodyData>> LoadBodyData(const std::string& folder, const char* flag,
+                                                     const std::vector<Recording>& recordings,
+                                                     SkeletonMapping mapping);
 
 }  // namespace pushid
