@@ -19,8 +19,8 @@
 #include "ident/model/model_json.h"
 #include "ident/problem/parallel.h"
 #include "ident/training/generator_crossvalidation.h"
-#include "ident/training/restoration_data.h"
-#include "ident/training/training_curve.h"
+#include "ident/training/restoration_training.h"
+#include "ident/training/training_run.h"
 
 namespace {
 

@@ -16,7 +16,7 @@
 #include "ident/bodies/body_report.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_chain.h"
-#include "ident/training/training_curve.h"
+#include "ident/training/training_run.h"
 
 namespace {
 

@@ -2,6 +2,15 @@
 #include "ident/bodies/animation.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/moving_page.h"
+#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {
@@ -68,6 +77,223 @@ void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMo
 void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation) {
   AddBodies(names, bodies, false, animation);
+}
+
+namespace {
+
+constexpr double kBrightest = 0.85;  // of the scale of colours, that is seen on paper
+
+constexpr char kScript[] =
+    R"html(const parents=[-1,0,1,2,3,4,3,6,7,8,3,10,11,12,0,14,15,16,0,18,19,20];
+let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],span=[1,1];
+const names=[...new Set(data.people.map(p=>p.name))],pushed=new Set(data.pushes.map(p=>p.person));
+const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
+const frameOf=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
+const bodies=data.people.some(p=>p.body.length);
+const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
+(function extent(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
+ for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
+  for(let k=0;k<2;k++){lo[k]=Math.min(lo[k],f[i+k]);hi[k]=Math.max(hi[k],f[i+k]);}}
+ if(lo[0]>hi[0])return;
+ centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1600,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);
+ span=[hi[0]-lo[0]+300,hi[1]-lo[1]+300];const first=data.people.find(p=>pushed.has(p.name))||data.people[0];origin=hip(first,0);})();
+function project(x,y,z){x-=centre[0];y-=centre[1];z-=centre[2];
+ const c=Math.cos(turn),s=Math.sin(turn),a=c*x-s*y,b=s*x+c*y,e=Math.cos(tilt),g=Math.sin(tilt);
+ const depth=e*b-g*z+4*size,k=zoom*4*size/Math.max(depth,size*0.2)*Math.min(view.width,view.height*1.6)/(2.3*size);
+ return [view.width/2+k*a,view.height/2-k*(g*b+e*z),k];}
+function line(a,b,colour,width,dash){const p=project(...a),q=project(...b);pen.strokeStyle=colour;
+ pen.lineWidth=Math.max(1,width*(p[2]+q[2])/2);pen.setLineDash(dash||[]);pen.beginPath();pen.moveTo(p[0],p[1]);pen.lineTo(q[0],q[1]);pen.stroke();}
+function dot(a,r,colour){const p=project(...a);pen.fillStyle=colour;pen.beginPath();pen.arc(p[0],p[1],Math.max(2,r*p[2]),0,7);pen.fill();}
+function words(text,x,y,colour,bold){pen.font=(bold?'600 ':'')+13*(devicePixelRatio||1)+'px system-ui,sans-serif';
+ pen.textAlign='center';pen.fillStyle=colour;pen.fillText(text,x,y);}
+// Lines every half metre from where the pushed person starts; whole metres have their number.
+function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1;
+ const cx=origin[0]+Math.round((centre[0]-origin[0])/step)*step,cy=origin[1]+Math.round((centre[1]-origin[1])/step)*step;
+ for(let i=-n;i<=n;i++){line([cx+i*step,cy-n*step,0],[cx+i*step,cy+n*step,0],grid,0.5);line([cx-n*step,cy+i*step,0],[cx+n*step,cy+i*step,0],grid,0.5);}
+ const d=devicePixelRatio||1,front=Math.min(origin[1],centre[1]-span[1]/2)-100;
+ for(let i=-n;i<=n;i++){const m=Math.round((cx-origin[0])/step)+i;if(m%2)continue;
+  const p=project(origin[0]+m*step,front,0);words(String(m/2).replace('-','\u2212')+' m',p[0],p[1]+14*d,style('--ink'));}}
+function body(f,colour){for(let j=1;j<22;j++)line(at(f,parents[j]),at(f,j),colour,28);dot(at(f,5),95,colour);}
+// Ends where it meets the hip.
+function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=style('--push'),d=devicePixelRatio||1;
+ const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
+ for(const s of [1,-1])line(hip,[hip[0]-110*u[0]-s*60*u[1],hip[1]-110*u[1]+s*60*u[0],hip[2]],c,30);
+ const p=project(...tail);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
+// A name over its person, raised until it covers no other.
+function nameAt(name,x,y,labels){const d=devicePixelRatio||1,h=15*d;words('',0,0,style('--ink'));
+ const w=pen.measureText(name).width+6*d;y=Math.max(16*d,y);
+ const covers=l=>Math.abs(l.x-x)<(l.w+w)/2&&Math.abs(l.y-y)<h;
+ for(let i=0;i<12&&y>h+16*d&&labels.some(covers);i++)y-=h;
+ labels.push({x,y,w});words(name,x,y,style('--ink'));}
+function ring(p,r,colour){pen.strokeStyle=colour;pen.setLineDash([]);pen.lineWidth=2.5*(devicePixelRatio||1);pen.beginPath();pen.arc(p[0],p[1],r,0,7);pen.stroke();}
+function colourOf(p){return p.recorded?style('--recorded'):data.colours[(data.whats.length>1?p.what:names.indexOf(p.name))%data.colours.length];}
+const shown=p=>p.recorded?on('recorded'):on('predicted')&&on('what'+p.what);
+// Groups from above, the first metre to the right.
+function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio||1,w=Math.min(230*d,view.width*0.4),h=130*d,x0=view.width-w-8*d,y0=8*d;
+ pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
+ const k=Math.min((w-20*d)/span[0],(h-34*d)/span[1]),place=q=>[x0+w/2+k*(q[0]-centre[0]),y0+h/2+8*d-k*(q[1]-centre[1])];
+ words('from above',x0+42*d,y0+16*d,style('--ink'));
+ for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,frameOf(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
+  if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
+// The forces on one person along the push, and where in its story we are.
+const looks=['#d55e00','#9333ea','#009e73'];
+function storyPanel(){if(!data.story)return;const d=devicePixelRatio||1,w=Math.min(330*d,view.width*0.5),h=120*d,x0=8*d,y0=view.height-h-8*d,F=data.story.forces;
+ pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
+ const most=Math.max(20,...F.flat().map(Math.abs)),X=t=>x0+w*t/Math.max(1,F.length-1),Y=f=>y0+h/2-f/most*(h/2-20*d);
+ pen.beginPath();pen.moveTo(x0,Y(0));pen.lineTo(x0+w,Y(0));pen.stroke();
+ for(let k=3;k>=0;k--){pen.strokeStyle=k===3?style('--ink'):looks[k];pen.lineWidth=(k===3?3:1.6)*d;pen.beginPath();F.forEach((f,t)=>t?pen.lineTo(X(t),Y(f[k])):pen.moveTo(X(t),Y(f[k])));pen.stroke();}
+ const t=Math.min(frame,F.length-1);pen.strokeStyle=style('--push');pen.lineWidth=d;pen.beginPath();pen.moveTo(X(t),y0);pen.lineTo(X(t),y0+h);pen.stroke();
+ pen.font=12*d+'px system-ui,sans-serif';pen.textAlign='left';pen.fillStyle=style('--ink');pen.fillText(Math.round(most)+' N along the push, '+data.story.person,x0+6*d,y0+14*d);
+ ['net (thick)','push','others','own response'].forEach((text,k)=>{pen.fillStyle=k?looks[k-1]:style('--ink');pen.fillText(text,x0+(6+80*k)*d,y0+h-6*d);});
+ data.story.moments.forEach((m,i)=>{const b=$('moment'+i);b.setAttribute('aria-current',frame>=m[0]&&frame<m[1]?'true':'false');});}
+if(data.story)data.story.moments.forEach((m,i)=>{$('moment'+i).onclick=()=>{play(false);frame=m[0];draw();};});
+function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
+ pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
+ const hips=new Map(),labels=[];
+ for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
+  if(!shown(p))continue;
+  hips.set(p.name,hip(p,f));
+  if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p.body[f],colour);pen.globalAlpha=1;}
+  const rod=data.whats.length>1||names.length>1?colour:'#d1495b';
+  if(p.tip.length&&on('pendulums')){line(p.cart[f],p.tip[f],rod,12,[8,6]);dot(p.cart[f],35,rod);dot(p.tip[f],45,rod);}
+  if(p.force.length&&on('forces')){const t=p.tip[f],F=p.force[f];if(Math.hypot(F[0],F[1])>=5){
+   const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
+ for(const [name,h] of hips){const p=project(...h);
+  if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
+  if(on('names')){const top=project(h[0],h[1],h[2]+(bodies?900:250));nameAt(name,top[0],top[1]-6*d,labels);}}
+ for(const p of data.pushes){const F=p.force[frame-p.start],h=hips.get(p.person);if(F&&h)arrow(h,F);}
+ inset();storyPanel();
+ $('clock').textContent=(frame*data.dt).toFixed(2)+' s, frame '+frame;$('time').value=frame;}
+)html";
+
+std::string Box(const std::string& id, const std::string& text, const std::string& colour = "") {
+  const std::string chip =
+      colour.empty() ? "" : "<span class=\"chip\" style=\"background:" + colour + "\"></span>";
+  return "<label><input type=\"checkbox\" id=\"" + id + "\" checked>" + chip + " " +
+         EscapeXml(text) + "</label>\n";
+}
+
+// Of what there is to see, and no more.
+std::string Choices(const Animation& animation, const std::vector<std::string>& whats) {
+  const auto any = [&animation](auto has) {
+    return std::any_of(animation.people.begin(), animation.people.end(), has);
+  };
+  std::set<std::string> names;
+  for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  std::string html;
+  if (any([](const AnimatedPerson& p) { return p.recorded; })) {
+    html += Box("recorded", "recorded", "var(--recorded)");
+    if (whats.size() == 1) html += Box("predicted", "predicted (in colour)");
+  }
+  for (size_t k = 0; whats.size() > 1 && k < whats.size(); ++k) {
+    html += Box("what" + std::to_string(k), whats[k].empty() ? kAsFitted : whats[k],
+                kAnimationColours[k % std::size(kAnimationColours)]);
+  }
+  if (any([](const AnimatedPerson& p) { return !p.tip.empty(); })) {
+    html += Box("pendulums", "pendulums");
+  }
+  if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
+    html += Box("forces", "net forces (1 m = 1000 N)", "#e0a100");
+  }
+  html += Box("names", "names");
+  if (names.size() > 1) html += Box("above", "from above");
+  if (!animation.pushes.empty()) {
+    html += std::string("<span><span class=\"chip\" style=\"background:") + kAnimatedPushColour +
+            "\"></span> pushed, and the push</span>\n";
+  }
+  return html;
+}
+
+std::string StoryHtml(const Animation& animation) {
+  if (!animation.story) return "";
+  const ForceStory& story = animation.story->story;
+  std::string html = "<div style=\"flex-basis:100%\">" + EscapeXml(animation.story->person) + ": ";
+  for (size_t i = 0; i < story.moments.size(); ++i) {
+    html += "<button class=\"moment\" id=\"moment" + std::to_string(i) + "\">" +
+            Rounded(story.moments[i].from * animation.dt, 3) + " s " +
+            EscapeXml(story.moments[i].text) + "</button>\n";
+  }
+  return html + "</div>\n";
+}
+
+int Whole(double value) { return static_cast<int>(std::lround(value)); }
+
+nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
+  nlohmann::json json = nlohmann::json::array();
+  for (const auto& p : points) {
+    json.push_back({Whole(1000 * p.x()), Whole(1000 * p.y()), Whole(1000 * p.z())});
+  }
+  return json;
+}
+
+// Of people, or of what-ifs; more people than there are colours take them from a scale, so that
+// neighbours look alike and nobody twice the same.
+std::vector<std::string> ColoursOf(const Animation& animation,
+                                   const std::vector<std::string>& whats) {
+  std::set<std::string> names;
+  for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  std::vector<std::string> colours(std::begin(kAnimationColours), std::end(kAnimationColours));
+  if (whats.size() > 1 || names.size() <= colours.size()) return colours;
+  colours.clear();
+  for (size_t n = 0; n < names.size(); ++n) {
+    colours.push_back(
+        ColourOf(kBrightest * static_cast<double>(n) / static_cast<double>(names.size() - 1)));
+  }
+  return colours;
+}
+
+nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::string>& whats) {
+  nlohmann::json body = nlohmann::json::array(), force = nlohmann::json::array();
+  for (const Pose& pose : person.body) {
+    nlohmann::json numbers = nlohmann::json::array();
+    for (Eigen::Index i = 0; i < pose.size(); ++i) numbers.push_back(Whole(1000 * pose.data()[i]));
+    body.push_back(std::move(numbers));
+  }
+  for (const auto& f : person.force) force.push_back({Whole(f[0]), Whole(f[1])});
+  return {{"name", person.name},
+          {"recorded", person.recorded},
+          {"what", std::find(whats.begin(), whats.end(), person.what) - whats.begin()},
+          {"body", std::move(body)},
+          {"cart", Millimetres(person.cart)},
+          {"tip", Millimetres(person.tip)},
+          {"force", std::move(force)}};
+}
+
+}  // namespace
+
+std::string AnimationHtml(const Animation& animation) {
+  const std::vector<std::string> whats = WhatsOf(animation);
+  nlohmann::json data = {{"title", animation.title},
+                         {"dt", animation.dt},
+                         {"frames", animation.num_frames()},
+                         {"whats", whats},
+                         {"colours", ColoursOf(animation, whats)},
+                         {"people", nlohmann::json::array()},
+                         {"pushes", nlohmann::json::array()}};
+  for (const AnimatedPerson& person : animation.people) {
+    data["people"].push_back(PersonJson(person, whats));
+  }
+  for (const AnimatedPush& push : animation.pushes) {
+    nlohmann::json force = nlohmann::json::array();
+    for (const auto& f : push.force) force.push_back({Whole(f[0]), Whole(f[1])});
+    data["pushes"].push_back(
+        {{"person", push.person}, {"start", push.start}, {"force", std::move(force)}});
+  }
+  if (animation.story) {
+    const ForceStory& story = animation.story->story;
+    nlohmann::json moments = nlohmann::json::array(), forces = nlohmann::json::array();
+    for (const StoryMoment& moment : story.moments) moments.push_back({moment.from, moment.to});
+    for (const std::array<double, 4>& f : story.forces) {
+      forces.push_back({Whole(f[0]), Whole(f[1]), Whole(f[2]), Whole(f[3])});
+    }
+    data["story"] = {{"person", animation.story->person},
+                     {"moments", std::move(moments)},
+                     {"forces", std::move(forces)}};
+  }
+  const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
+  return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
+                 push + "--grid:#3a3f46;--recorded:#a0a0a0",
+                 Choices(animation, whats) + StoryHtml(animation), std::move(data), kScript});
 }
 
 }  // namespace pushid

@@ -36,7 +36,7 @@ BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies
 // and joints without a role keep their angles of frame 0. Without such a file the 22 roles, world
 // axes (z up, x forward), millimetres: offsets are differences of joints in the rest, where all
 // rotations are zero. Positions that no rotation of these bones can reach are approached as
-// skeleton_fit.h does.
+// FitTree does.
 BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double dt);
 
 // Everybody in one scene, under the joints' names.

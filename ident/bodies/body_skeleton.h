@@ -2,7 +2,7 @@
 //
 // Bodies are predicted by role (datasets/manifest/body_roles.h); a motion is then taken back to the
 // skeleton it came from. Its joints turn so that those with a role come as near as bones of
-// constant length can to where the body wants them (models/restoration/skeleton_fit.h); a joint
+// constant length can to where the body wants them (FitTree); a joint
 // without a role follows its parent.
 #pragma once
 
@@ -12,7 +12,6 @@
 
 #include "datasets/manifest/recording.h"
 #include "models/restoration/body.h"
-#include "models/restoration/skeleton_fit.h"
 
 namespace pushid {
 

@@ -17,7 +17,7 @@
 namespace pushid {
 
 class Peer;                         // models/peers/peer.h
-struct RestorationSample;           // ident/training/restoration_data.h
+struct RestorationSample;           // ident/training/restoration_training.h
 struct RestorationTrainingOptions;  // ident/training/restoration_training.h
 struct RestorationTraining;         // ident/training/restoration_training.h
 

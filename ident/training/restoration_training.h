@@ -3,11 +3,14 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/training/restoration_data.h"
+#include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_features.h"
@@ -15,6 +18,50 @@
 #include "models/restoration/restoration.h"
 
 namespace pushid {
+
+// What restoration networks learn from: recorded bodies with their true pendulums and with
+// pendulums that a model predicts without having seen the recording.
+//
+// A network that has seen only true pendulums is told, when used, of predicted ones, which err; so
+// it sees both. The predictions are out of fold: a model fitted to the very recording would err too
+// little.
+
+// The model of `options` fitted to some recordings (indices), without the uncertainty; nothing when
+// no start found a usable optimum.
+std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
+                                     const std::vector<int>& train, const FitOptions& options);
+
+// For every recording of `among` (indices) the path that a model predicts which was fitted to the
+// other folds of `among`; an empty path where the rollout failed. Fewer recordings than folds: one
+// fold each. Results are in the order of `among`.
+using OutOfFoldProgress = std::function<void(int fold, int folds)>;
+std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
+                                                  const std::vector<int>& among,
+                                                  const FitOptions& options, int folds,
+                                                  uint64_t seed,
+                                                  const OutOfFoldProgress& progress = nullptr);
+
+// One person of one recording with one pendulum, among everybody of the recording.
+struct RestorationSample {
+  std::shared_ptr<const std::vector<RestorationInput>> people;
+  int index = 0;        // who of them
+  BodyMotion motion;    // the true one
+  double weight = 1.0;  // of a frame: recordings count alike
+
+  const RestorationInput& person() const { return (*people)[index]; }
+};
+
+// Of every person of the recordings: the true pendulum, the predicted one (where the path is not
+// empty), and both in the mirror. paths: in the order of `among`, or none.
+std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
+                                           const std::vector<int>& among,
+                                           const std::vector<RolloutPath<double>>& paths,
+                                           bool mirrored);
+
+// Indices into `among`'s values: about `share` of the recordings, at least one, spread over
+// settings and strengths, to stop a training early by.
+void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::vector<int>& among,
+                  double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held);
 
 struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   RestorationKind kind = RestorationKind::kWindow;

@@ -1,5 +1,5 @@
 // models: batches of groups.
-#include "models/generators/diffusion_batches_torch.h"
+#include "models/generators/diffusion_module_torch.h"
 
 #include <algorithm>
 

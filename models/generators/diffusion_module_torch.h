@@ -5,6 +5,7 @@
 #pragma once
 
 #include "models/generators/diffusion_network.h"
+#include "models/generators/diffusion_trainer.h"
 #include "models/restoration/support_torch.h"
 
 namespace pushid {
@@ -189,5 +190,28 @@ class DiffusionModule : public torch::nn::Module {
   std::vector<Pool> pools_;
   ConvolutionPointer out_, direct_;
 };
+
+class DiffusionBatches {
+ public:
+  DiffusionBatches(const std::vector<ObservedGroup>& groups, const JointScales& scales,
+                   const DiffusionTrainingOptions& options);
+
+  bool empty() const { return groups_.empty() && alone_.empty(); }
+  // Of a training step, with all that is random in it.
+  DiffusionBatch Draw(int step) const;
+  // Of these groups as they are, of which the first frame is shown; at most `most`.
+  DiffusionBatch AsTheyAre(int most) const;
+
+ private:
+  ObservedGroup Varied(const ObservedGroup& group) const;
+  void AddBystanders(ObservedGroup* group) const;
+
+  const JointScales scales_;
+  const DiffusionTrainingOptions& options_;
+  std::vector<ObservedGroup> groups_, alone_;
+};
+
+// One group's features as a batch of it alone.
+DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& structure);
 
 }  // namespace pushid

@@ -1,7 +1,7 @@
 // models: the trainer of the diffusion network, in LibTorch.
 #include <algorithm>
 
-#include "models/generators/diffusion_batches_torch.h"
+#include "models/generators/diffusion_module_torch.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/diffusion_trainer.h"
 

@@ -1,7 +1,7 @@
 // models: what a forecast of particles is charged. Included by *_torch.cc files alone.
 #pragma once
 
-#include "models/generators/particle_windows_torch.h"
+#include "models/generators/particle_module_torch.h"
 
 namespace pushid {
 

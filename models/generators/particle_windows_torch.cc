@@ -1,5 +1,5 @@
 // models: windows, and what is known of all of them.
-#include "models/generators/particle_windows_torch.h"
+#include "models/generators/particle_module_torch.h"
 
 #include <algorithm>
 

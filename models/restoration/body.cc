@@ -1,6 +1,11 @@
 // models: symmetry and measures of the body.
 #include "models/restoration/body.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
 namespace pushid {
 
 int MirroredJoint(int joint) {
@@ -35,6 +40,134 @@ double Heading(const Pose& pose) {
   const Eigen::Vector3d left =
       pose.col(kLeftHip) - pose.col(kRightHip) + pose.col(kLeftShoulder) - pose.col(kRightShoulder);
   return std::atan2(-left.x(), left.y());
+}
+
+namespace {
+
+// Every joint of the body turns towards its children.
+const JointAims& BodyTree() {
+  static const JointAims body = [] {
+    JointAims tree;
+    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
+    tree.aims.resize(kBodyJoints);
+    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
+    return tree;
+  }();
+  return body;
+}
+
+// A stretched knee has no direction to bend in, hence never quite stretched.
+constexpr double kMostStretched = 0.9995;
+constexpr double kStraight = 1e-4;  // m
+
+}  // namespace
+
+FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
+                   const Eigen::Matrix3Xd& wanted) {
+  const int joints = static_cast<int>(tree.parents.size());
+  FittedTree posed{Eigen::Matrix3Xd(3, joints), std::vector<Eigen::Matrix3d>(joints)};
+  std::vector<Eigen::Vector3d> from, to;
+  for (int j = 0; j < joints; ++j) {
+    const int above = tree.parents[j];
+    const Eigen::Matrix3d parent = above < 0 ? Eigen::Matrix3d::Identity() : posed.rotations[above];
+    if (above < 0) {
+      posed.positions.col(j) = wanted.col(j);
+    } else {
+      posed.positions.col(j) =
+          posed.positions.col(above) + parent * (rest.col(j) - rest.col(above));
+    }
+    const std::vector<int>& aims = tree.aims[j];
+    Eigen::Matrix3d& rotation = posed.rotations[j];
+    rotation = parent;
+    if (aims.size() == 1) {
+      const Eigen::Vector3d offset = rest.col(aims[0]) - rest.col(j);
+      const Eigen::Vector3d aim = wanted.col(aims[0]) - posed.positions.col(j);
+      rotation = SwingBetween(parent * offset, aim) * parent;
+    } else if (aims.size() > 1) {
+      from.clear(), to.clear();
+      for (int aim : aims) {
+        from.push_back(rest.col(aim) - rest.col(j));
+        to.push_back(wanted.col(aim) - posed.positions.col(j));
+      }
+      rotation = FitRotation(from, to);
+    }
+  }
+  return posed;
+}
+
+PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted) {
+  const FittedTree fitted = FitTree(BodyTree(), rest, wanted);
+  PosedSkeleton posed;
+  posed.positions = fitted.positions;
+  std::copy(fitted.rotations.begin(), fitted.rotations.end(), posed.rotations.begin());
+  return posed;
+}
+
+double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose) {
+  const int hip = left ? kLeftHip : kRightHip, knee = hip + 1, ankle = hip + 2, toe = hip + 3;
+  const Eigen::Vector3d h = pose->col(hip), k = pose->col(knee), a = pose->col(ankle);
+  const double thigh = (k - h).norm(), shank = (a - k).norm();
+  Eigen::Vector3d along = target - h;
+  double distance = along.norm();
+  if (!(distance > 1e-6) || !(thigh > 0.0) || !(shank > 0.0)) return (target - a).norm();
+  along /= distance;
+  distance = std::clamp(distance, std::abs(thigh - shank) * 1.001 + 1e-6,
+                        kMostStretched * (thigh + shank));
+  // Law of cosines: how far along the line, and how far beside it, the knee stands.
+  const double foot = (thigh * thigh + distance * distance - shank * shank) / (2.0 * distance);
+  const double beside = std::sqrt(std::max(0.0, thigh * thigh - foot * foot));
+  // The knee bends to the side it bent to, carried along with the leg; a straight leg bends towards
+  // the toe.
+  const Eigen::Vector3d was = (a - h).normalized();
+  Eigen::Vector3d bend = (k - h) - was.dot(k - h) * was;
+  if (!(bend.norm() > kStraight)) bend = pose->col(toe) - a;
+  bend = SwingBetween(was, along) * bend;
+  bend -= along.dot(bend) * along;
+  const Eigen::Vector3d reached = h + distance * along;
+  pose->col(toe) += reached - a;
+  pose->col(knee) = h + foot * along + beside * bend.normalized();
+  pose->col(ankle) = reached;
+  return (target - reached).norm();
+}
+
+namespace {
+constexpr double kNoLength = 1e-9;
+}  // namespace
+
+Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation) {
+  Rotation6d numbers;
+  numbers << rotation.col(0), rotation.col(1);
+  return numbers;
+}
+
+Eigen::Matrix3d FromRotation6d(const Rotation6d& numbers) {
+  const Eigen::Vector3d a = numbers.head<3>(), b = numbers.tail<3>();
+  const double length = a.norm();
+  if (!(length > kNoLength)) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d rotation;
+  rotation.col(0) = a / length;
+  const Eigen::Vector3d square = b - rotation.col(0).dot(b) * rotation.col(0);
+  const double rest = square.norm();
+  if (!(rest > kNoLength)) return Eigen::Matrix3d::Identity();
+  rotation.col(1) = square / rest;
+  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
+  return rotation;
+}
+
+Eigen::Matrix3d SwingBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  if (!(from.norm() > kNoLength) || !(to.norm() > kNoLength)) return Eigen::Matrix3d::Identity();
+  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+}
+
+Eigen::Matrix3d FitRotation(const std::vector<Eigen::Vector3d>& from,
+                            const std::vector<Eigen::Vector3d>& to) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (size_t i = 0; i < from.size(); ++i) covariance += to[i] * from[i].transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d sign(1.0, 1.0, 1.0);
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign.z() = -1.0;
+  return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
 }  // namespace pushid

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "models/restoration/skeleton_fit.h"
+#include "models/restoration/body.h"
 
 namespace pushid {
 

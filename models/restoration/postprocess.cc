@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/restoration/skeleton_fit.h"
+#include "models/restoration/body.h"
 
 namespace pushid {
 namespace {

@@ -3,7 +3,7 @@
 //   1. The residual at frame 0 (restored pose - first pose) is taken off, fading over 8 frames: the
 //      motion begins where the person stands. Where more frames were seen, they are in the motion
 //      as they were, and all that follows begins with the last of them.
-//   2. The person's own skeleton carries it out (skeleton_fit.h): bones keep their length.
+//   2. The person's own skeleton carries it out (FitSkeleton of body.h): bones keep their length.
 //   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
 //      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model says
 //      when feet stand (RestorationInput::stands), they stand then (PlantFeet, below), unless more

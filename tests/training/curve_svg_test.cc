@@ -1,7 +1,7 @@
 // The training curve: stages apart, the best point marked.
 #include <gtest/gtest.h>
 
-#include "ident/training/training_curve.h"
+#include "ident/training/training_run.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 
 #include "datasets/files/npy.h"
 #include "ident/bodies/body_files.h"
-#include "models/restoration/skeleton_fit.h"
+#include "models/restoration/body.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 
-#include "models/restoration/skeleton_fit.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -1,8 +1,11 @@
 // ident: generators of particles, to and from settings and tensors.
+#include "ident/generators/trained_networks.h"
+
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/random.h"
+#include "ident/generators/generator_files.h"
 #include "ident/generators/push_particles.h"
-#include "ident/generators/trained_networks.h"
 
 namespace pushid {
 namespace {
@@ -78,6 +81,36 @@ std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings&
   if (settings.data == GeneratorData::kPushes) options.mirrored_controls = kMirroredPush;
   options.ridge_share = ridge_share > 0.0 ? changes.ridge_share.value_or(ridge_share) : 0.0;
   return std::make_unique<ParticleGenerator>(settings.layout, members, ridge, options);
+}
+
+nlohmann::ordered_json TrainedDiffusion::Settings() const {
+  return {{"members", members.size()}, {"pooling", NameOf(members.front().structure.pooling)}};
+}
+
+SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const GeneratorSettings& settings,
+                             TensorReader* reader) {
+  Demand(settings.layout.num_particles() == kBodyJoints, "diffusion needs bodies of 22 joints");
+  const auto trained = std::make_shared<TrainedDiffusion>();
+  DiffusionStructure structure;
+  ParseSetting(json, "pooling", &structure.pooling);
+  structure.pendulum = settings.pendulum;
+  const int members = ReadMembers(json);
+  for (int m = 0; m < members; ++m) {
+    trained->members.push_back(TakeDiffusion(MemberName(m), structure, reader));
+  }
+  return trained;
+}
+
+std::unique_ptr<MotionGenerator> TrainedDiffusion::Make(const GeneratorSettings& settings,
+                                                        const GeneratorChanges& changes) const {
+  const auto noise = [seed = changes.seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+  DiffusionGeneratorOptions options = changes.diffusion;
+  options.learnt_frames = settings.observed + settings.predicted;
+  return std::make_unique<DiffusionGenerator>(settings.layout, members, 1.0 / settings.rate,
+                                              options, noise);
 }
 
 }  // namespace pushid
