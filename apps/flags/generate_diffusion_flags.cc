@@ -7,10 +7,10 @@
 #include "apps/flags/kind_flags.h"
 
 namespace {
-const pushid::GeneratorChanges kChanges;
+const pushid::DiffusionGeneratorOptions kSampling;
 }  // namespace
 
-DEFINE_double(push_spread, kChanges.diffusion.push_spread,
+DEFINE_double(push_spread, kSampling.push_spread,
               "diffusion, --samples: spread of the logarithm of the push between sampled futures");
 
 namespace pushid {

@@ -6,21 +6,21 @@
 #include "apps/flags/kind_flags.h"
 
 namespace {
-const pushid::GeneratorChanges kChanges;
+const pushid::GeneratorChanges kAsTrained;
 }  // namespace
 
 DEFINE_double(ridge_share, -1.0, "share of the linear forecast in the blend; -1: as trained");
-DEFINE_bool(project_bones, kChanges.particles.project_bones,
+DEFINE_bool(project_bones, kAsTrained.particles.project_bones,
             "keep the bone lengths of the last observed frame");
-DEFINE_double(noise_memory, kChanges.particles.noise_memory,
+DEFINE_double(noise_memory, kAsTrained.particles.noise_memory,
               "sampled futures: correlation of the noise between one frame and the next");
-DEFINE_double(noise_scale, kChanges.particles.noise_scale,
+DEFINE_double(noise_scale, kAsTrained.particles.noise_scale,
               "sampled futures: factor on the learned noise");
-DEFINE_bool(correlated_noise, kChanges.particles.correlated_noise,
+DEFINE_bool(correlated_noise, kAsTrained.particles.correlated_noise,
             "sampled futures: noise is correlated across coordinates, like the errors of the "
             "drift; off: independent");
 DEFINE_bool(
-    mirror, kChanges.particles.mirror,
+    mirror, kAsTrained.particles.mirror,
     "average with the forecast of the mirror image: like a second network, without training one");
 
 namespace pushid {

@@ -4,10 +4,10 @@
 //   MPJPE      |joint - recorded joint|, m
 //   hipADE     the same of the hip alone; hipFDE: at the last frame
 //   MBLE       | |bone| - |recorded bone| |, over 21 bones, m
-//   FSE        of ankles in contact (below H = 2.5 cm above their own height at frame 0):
-//   horizontal
-//              way since the frame before times (2 - 2^(h/H)), h above the height at frame 0 and at
-//              least 0; cm per frame. Mean over the contacts of a person, then over people.
+//   FSE        of ankles in contact (below H = 2.5 cm above their own height at frame 0): the
+//              horizontal way since the frame before times (2 - 2^(h/H)), h above the height at
+//              frame 0 and at least 0; cm per frame. Mean over the contacts of a person, then over
+//              people.
 //   relative   MPJPE of joint - hip against recorded joint - hip (the hip counts as a joint, zero)
 //   bound      MPJPE of the recorded shape carried by the predicted hip: what is left when the
 //              shape is right
