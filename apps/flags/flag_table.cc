@@ -193,7 +193,11 @@ std::string FlagHelp(const MovedFlags& moved) {
     if (moved.Has(flag.name)) continue;
     const std::string value =
         flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
-    below[HeadingOf(flag)] += "  --" + flag.name + value + "\n      " + flag.description + "\n";
+    // What did not move with the others.
+    const std::string heading = HeadingOf(flag);
+    const bool left = heading == "checks" && !moved.names.empty();
+    below[left ? "settings" : heading] +=
+        "  --" + flag.name + value + "\n      " + flag.description + "\n";
   }
   below["general"] +=
       "  --flagfile=FILE\n      read flags from a file, one per line\n"
