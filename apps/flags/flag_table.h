@@ -44,6 +44,13 @@ MaybeError Require(const std::string& flag, const std::string& value, const std:
 
 // "--spacing is -1; it must lie between ...". Written so that NaN fails.
 MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
+// The value that a flag has, into its place.
+template <typename Value, typename Target>
+MaybeError TakeInRange(const char* flag, Value value, double lowest, double highest,
+                       Target* target) {
+  *target = value;
+  return CheckRange(flag, static_cast<double>(value), lowest, highest);
+}
 
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.

@@ -20,8 +20,8 @@ MaybeError ReadDiffusionFlags(GenerateFlags* flags) {
   const Result<DiffusionGeneratorOptions> options = DiffusionOptionsFromCommandLine();
   if (!options.ok()) return options.error();
   flags->changes.diffusion = options.value();
-  flags->changes.diffusion.push_spread = FLAGS_push_spread;
-  return CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0);
+  return TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0,
+                     &flags->changes.diffusion.push_spread);
 }
 
 std::vector<const char*> DiffusionNames() {

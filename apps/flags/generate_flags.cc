@@ -59,17 +59,19 @@ DEFINE_int32(poses, kFlags.poses, "poses of the strip");
 namespace pushid {
 namespace {
 
-MaybeError CheckRanges() {
+MaybeError ReadNumbers(GenerateFlags* flags) {
   if (FLAGS_samples != 0) {
     if (MaybeError error = CheckRange("samples", FLAGS_samples, kLeastSamples, 10000)) return error;
   }
   for (const MaybeError& error :
-       {CheckRange("stride", FLAGS_stride, 0, 1e6), CheckRange("window", FLAGS_window, 0, 1e9),
-        CheckRange("person", FLAGS_person, 0, 1e6), CheckRange("poses", FLAGS_poses, 2, 40),
-        CheckRange("target_window", FLAGS_target_window, -1, 1e9),
-        CheckRange("target_distance", FLAGS_target_distance, 0.0, 100.0),
-        CheckRange("observed", FLAGS_observed, 0, 1000),
-        CheckRange("frames", FLAGS_frames, 0, 10000),
+       {TakeInRange("stride", FLAGS_stride, 0, 1e6, &flags->stride),
+        TakeInRange("window", FLAGS_window, 0, 1e9, &flags->window),
+        TakeInRange("person", FLAGS_person, 0, 1e6, &flags->person),
+        TakeInRange("poses", FLAGS_poses, 2, 40, &flags->poses),
+        TakeInRange("target_window", FLAGS_target_window, -1, 1e9, &flags->target_window),
+        TakeInRange("target_distance", FLAGS_target_distance, 0.0, 100.0, &flags->target_distance),
+        TakeInRange("observed", FLAGS_observed, 0, 1000, &flags->observed),
+        TakeInRange("frames", FLAGS_frames, 0, 10000, &flags->frames),
         CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
     if (error) return error;
   }
@@ -129,7 +131,7 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   for (const MaybeError& error :
        {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--protocol", FLAGS_protocol, &flags.protocol), CheckRanges(),
+        ParseName("--protocol", FLAGS_protocol, &flags.protocol), ReadNumbers(&flags),
         KindFlags<GenerateFlags>::ReadAll(&flags)}) {
     if (error) return *error;
   }
@@ -137,23 +139,15 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
   flags.changes.seed = FLAGS_seed;
-  flags.observed = FLAGS_observed;
-  flags.frames = FLAGS_frames;
   flags.physics = FLAGS_physics;
-  flags.stride = FLAGS_stride;
   flags.samples = FLAGS_samples;
   flags.seed = FLAGS_seed;
   flags.action = FLAGS_action;
-  flags.window = FLAGS_window;
   flags.id = FLAGS_id;
-  flags.person = FLAGS_person;
-  flags.target_window = FLAGS_target_window;
-  flags.target_distance = FLAGS_target_distance;
   flags.json_out = FLAGS_json_out;
   flags.poses_out = FLAGS_poses_out;
   flags.strip_out = FLAGS_strip_out;
   flags.page_out = FLAGS_page_out;
-  flags.poses = FLAGS_poses;
   if (MaybeError error = CheckData(flags)) return *error;
   if (MaybeError error =
           CheckOutputFiles({flags.json_out, flags.poses_out, flags.strip_out, flags.page_out})) {

@@ -27,18 +27,16 @@ namespace pushid {
 namespace {
 
 MaybeError ReadParticleFlags(GenerateFlags* flags) {
+  ParticleGeneratorOptions& particles = flags->changes.particles;
   for (const MaybeError& error :
        {FLAGS_ridge_share == -1.0 ? MaybeError()
                                   : CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0),
-        CheckRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99),
-        CheckRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0)}) {
+        TakeInRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99, &particles.noise_memory),
+        TakeInRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0, &particles.noise_scale)}) {
     if (error) return error;
   }
   if (FLAGS_ridge_share >= 0.0) flags->changes.ridge_share = FLAGS_ridge_share;
-  ParticleGeneratorOptions& particles = flags->changes.particles;
   particles.project_bones = FLAGS_project_bones;
-  particles.noise_memory = FLAGS_noise_memory;
-  particles.noise_scale = FLAGS_noise_scale;
   particles.correlated_noise = FLAGS_correlated_noise;
   particles.mirror = FLAGS_mirror;
   return std::nullopt;

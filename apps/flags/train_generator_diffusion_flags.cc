@@ -22,13 +22,12 @@ MaybeError ReadDiffusionFlags(TrainGeneratorFlags* flags) {
   DiffusionTrainingOptions& diffusion = flags->options.diffusion;
   for (const MaybeError& error :
        {ParseName("--pooling", FLAGS_pooling, &diffusion.structure.pooling),
-        CheckRange("bystanders", FLAGS_bystanders, 0.0, 1.0)}) {
+        TakeInRange("bystanders", FLAGS_bystanders, 0.0, 1.0, &diffusion.bystanders)}) {
     if (error) return error;
   }
   if (flags->steps > 0) diffusion.steps = flags->steps;
   if (flags->batch > 0) diffusion.groups = flags->batch;
   if (flags->learning_rate > 0.0) diffusion.learning_rate = flags->learning_rate;
-  diffusion.bystanders = FLAGS_bystanders;
   return std::nullopt;
 }
 

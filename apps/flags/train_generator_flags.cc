@@ -87,18 +87,24 @@ namespace {
 
 bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
 
-MaybeError CheckRanges() {
+MaybeError ReadNumbers(TrainGeneratorFlags* flags) {
+  GeneratorTrainingOptions& options = flags->options;
   for (const MaybeError& error :
-       {CheckRange("seeds", FLAGS_seeds, 0, 20), CheckRange("steps", FLAGS_steps, 0, 1e6),
-        CheckRange("batch", FLAGS_batch, 0, 4096), CheckRange("observed", FLAGS_observed, 0, 1000),
-        CheckRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0), CheckRange("samples", FLAGS_samples, 0, 10000),
-        CheckRange("push_spread", FLAGS_push_spread, 0.0, 3.0),
-        CheckRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0),
-        CheckRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12),
-        CheckRange("held_out", FLAGS_held_out, 0.0, 0.5),
-        CheckRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9),
-        CheckRange("num_threads", FLAGS_num_threads, 1, 1024)}) {
+       {CheckRange("seeds", FLAGS_seeds, 0, 20),
+        TakeInRange("steps", FLAGS_steps, 0, 1e6, &flags->steps),
+        TakeInRange("batch", FLAGS_batch, 0, 4096, &flags->batch),
+        CheckRange("observed", FLAGS_observed, 0, 1000),
+        TakeInRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0, &flags->learning_rate),
+        TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend),
+        TakeInRange("samples", FLAGS_samples, 0, 10000, &flags->samples),
+        TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0,
+                    &flags->changes.diffusion.push_spread),
+        TakeInRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0, &options.ridge_share),
+        TakeInRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12, &options.ridge_penalty),
+        TakeInRange("held_out", FLAGS_held_out, 0.0, 0.5, &flags->held_out),
+        TakeInRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9,
+                    &options.checkpoint_seconds),
+        TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads)}) {
     if (error) return error;
   }
   return std::nullopt;
@@ -180,14 +186,12 @@ MaybeError CheckData(GeneratorKind kind, GeneratorData data) {
 
 Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   TrainGeneratorFlags flags;
-  flags.steps = FLAGS_steps;
-  flags.batch = FLAGS_batch;
-  flags.learning_rate = FLAGS_learning_rate;
   GeneratorTrainingOptions& options = flags.options;
-  for (const MaybeError& error : {ParseName("--kind", FLAGS_kind, &options.kind),
-                                  ParseName("--dataset", FLAGS_dataset, &flags.data),
-                                  ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy),
-                                  CheckRanges(), KindFlags<TrainGeneratorFlags>::ReadAll(&flags)}) {
+  for (const MaybeError& error :
+       {ParseName("--kind", FLAGS_kind, &options.kind),
+        ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy), ReadNumbers(&flags),
+        KindFlags<TrainGeneratorFlags>::ReadAll(&flags)}) {
     if (error) return *error;
   }
   const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
@@ -200,20 +204,12 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   flags.folder = FLAGS_folder;
   flags.with_validation = FLAGS_with_validation;
   flags.observed = FLAGS_observed > 0 ? FLAGS_observed : kind.observed;
-  flags.held_out = FLAGS_held_out;
   flags.out = FLAGS_out;
   flags.crossvalidate = FLAGS_crossvalidate;
   flags.json_out = FLAGS_json_out;
-  flags.changes.diffusion.blend = FLAGS_blend;
-  flags.changes.diffusion.push_spread = FLAGS_push_spread;
-  flags.samples = FLAGS_samples;
   options.seeds = FLAGS_seeds > 0 ? FLAGS_seeds : kind.seeds;
   options.seed = FLAGS_seed;
-  options.num_threads = FLAGS_num_threads;
   options.correction = FLAGS_correction;
-  options.ridge_share = FLAGS_ridge_share;
-  options.ridge_penalty = FLAGS_ridge_penalty;
-  options.checkpoint_seconds = FLAGS_checkpoint_seconds;
   if (FLAGS_physics.empty()) return flags;
   const Result<FittedModel> physics = ReadFittedModel(FLAGS_physics);
   if (!physics.ok()) return physics.error();

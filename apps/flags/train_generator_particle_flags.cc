@@ -38,11 +38,11 @@ MaybeError ReadParticleFlags(TrainGeneratorFlags* flags) {
   for (const MaybeError& error :
        {ParseName("--cell", FLAGS_cell, &particles.structure.cell),
         ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss),
-        CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6),
-        CheckRange("jitter", FLAGS_jitter, 0.0, 100.0),
-        CheckRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6),
-        CheckRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6),
-        CheckRange("critic_weight", FLAGS_critic_weight, 0.0, 1e6)}) {
+        TakeInRange("noise_steps", FLAGS_noise_steps, 0, 1e6, &particles.noise_steps),
+        TakeInRange("jitter", FLAGS_jitter, 0.0, 100.0, &particles.jitter),
+        TakeInRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6, &particles.squared),
+        TakeInRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6, &particles.bones),
+        TakeInRange("critic_weight", FLAGS_critic_weight, 0.0, 1e6, &particles.critic)}) {
     if (error) return error;
   }
   if (flags->steps > 0) particles.steps = flags->steps;
@@ -51,11 +51,6 @@ MaybeError ReadParticleFlags(TrainGeneratorFlags* flags) {
   particles.structure.skip = FLAGS_skip;
   particles.structure.pose_operator = FLAGS_pose_operator;
   particles.structure.particles = FLAGS_particles;
-  particles.noise_steps = FLAGS_noise_steps;
-  particles.jitter = FLAGS_jitter;
-  particles.squared = FLAGS_squared_weight;
-  particles.bones = FLAGS_bone_weight;
-  particles.critic = FLAGS_critic_weight;
   return std::nullopt;
 }
 
