@@ -2,7 +2,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_file.h"
@@ -144,8 +143,7 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   MaybeError error = WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates.value()));
   if (!error) error = WritePhysics(pendulums, physics.value(), Inside(flags.out, kChosenPhysics));
   if (error) return *error;
-  std::vector<int> all(recordings.size());
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   const auto restoration = TrainFromRecordings(recordings, all, options.chain, show);
   line.Finish();
   if (!restoration.ok()) return restoration.error();
@@ -176,12 +174,11 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   if (flags.crossvalidate > 0) return CrossValidate(flags, bodies.value());
   if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
   Json data = Json::array();
-  std::vector<int> all, learnt, held;
+  const std::vector<int> all = Others({}, static_cast<int>(bodies.value().size()));
+  std::vector<int> learnt = all, held;
   for (const BodyRecording& body : bodies.value()) {
-    all.push_back(static_cast<int>(all.size()));
     data.push_back({{"id", body.pendulum.id}, {"content_hash", body.pendulum.content_hash}});
   }
-  learnt = all;
   if (flags.held_out > 0.0 && all.size() > 1) {
     SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.seed, &learnt,
                  &held);

@@ -84,8 +84,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   };
   options.training.checkpoint = in_out("checkpoint.bin");
   if (MaybeError error = CheckWritable(options.training.checkpoint)) return Fail(*error);
-  std::vector<int> all(recordings.size());
-  for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
   const Result<TrainedRestoration> learnt = Learn(flags, recordings, all, options, &line);
   line.Finish();

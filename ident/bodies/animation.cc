@@ -1,4 +1,4 @@
-// ident: collecting what an animation shows.
+// ident: what an animation shows, collected, and its page.
 #include "ident/bodies/animation.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// ident: generators of particles, to and from settings and tensors.
+// ident: networks of generators, to and from settings and tensors.
 #include "ident/generators/trained_networks.h"
 
 #include <nlohmann/json.hpp>

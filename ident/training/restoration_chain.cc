@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/recording_effect.h"
@@ -14,21 +13,6 @@
 
 namespace pushid {
 namespace {
-
-// Those of the positions, or none where nothing was made.
-template <typename Value>
-std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
-  std::vector<Value> picked;
-  if (from.empty()) return picked;
-  for (int k : positions) picked.push_back(from[k]);
-  return picked;
-}
-
-std::vector<int> All(const std::vector<BodyRecording>& recordings) {
-  std::vector<int> all(recordings.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 // The largest change of a free parameter relative to its value.
 double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
@@ -85,8 +69,8 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
   }
   auto training =
       MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);
-  for (RestorationSample& sample :
-       MakeSamples(options.more, All(options.more), {}, options.mirrored)) {
+  for (RestorationSample& sample : MakeSamples(
+           options.more, Others({}, static_cast<int>(options.more.size())), {}, options.mirrored)) {
     training.push_back(std::move(sample));
   }
   const auto held = MakeSamples(recordings, Picked(among, judged), Picked(paths, judged), false);

@@ -185,20 +185,9 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
                "', which is not trained; it must be " + TrainedRestorationKinds()};
 }
 
-namespace {
-
-std::vector<PendulumRecording> Chosen(const std::vector<PendulumRecording>& recordings,
-                                      const std::vector<int>& indices) {
-  std::vector<PendulumRecording> chosen;
-  for (int i : indices) chosen.push_back(recordings[i]);
-  return chosen;
-}
-
-}  // namespace
-
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
                                      const std::vector<int>& train, const FitOptions& options) {
-  Result<SolvedModel> solved = SolveModel(Chosen(recordings, train), options);
+  Result<SolvedModel> solved = SolveModel(Picked(recordings, train), options);
   if (!solved.ok()) return std::nullopt;
   return std::move(solved.value().model);
 }
@@ -211,17 +200,13 @@ std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumReco
   const int total = static_cast<int>(among.size());
   std::vector<RolloutPath<double>> paths(total);
   if (total < 2) return paths;
-  const auto made = MakeFolds(Chosen(recordings, among), FoldScheme::kStratified,
+  const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified,
                               std::min(folds, total), 1, seed);
   if (!made.ok()) return paths;
   int done = 0;
   for (const Fold& fold : made.value()) {
     if (progress) progress(done++, static_cast<int>(made.value().size()));
-    std::vector<int> train;
-    for (int k = 0; k < total; ++k) {
-      const bool held = std::binary_search(fold.held_out.begin(), fold.held_out.end(), k);
-      if (!held) train.push_back(among[k]);
-    }
+    const std::vector<int> train = Picked(among, Others(fold.held_out, total));
     const std::optional<IdentifiedModel> model = FitTo(recordings, train, options);
     if (!model) continue;
     for (int k : fold.held_out) {
@@ -264,13 +249,9 @@ void SplitHeldOut(const std::vector<PendulumRecording>& recordings, const std::v
                   double share, uint64_t seed, std::vector<int>* training, std::vector<int>* held) {
   const int total = static_cast<int>(among.size());
   const int folds = std::clamp(static_cast<int>(std::lround(1.0 / share)), 2, std::max(2, total));
-  const auto made = MakeFolds(Chosen(recordings, among), FoldScheme::kStratified, folds, 1, seed);
-  training->clear(), held->clear();
-  for (int k = 0; k < total; ++k) {
-    const bool out = made.ok() && std::binary_search(made.value()[0].held_out.begin(),
-                                                     made.value()[0].held_out.end(), k);
-    (out ? held : training)->push_back(k);
-  }
+  const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified, folds, 1, seed);
+  *held = made.ok() ? made.value()[0].held_out : std::vector<int>();
+  *training = Others(*held, total);
 }
 
 }  // namespace pushid

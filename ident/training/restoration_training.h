@@ -1,4 +1,10 @@
-// ident: training of restorations on samples, with checkpoints. Needs LibTorch (behind models/).
+// ident: training of restorations: what they learn from, and the kinds' trainings, with
+// checkpoints. Needs LibTorch (behind models/).
+//
+// They learn from recorded bodies with their true pendulums and with pendulums that a model
+// predicts without having seen the recording. A network that has seen only true pendulums is told,
+// when used, of predicted ones, which err; so it sees both. The predictions are out of fold: a
+// model fitted to the very recording would err too little.
 #pragma once
 
 #include <functional>
@@ -19,12 +25,14 @@
 
 namespace pushid {
 
-// What restoration networks learn from: recorded bodies with their true pendulums and with
-// pendulums that a model predicts without having seen the recording.
-//
-// A network that has seen only true pendulums is told, when used, of predicted ones, which err; so
-// it sees both. The predictions are out of fold: a model fitted to the very recording would err too
-// little.
+// Those of the positions, or none where there is nothing to pick from.
+template <typename Value>
+std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
+  std::vector<Value> picked;
+  if (from.empty()) return picked;
+  for (int k : positions) picked.push_back(from[k]);
+  return picked;
+}
 
 // The model of `options` fitted to some recordings (indices), without the uncertainty; nothing when
 // no start found a usable optimum.

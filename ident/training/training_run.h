@@ -1,5 +1,5 @@
-// ident: a training run to its end, and its state in a file, which is good for the very same
-// training alone.
+// ident: a training run to its end, its state in a file, which is good for the very same training
+// alone, and its course as JSON and as a picture.
 #pragma once
 
 #include <functional>
@@ -32,8 +32,7 @@ MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOp
 
 void RemoveCheckpoint(const std::string& file);
 
-// The course of a training, in the file of what was trained and as a picture.
-
+// In the file of what was trained.
 inline nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const TrainingPoint& p : curve) {

@@ -30,11 +30,10 @@
 
 namespace pushid {
 
-// What MRT (mrt_network.h) is told of a group, and how its outputs become motion.
-//
-// Everybody's motion is told as displacements from frame to frame, transformed by cosines over
-// time, in the heading of the person who is asked for, at the last given frame. So nothing depends
-// on where a group stands or which way it faces.
+// What the network is told of a group, and how its outputs become motion. Everybody's motion is
+// told as displacements from frame to frame, transformed by cosines over time, in the heading of
+// the person who is asked for, at the last given frame. So nothing depends on where a group stands
+// or which way it faces.
 
 inline constexpr int kMrtGiven = 20, kMrtFrames = 20;  // seen, and predicted at once
 inline constexpr int kMrtTokens = kMrtGiven - 1;       // cosine coefficients, of a person
