@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <system_error>
 
@@ -16,6 +17,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "datasets/formats/motion_formats.h"
 
 DEFINE_string(out, "", "the folder to write");
 DEFINE_string(format, "bids",
@@ -25,13 +27,14 @@ DEFINE_string(format, "bids",
 namespace {
 
 using namespace pushid;
-enum class ExportFormat { kBids, kTrajectoryText, kTrajectorySqlite };
-
-Result<ExportFormat> Format() {
-  if (FLAGS_format == "bids") return ExportFormat::kBids;
-  if (FLAGS_format == "txt") return ExportFormat::kTrajectoryText;
-  if (FLAGS_format == "sqlite") return ExportFormat::kTrajectorySqlite;
-  return Error{"--format is '" + FLAGS_format + "'; it must be bids, txt or sqlite"};
+// Of the files, one per recording; nullopt: a data set of Motion-BIDS.
+Result<std::optional<MotionFormat>> CrowdFormat() {
+  if (FLAGS_format == "bids") return std::optional<MotionFormat>();
+  const std::optional<MotionFormat> format = FromName<MotionFormat>(FLAGS_format);
+  if (format && HoldsCrowd(*format)) return format;
+  const auto is_crowd = [](const MotionFormatRow& row) { return HoldsCrowd(row.value); };
+  return Error{"--format is '" + FLAGS_format + "'; it must be bids, " +
+               AnyName<MotionFormat>(is_crowd)};
 }
 
 // "GeneratedBy" of a data set of BIDS.
@@ -60,29 +63,28 @@ MaybeError CheckFolder(const std::string& folder) {
 }
 
 // That of --format, once all flags have been checked.
-Result<ExportFormat> CheckedFormat() {
-  const Result<ExportFormat> format = Format();
+Result<std::optional<MotionFormat>> CheckedFormat() {
+  const Result<std::optional<MotionFormat>> format = CrowdFormat();
   if (!format.ok()) return format.error();
   if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return *missing;
-  if (format.value() == ExportFormat::kBids) {
+  if (!format.value()) {
     if (MaybeError error = CheckFolder(FLAGS_out)) return *error;
   }
   return format;
 }
 
 // Which files there will be, before any is written.
-Result<std::vector<std::string>> TrajectoryFiles(ExportFormat format,
+Result<std::vector<std::string>> TrajectoryFiles(MotionFormat format,
                                                  const std::vector<Recording>& recordings) {
-  const bool sqlite = format == ExportFormat::kTrajectorySqlite;
   std::vector<std::string> files;
   for (const Recording& recording : recordings) {
-    files.push_back(FLAGS_out + "/" + recording.id + (sqlite ? ".sqlite" : ".txt"));
+    files.push_back(FLAGS_out + "/" + recording.id + "." + NameOf(format));
     if (MaybeError error = CheckNew("out", files.back())) return *error;
   }
   return files;
 }
 
-MaybeError ExportTrajectories(ExportFormat format, const std::vector<Recording>& recordings) {
+MaybeError ExportTrajectories(MotionFormat format, const std::vector<Recording>& recordings) {
   const Result<std::vector<std::string>> files = TrajectoryFiles(format, recordings);
   if (!files.ok()) return files.error();
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -95,13 +97,13 @@ MaybeError ExportTrajectories(ExportFormat format, const std::vector<Recording>&
 }
 
 int Run() {
-  const Result<ExportFormat> format = CheckedFormat();
+  const Result<std::optional<MotionFormat>> format = CheckedFormat();
   if (!format.ok()) return Fail(format.error());
-  const bool bids = format.value() == ExportFormat::kBids;
+  const bool bids = !format.value();
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, bids);
   if (!recordings.ok()) return Fail(recordings.error());
   const MaybeError error = bids ? WriteBidsDataset(FLAGS_out, recordings.value(), Version())
-                                : ExportTrajectories(format.value(), recordings.value());
+                                : ExportTrajectories(*format.value(), recordings.value());
   if (error) return Fail(*error);
   std::printf("%zu recordings written to %s%s\n", recordings.value().size(), FLAGS_out.c_str(),
               bids ? "; --recordings with its manifest.json reads them again"

@@ -46,7 +46,7 @@ void PrintPeople(const FormationRun& run, bool named) {
         person.onset_frame < 0 ? "-" : Fixed(run.Seconds(person.onset_frame), 2),
         Fixed(person.peak_speed, 2),
         Fixed(person.displacement, 2),
-        std::string(Name(person.outcome))};
+        NameOf(person.outcome)};
     if (steps) row.push_back(Fixed(run.prediction.steps[n].probability, 2));
     if (named) row.push_back(run.recording.subject_ids[n]);
     table.Add(row);

@@ -14,6 +14,9 @@
 #include "datasets/inspection/manifest_maker.h"
 #include "datasets/manifest/recording.h"
 
+const std::string kUnitHelp = "the files' unit: " + pushid::AnyName<pushid::LengthUnit>();
+const std::string kPushKindHelp = pushid::AnyName<pushid::PushKind>();
+
 DEFINE_string(folder, "", "the folder of the recordings, searched with its subfolders");
 DEFINE_string(pattern, "",
               "paths of the motion files in the folder, as in {setting}/{subject}_{take}.c3d; "
@@ -31,12 +34,12 @@ DEFINE_string(setting, pushid::ManifestOptions{}.setting,
               "setting, if the pattern does not give it");
 DEFINE_string(magnitude, pushid::ManifestOptions{}.magnitude,
               "strength of the push, if the pattern does not give it");
-DEFINE_string(push_kind, pushid::Name(pushid::ManifestOptions{}.push_kind),
-              "net, net_without_friction or external");
+DEFINE_string(push_kind, pushid::NameOf(pushid::ManifestOptions{}.push_kind),
+              kPushKindHelp.c_str());
 DEFINE_string(mapping, "", "mapping file for all recordings: joints, columns, unit, axes, rate");
 DEFINE_string(up, "", "the files' axis that points up (z unless given)");
 DEFINE_string(forward, "", "the files' axis that points in the push direction (x unless given)");
-DEFINE_string(length_unit, "", "the files' unit: mm, cm or m");
+DEFINE_string(length_unit, "", kUnitHelp.c_str());
 DEFINE_double(length_scale, 0.0, "instead of a unit: metres per length unit of the files");
 DEFINE_string(out, "", "write the manifest here (JSON)");
 DEFINE_bool(update, false,
@@ -78,21 +81,16 @@ MaybeError ReadNamed(ManifestOptions* options) {
     if (!masses.ok()) return masses.error();
     options->masses = masses.value();
   }
-  const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);
-  if (!kind) {
-    return Error{"--push_kind is '" + FLAGS_push_kind +
-                 "'; it must be net, net_without_friction or external"};
+  if (MaybeError error = ParseName("--push_kind", FLAGS_push_kind, &options->push_kind)) {
+    return error;
   }
-  options->push_kind = *kind;
   if (FLAGS_length_scale != 0.0) {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);
     if (!problem.empty()) return Error{"--length_scale " + problem};
     options->length_scale = FLAGS_length_scale;
   }
   if (FLAGS_length_unit.empty()) return std::nullopt;
-  options->length_unit = LengthUnitFromName(FLAGS_length_unit);
-  if (options->length_unit) return std::nullopt;
-  return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
+  return ParseName("--length_unit", FLAGS_length_unit, &options->length_unit.emplace());
 }
 
 Result<ManifestOptions> OptionsFromFlags() {

@@ -119,7 +119,7 @@ void PrintEntry(const RecordingsPush& of) {
   std::printf(
       "to use it, add these lines to the recording's entry of the manifest, in place of any "
       "push_csv (--into_manifest does this):\n");
-  std::printf("  \"push_kind\": \"%s\",\n", Name(of.made.kind).c_str());
+  std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
               of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
               of.made.push.start_frame);
@@ -143,8 +143,8 @@ MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* 
   }
   const bool others_stay = !others.empty() || (there.empty() && !entry->push_csv.empty());
   if (others_stay && entry->push_kind != of.made.kind) {
-    return where("has pushes on other people of the kind " + Name(entry->push_kind) +
-                 ", and this one is " + Name(of.made.kind) + "; an entry can have only one kind");
+    return where("has pushes on other people of the kind " + NameOf(entry->push_kind) +
+                 ", and this one is " + NameOf(of.made.kind) + "; an entry can have only one kind");
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
   entry->pushes = std::move(others);

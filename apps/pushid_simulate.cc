@@ -29,7 +29,7 @@ DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recordin
 DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
-DEFINE_string(push_kind, pushid::Name(pushid::SyntheticOptions{}.push_kind),
+DEFINE_string(push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
               "net (only the push's first part, the tail follows) or external");
 DEFINE_choice(truth_stance, pushid::SyntheticOptions{}.model.stance,
               "without --model: behaviour of the synthetic people's feet: slide, or threshold "
@@ -73,7 +73,7 @@ Result<SyntheticOptions> StudyFromCommandLine() {
                       "--model sets the parameters of the people; leave --{} out")}) {
     if (error) return *error;
   }
-  const std::optional<PushKind> kind = PushKindFromName(FLAGS_push_kind);
+  const std::optional<PushKind> kind = FromName<PushKind>(FLAGS_push_kind);
   if (!kind || *kind == PushKind::kNetWithoutFriction) {
     return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
   }

@@ -92,7 +92,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   const TrainedRestoration& trained = learnt.value();
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
-  const std::string title = std::string(Name(options.training.kind)) + " restoration, " +
+  const std::string title = NameOf(options.training.kind) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
   if (MaybeError error =

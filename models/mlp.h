@@ -7,9 +7,14 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "models/enum_names.h"
+
 namespace pushid {
 
 enum class Activation { kTanh, kRelu };
+constexpr EnumNames<Activation, 2> Names(Activation) {
+  return {{{"tanh", Activation::kTanh}, {"relu", Activation::kRelu}}};
+}
 
 struct MlpLayer {
   Eigen::MatrixXd weights;  // outputs x inputs

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/ipm.h"
 #include "models/parameters.h"
 
@@ -24,6 +25,11 @@ enum class PushKind {
                         // friction
   kExternal,            // a measured force, added to everything else
 };
+constexpr EnumNames<PushKind, 3> Names(PushKind) {
+  return {{{"net", PushKind::kNet},
+           {"net_without_friction", PushKind::kNetWithoutFriction},
+           {"external", PushKind::kExternal}}};
+}
 
 inline constexpr double kTailReferenceDuration = 0.1, kLongestTailDuration = 0.4;  // s
 

@@ -14,9 +14,7 @@ int RodShape::num_weights() const {
 }
 
 std::string RodName(const RodShape& shape) {
-  if (shape.kind == RodKind::kConstant) return "constant";
-  if (shape.kind == RodKind::kLinear) return "linear";
-  std::string name = "mlp";
+  std::string name = NameOf(shape.kind);
   for (size_t i = 0; i < shape.hidden.size(); ++i) {
     name += (i == 0 ? ":" : "-") + std::to_string(shape.hidden[i]);
   }

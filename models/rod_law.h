@@ -20,11 +20,15 @@
 #include <string>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/network_inputs.h"
 
 namespace pushid {
 
 enum class RodKind { kConstant, kLinear, kMlp };
+constexpr EnumNames<RodKind, 3> Names(RodKind) {
+  return {{{"constant", RodKind::kConstant}, {"linear", RodKind::kLinear}, {"mlp", RodKind::kMlp}}};
+}
 
 struct RodShape {
   RodKind kind = RodKind::kConstant;

@@ -18,8 +18,7 @@ int NetworkShape::gate_rows() const {
 }
 
 std::string NetworkName(const NetworkShape& shape) {
-  static const char* const kNames[] = {"none", "mlp", "gru", "lstm"};
-  std::string name = kNames[static_cast<int>(shape.kind)];
+  std::string name = NameOf(shape.kind);
   if (!shape.any()) return name;
   name += ":" + std::to_string(shape.hidden);
   if (shape.embedding > 0) name += ":" + std::to_string(shape.embedding);

@@ -32,11 +32,18 @@
 #include <string>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/network_inputs.h"
 
 namespace pushid {
 
 enum class NetworkKind { kNone, kMlp, kGru, kLstm };
+constexpr EnumNames<NetworkKind, 4> Names(NetworkKind) {
+  return {{{"none", NetworkKind::kNone},
+           {"mlp", NetworkKind::kMlp},
+           {"gru", NetworkKind::kGru},
+           {"lstm", NetworkKind::kLstm}}};
+}
 
 struct NetworkShape {
   NetworkKind kind = NetworkKind::kNone;

@@ -24,6 +24,7 @@
 
 #include "apps/support/overwrite_check.h"
 #include "datasets/manifest/select_recordings.h"
+#include "models/enum_names.h"
 #include "models/restoration/restoration_kind.h"
 
 namespace pushid {
@@ -215,8 +216,9 @@ class PlanReader {
     for (const std::string& flag : *variant->restoration) {
       CheckFlag(*node, flag);
       const std::string peer = "--kind=";
-      const auto kind = flag.rfind(peer, 0) == 0 ? RestorationKindFromName(flag.substr(peer.size()))
-                                                 : std::nullopt;
+      const auto kind = flag.rfind(peer, 0) == 0
+                            ? FromName<RestorationKind>(flag.substr(peer.size()))
+                            : std::nullopt;
       if (kind && !RowOf(*kind).follows_pendulum) {
         Fail(*node, flag + " is a peer, which does not follow a pendulum; compare with it by " +
                         "pushid-train-restoration --crossvalidate");

@@ -107,25 +107,6 @@ std::string StatusFile(const std::string& folder) { return folder + "/status.jso
 
 }  // namespace
 
-std::string NameOf(JobState state) {
-  switch (state) {
-    case JobState::kDone:
-      return "done";
-    case JobState::kFailed:
-      return "failed";
-    case JobState::kOpen:
-      break;
-  }
-  return "open";
-}
-
-std::optional<JobState> JobStateFromName(std::string_view name) {
-  for (JobState state : {JobState::kDone, JobState::kFailed, JobState::kOpen}) {
-    if (name == NameOf(state)) return state;
-  }
-  return std::nullopt;
-}
-
 MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
                           const std::vector<std::vector<std::string>>& commands) {
   const nlohmann::ordered_json json = {{"id", job.id},
@@ -148,8 +129,7 @@ Result<JobStatus> ReadJobStatus(const std::string& folder) {
   const JsonDocument& document = read.value();
   JsonFields fields(document, document.content, "", "status");
   fields.Require("status", "done or failed");
-  status.state =
-      fields.Choice("status", &JobStateFromName, JobState::kFailed, "done, failed or open");
+  status.state = fields.Choice("status", JobState::kFailed);
   status.reason = fields.Text("reason", "why the job failed");
   if (fields.Require("run", "an object with the seconds")) {
     JsonFields run(document, fields.At("run"), fields.Pointer("run"), "status, run");

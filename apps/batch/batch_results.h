@@ -22,8 +22,9 @@ enum class JobState {
   kFailed,  // it ended otherwise, or they cannot
   kOpen,    // it never ended
 };
-std::string NameOf(JobState state);  // "done", "failed", "open"
-std::optional<JobState> JobStateFromName(std::string_view name);
+constexpr EnumNames<JobState, 3> Names(JobState) {
+  return {{{"done", JobState::kDone}, {"failed", JobState::kFailed}, {"open", JobState::kOpen}}};
+}
 
 struct JobStatus {
   JobState state = JobState::kOpen;

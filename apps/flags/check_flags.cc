@@ -7,6 +7,7 @@
 
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/files/names.h"
 #include "ident/report/fit_command.h"
 
 DEFINE_string(profile, "",

@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "datasets/files/names.h"
 #include "ident/parameters/option_names.h"
 
 namespace {

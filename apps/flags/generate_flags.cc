@@ -6,6 +6,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/kind_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/names.h"
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/parameters/option_names.h"

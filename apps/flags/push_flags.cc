@@ -218,7 +218,7 @@ Result<PushFlags> PushFlagsFromCommandLine() {
   flags.window = {FLAGS_first_frame, FLAGS_end_frame};
   flags.smoothing = FLAGS_smoothing;
   if (FLAGS_initial_velocity != kAuto) {
-    flags.initial_velocity = InitialVelocityFromName(FLAGS_initial_velocity);
+    flags.initial_velocity = FromName<InitialVelocity>(FLAGS_initial_velocity);
     if (!flags.initial_velocity || *flags.initial_velocity == InitialVelocity::kFree) {
       return Error{"--initial_velocity is '" + FLAGS_initial_velocity +
                    "'; it must be zero, estimated or auto"};

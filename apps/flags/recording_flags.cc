@@ -6,8 +6,12 @@
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/files/names.h"
 #include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/select_recordings.h"
+
+const std::string kUnitHelp = "length unit of the files, " + pushid::AnyName<pushid::LengthUnit>() +
+                              "; overrides the files and the manifest";
 
 DEFINE_string(recordings, "", "manifest.json of the recordings, or several, comma-separated");
 DEFINE_string(setting, pushid::LoadOptions{}.setting,
@@ -15,11 +19,10 @@ DEFINE_string(setting, pushid::LoadOptions{}.setting,
               "person); all");
 DEFINE_string(ids, "", "only these recordings, comma-separated ids");
 DEFINE_string(leave_out, "", "all but these recordings, comma-separated ids");
-DEFINE_string(length_unit, "",
-              "length unit of the files, mm, cm or m; overrides the files and the manifest");
-DEFINE_double(
-    length_scale, 0.0,
-    "instead of --length_unit: metres per length unit of the files, as in 0.0564; 0: use the unit");
+DEFINE_string(length_unit, "", kUnitHelp.c_str());
+DEFINE_double(length_scale, 0.0,
+              "instead of --length_unit: metres per length unit of the files, as in 0.0564; 0: "
+              "use the unit");
 DEFINE_double(max_gap_s, pushid::PreparationOptions{}.max_gap_s,
               "interpolate gaps in markers up to this long, s; frames of longer ones are left out");
 DEFINE_double(lowpass_hz, pushid::PreparationOptions{}.lowpass_hz,
@@ -50,10 +53,8 @@ Result<LoadOptions> LoadOptionsOfFlags() {
     return *error;
   }
   if (!FLAGS_length_unit.empty()) {
-    options.length_unit = LengthUnitFromName(FLAGS_length_unit);
-    if (!options.length_unit) {
-      return Error{"--length_unit is '" + FLAGS_length_unit + "'; it must be mm, cm or m"};
-    }
+    LengthUnit& unit = options.length_unit.emplace();
+    if (MaybeError error = ParseName("--length_unit", FLAGS_length_unit, &unit)) return *error;
   }
   if (FLAGS_length_scale != 0.0) {
     const std::string problem = LengthScaleProblem(FLAGS_length_scale);

@@ -7,6 +7,7 @@
 #include "apps/flags/kind_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/scheme_flags.h"
+#include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"
 

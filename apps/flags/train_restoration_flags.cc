@@ -7,6 +7,7 @@
 #include "apps/flags/observed_flags.h"
 #include "apps/flags/postprocess_flags.h"
 #include "apps/flags/scheme_flags.h"
+#include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"
 #include "models/learned_terms.h"
@@ -28,7 +29,7 @@ const std::string kKind = "kind of restoration: " + KindsThat(true) +
 DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name, kKind.c_str());
 DEFINE_string(mrt_size, pushid::NameOf(pushid::RestorationTrainingOptions{}.mrt_size),
               "mrt: small (0.3 million weights), or published (the published widths, 5 million)");
-DEFINE_string(coordinates, pushid::Name(pushid::RestorationTrainingOptions{}.coordinates),
+DEFINE_string(coordinates, pushid::NameOf(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints relative to the rod's tip (tip), or to the hip at frame 0 (ldp)");
 DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
               "input of the poses: the person's pendulum (pendulum), also those of the neighbours "
@@ -98,7 +99,7 @@ MaybeError CheckKind(RestorationKind kind, RestorationView view) {
   }
   for (const FlagOfKind& own : kFlagsOfKinds) {
     if (kind == own.kind || AtDefault(own.flag)) continue;
-    return Error{std::string(own.given) + " needs --kind=" + Name(own.kind)};
+    return Error{std::string(own.given) + " needs --kind=" + NameOf(own.kind)};
   }
   if (ObservedFrames() > 0 && !row.follows_pendulum) {
     return Error{
@@ -119,13 +120,12 @@ MaybeError CheckFlags() {
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return missing;
   }
-  const auto kind = RestorationKindFromName(FLAGS_kind);
+  const auto kind = FromName<RestorationKind>(FLAGS_kind);
   if (!kind || !RowOf(*kind).trained) {
     return Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
-  if (!CvaeCoordinatesFromName(FLAGS_coordinates)) {
-    return Error{"--coordinates is '" + FLAGS_coordinates + "'; it must be tip or ldp"};
-  }
+  CvaeCoordinates coordinates;
+  if (MaybeError error = ParseName("--coordinates", FLAGS_coordinates, &coordinates)) return error;
   RestorationView view;
   if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return error;
   MrtSize size;
@@ -183,8 +183,8 @@ Result<RestorationRunOptions> RunOptions() {
   options.predicted_pendulums = FLAGS_predicted_pendulums;
   options.mirrored = FLAGS_mirrored;
   options.observed = ObservedFrames();
-  options.training.kind = *RestorationKindFromName(FLAGS_kind);
-  options.training.coordinates = *CvaeCoordinatesFromName(FLAGS_coordinates);
+  options.training.kind = *FromName<RestorationKind>(FLAGS_kind);
+  options.training.coordinates = *FromName<CvaeCoordinates>(FLAGS_coordinates);
   options.training.view = view;
   options.training.halves = FLAGS_halves;
   if (MaybeError error = ParseName("--mrt_size", FLAGS_mrt_size, &options.training.mrt_size)) {

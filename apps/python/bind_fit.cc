@@ -7,6 +7,7 @@
 #include "apps/python/bindings.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"

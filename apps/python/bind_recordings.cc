@@ -60,7 +60,7 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   options.leave_out = leave_out;
   options.keep_all_joints = all_joints;
   options.preparation = {max_gap_s, lowpass_hz, resample_fps};
-  if (!length_unit.empty()) options.length_unit = UnitOf(length_unit);
+  if (!length_unit.empty()) options.length_unit = Named<LengthUnit>("length_unit", length_unit);
   if (length_scale != 0.0) {
     const std::string problem = LengthScaleProblem(length_scale);
     if (!problem.empty()) Raise(Fault::kUsage, Error{"length_scale " + problem});
@@ -94,7 +94,7 @@ py::tuple Simulate(int people, int recordings_per_person, int people_in_row, dou
   options.frames = frames;
   options.seed = seed;
   options.joint_noise_m = joint_noise_m;
-  const auto kind = PushKindFromName(push_kind);
+  const auto kind = FromName<PushKind>(push_kind);
   if (!kind)
     Raise(Fault::kUsage, Error{"push_kind is '" + push_kind + "'; it must be net or external"});
   options.push_kind = *kind;
@@ -123,7 +123,7 @@ py::dict Defaults() {
                   "recordings_per_person"_a = made.recordings_per_subject,
                   "people_in_row"_a = made.people_in_row, "fps"_a = made.fps,
                   "frames"_a = made.frames, "seed"_a = made.seed,
-                  "push_kind"_a = Name(made.push_kind));
+                  "push_kind"_a = NameOf(made.push_kind));
 }
 
 py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first_frame,
@@ -133,7 +133,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   options.person = person;
   options.smoothing_frames = smoothing;
   if (initial_velocity != "auto") {
-    options.initial_velocity = InitialVelocityFromName(initial_velocity);
+    options.initial_velocity = FromName<InitialVelocity>(initial_velocity);
     if (!options.initial_velocity || *options.initial_velocity == InitialVelocity::kFree) {
       Raise(Fault::kUsage, Error{"initial_velocity is '" + initial_velocity +
                                  "'; it must be zero, estimated or auto"});
@@ -151,7 +151,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   for (size_t t = 0; t < push.push.force.size(); ++t) {
     for (int i = 0; i < 4; ++i) cells(t, i) = push.push.force[t][i];
   }
-  return py::make_tuple(rows, window.start, Name(push.kind));
+  return py::make_tuple(rows, window.start, NameOf(push.kind));
 }
 
 }  // namespace
@@ -167,9 +167,9 @@ void BindRecordings(py::module_* module) {
       .def_readonly("content_hash", &Recording::content_hash)
       .def_property_readonly("num_frames", &Recording::num_frames)
       .def_property_readonly("num_people", [](const Recording& r) { return r.people.size(); })
-      .def_property_readonly("push_kind", [](const Recording& r) { return Name(r.push_kind); })
+      .def_property_readonly("push_kind", [](const Recording& r) { return NameOf(r.push_kind); })
       .def_property_readonly("initial_velocity",
-                             [](const Recording& r) { return Name(r.initial_velocity); })
+                             [](const Recording& r) { return NameOf(r.initial_velocity); })
       .def_property_readonly("subjects",
                              [](const Recording& r) {
                                std::vector<std::string> ids;

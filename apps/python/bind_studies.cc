@@ -193,7 +193,7 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
     for (int t = 0; t < run.num_frames(); ++t) cells(t, n) = SignedHipSpeed(run, n, t);
     onset.append(SecondsOr(person.onset_frame >= 0, run.Seconds(person.onset_frame)));
     displacement.append(person.displacement);
-    outcome.append(std::string(Name(person.outcome)));
+    outcome.append(NameOf(person.outcome));
     if (waves.onsets.empty()) continue;
     const OnsetBand& band = waves.onsets[n];
     onset_band.append(band.moved > 0.0 ? py::object(py::make_tuple(band.from, band.to))

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/names.h"
 #include "datasets/formats/units.h"
 #include "ident/fit.h"
 #include "ident/prediction/prediction.h"
@@ -50,8 +51,13 @@ std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings);
 std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings,
                                          SkeletonMapping mapping);
 
-// Errors: not mm, cm or m.
-LengthUnit UnitOf(const std::string& name);
+// A choice by its name.
+template <typename E>
+E Named(const char* argument, const std::string& name) {
+  E value{};
+  Check(ParseName(argument, name, &value), Fault::kUsage);
+  return value;
+}
 
 using Array = py::array_t<double>;
 // paths[person][frame] as (frames, people, 3), read-only.

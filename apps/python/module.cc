@@ -195,18 +195,8 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
   tracks.labels.Set(kMagnitudeLabel, magnitude);
   tracks.labels.Set(kConditionLabel, condition);
   tracks.pushed_person = pushed_person;
-  const auto kind = PushKindFromName(push_kind);
-  const auto velocity = InitialVelocityFromName(initial_velocity);
-  if (!kind) {
-    Raise(Fault::kUsage, Error{"push_kind is '" + push_kind +
-                               "'; it must be net, net_without_friction or external"});
-  }
-  if (!velocity) {
-    Raise(Fault::kUsage, Error{"initial_velocity is '" + initial_velocity +
-                               "'; it must be zero, estimated or free"});
-  }
-  tracks.push_kind = *kind;
-  tracks.initial_velocity = *velocity;
+  tracks.push_kind = Named<PushKind>("push_kind", push_kind);
+  tracks.initial_velocity = Named<InitialVelocity>("initial_velocity", initial_velocity);
   const std::vector<Track> hips = TracksOf("hip", hip), left = TracksOf("left_ankle", left_ankle),
                            right = TracksOf("right_ankle", right_ankle);
   if (left.size() != hips.size() || right.size() != hips.size() || mass.size() != hips.size() ||
@@ -233,17 +223,11 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
 
 }  // namespace
 
-LengthUnit UnitOf(const std::string& name) {
-  const std::optional<LengthUnit> unit = LengthUnitFromName(name);
-  if (!unit) {
-    Raise(Fault::kUsage, Error{"length_unit is '" + name + "'; it must be mm, cm or m"});
-  }
-  return *unit;
-}
-
 void BindArrays(py::module_* module) {
   module->def("from_arrays", &FromArrays);
-  module->def("metres_per", [](const std::string& unit) { return MetresPer(UnitOf(unit)); });
+  module->def("metres_per", [](const std::string& unit) {
+    return MetresPer(Named<LengthUnit>("length_unit", unit));
+  });
 }
 
 }  // namespace pushid

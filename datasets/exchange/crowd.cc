@@ -101,9 +101,8 @@ PointMotion HipTrajectories(const Recording& recording) {
 }
 
 MaybeError WriteTrajectories(const std::string& path, const PointMotion& motion) {
-  return MotionFormatOfFile(path) == MotionFormat::kTrajectorySqlite
-             ? WriteTrajectorySqlite(path, motion)
-             : WriteTrajectoryText(path, motion);
+  return RowOf(MotionFormatOfFile(path).value_or(MotionFormat::kTrajectoryText))
+      .write_crowd(path, motion);
 }
 
 MaybeError CheckTrajectoryFile(const std::string& flag, const std::string& path) {

@@ -6,13 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -137,14 +137,13 @@ class JsonFields {
     return kEmpty;
   }
 
-  // One of the names that `from_name` knows.
-  template <typename T>
-  T Choice(const char* key, std::optional<T> (*from_name)(std::string_view), T fallback,
-           const char* names) {
+  // A choice by its name (models/enum_names.h).
+  template <typename E>
+  E Choice(const char* key, E fallback) {
     if (!Has(key)) return fallback;
     const std::string name = OptionalText(key, "");
-    const std::optional<T> choice = from_name(name);
-    if (!choice) Fail(key, "is " + Quoted(name) + "; it must be " + names);
+    const std::optional<E> choice = FromName<E>(name);
+    if (!choice) Fail(key, "is " + Quoted(name) + "; it must be " + AnyName<E>());
     return choice.value_or(fallback);
   }
 

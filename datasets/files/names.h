@@ -5,6 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/files/error.h"
+#include "datasets/files/number_text.h"
+#include "models/enum_names.h"
+
 namespace pushid {
 
 // "a, b, c, ... (75)": the first sixty names, and how many there are.
@@ -27,6 +31,16 @@ inline bool EndsWith(std::string_view text, std::string_view end) {
 
 inline bool Holds(std::string_view text, std::string_view word) {
   return text.find(word) != std::string_view::npos;
+}
+
+// A choice by its name (models/enum_names.h). Error: "--posture is 'flat'; it must be upright or
+// initial".
+template <typename E>
+MaybeError ParseName(const std::string& flag, std::string_view text, E* value) {
+  const std::optional<E> found = FromName<E>(text);
+  if (!found) return Error{flag + " is " + Quoted(text) + "; it must be " + AnyName<E>()};
+  *value = *found;
+  return std::nullopt;
 }
 
 }  // namespace pushid

@@ -16,12 +16,6 @@ std::vector<BvhChannel> DefaultBvhChannels(bool with_position) {
   return channels;
 }
 
-const char* Name(BvhChannel channel) {
-  static constexpr const char* kNames[] = {"Xposition", "Yposition", "Zposition",
-                                           "Xrotation", "Yrotation", "Zrotation"};
-  return kNames[static_cast<int>(channel)];
-}
-
 int BvhSkeleton::num_channels() const {
   std::size_t count = 0;
   for (const BvhJoint& joint : joints) count += joint.channels.size();

@@ -26,6 +26,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/units.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -35,8 +36,15 @@ enum class BvhChannel { kXposition, kYposition, kZposition, kXrotation, kYrotati
 inline bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXrotation; }
 inline int AxisOf(BvhChannel channel) { return static_cast<int>(channel) % 3; }  // 0 x, 1 y, 2 z
 
-// "Xposition" ... "Zrotation", as files spell them.
-const char* Name(BvhChannel channel);
+// As files spell them.
+constexpr EnumNames<BvhChannel, 6> Names(BvhChannel) {
+  return {{{"Xposition", BvhChannel::kXposition},
+           {"Yposition", BvhChannel::kYposition},
+           {"Zposition", BvhChannel::kZposition},
+           {"Xrotation", BvhChannel::kXrotation},
+           {"Yrotation", BvhChannel::kYrotation},
+           {"Zrotation", BvhChannel::kZrotation}}};
+}
 
 // The usual channels: Zrotation Yrotation Xrotation, for a root after Xposition Yposition
 // Zposition.

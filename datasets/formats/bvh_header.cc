@@ -155,15 +155,12 @@ class HierarchyParser {
     for (std::int64_t i = 0; i < count; ++i) {
       const std::string_view token = Next();
       bool known = false;
-      for (BvhChannel channel :
-           {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition,
-            BvhChannel::kXrotation, BvhChannel::kYrotation, BvhChannel::kZrotation}) {
-        if (!EqualsIgnoringCase(token, Name(channel))) continue;
+      for (const auto& [name, channel] : Names(BvhChannel{})) {
+        if (!EqualsIgnoringCase(token, name)) continue;
         known = true;
         for (BvhChannel earlier : joint.channels) {
           if (earlier == channel) {
-            return reader_.ErrorHere("joint " + Quoted(joint.name) + " lists " + Name(channel) +
-                                     " twice");
+            return reader_.ErrorHere("joint " + Quoted(joint.name) + " lists " + name + " twice");
           }
         }
         joint.channels.push_back(channel);

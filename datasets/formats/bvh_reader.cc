@@ -15,7 +15,7 @@ namespace {
 std::string ChannelName(const BvhSkeleton& skeleton, int index) {
   for (const BvhJoint& joint : skeleton.joints) {
     const int count = static_cast<int>(joint.channels.size());
-    if (index < count) return joint.name + " " + Name(joint.channels[index]);
+    if (index < count) return joint.name + " " + NameOf(joint.channels[index]);
     index -= count;
   }
   return "value " + std::to_string(index);

@@ -35,7 +35,7 @@ std::string SkeletonProblem(const BvhSkeleton& skeleton) {
     for (std::size_t a = 0; a < joint.channels.size(); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         if (joint.channels[a] == joint.channels[b]) {
-          return "joint " + Quoted(joint.name) + " lists " + Name(joint.channels[a]) + " twice";
+          return "joint " + Quoted(joint.name) + " lists " + NameOf(joint.channels[a]) + " twice";
         }
       }
     }
@@ -104,7 +104,7 @@ class HierarchyWriter {
     Line(depth, "{");
     Line(depth + 1, OffsetText(joint.offset));
     std::string channels = "CHANNELS " + std::to_string(joint.channels.size());
-    for (BvhChannel channel : joint.channels) channels += std::string(" ") + Name(channel);
+    for (BvhChannel channel : joint.channels) channels += " " + NameOf(channel);
     Line(depth + 1, channels);
     for (const Eigen::Vector3d& end_site : joint.end_sites) EndSite(end_site, depth + 1);
     if (leaf && joint.end_sites.empty()) EndSite(Eigen::Vector3d::Zero(), depth + 1);

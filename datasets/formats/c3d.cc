@@ -63,18 +63,6 @@ Result<C3dPlatform> ReadPlatform(const C3dFile& file, int index, int stride) {
 
 }  // namespace
 
-std::string Name(C3dProcessor processor) {
-  switch (processor) {
-    case C3dProcessor::kDec:
-      return "DEC";
-    case C3dProcessor::kMips:
-      return "MIPS";
-    case C3dProcessor::kIntel:
-      break;
-  }
-  return "Intel";
-}
-
 int C3dFile::samples_per_frame() const {
   const int frames = num_frames();
   return analog.empty() || frames == 0 ? 0 : static_cast<int>(analog[0].samples.size()) / frames;
@@ -155,7 +143,7 @@ Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOption
   motion.path = path;
   motion.rate_hz = file.point_rate_hz;
   motion.unit_text = file.point_unit;
-  motion.unit = LengthUnitFromName(file.point_unit);
+  motion.unit = FromName<LengthUnit>(file.point_unit);
   motion.up = UpOfScreen(file.screen_y);
   motion.names = std::move(file.point_names);
   motion.content_hash = file.content_hash;

@@ -20,6 +20,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/point_motion.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -27,7 +28,11 @@ class C3dBytes;  // c3d_parameters.h
 
 // The numbers are those in the file.
 enum class C3dProcessor { kIntel = 84, kDec = 85, kMips = 86 };
-std::string Name(C3dProcessor processor);  // "Intel", "DEC", "MIPS"
+constexpr EnumNames<C3dProcessor, 3> Names(C3dProcessor) {
+  return {{{"Intel", C3dProcessor::kIntel},
+           {"DEC", C3dProcessor::kDec},
+           {"MIPS", C3dProcessor::kMips}}};
+}
 
 enum class C3dType { kText = -1, kByte = 1, kInteger = 2, kReal = 4 };
 

@@ -60,7 +60,7 @@ MaybeError SetUnit(const std::string& path, const BidsHeader& header, PointMotio
     }
     motion->unit_text = channel.units;
   }
-  motion->unit = LengthUnitFromName(motion->unit_text);
+  motion->unit = FromName<LengthUnit>(motion->unit_text);
   return std::nullopt;
 }
 

@@ -7,33 +7,12 @@
 #include "datasets/formats/units.h"
 
 namespace pushid {
-namespace {
-
-constexpr bool RowsAreInOrder() {
-  int value = 0;
-  for (const MotionFormatRow& row : kMotionFormats) {
-    if (static_cast<int>(row.format) != value++) return false;
-  }
-  return true;
-}
-static_assert(RowsAreInOrder(), "RowOf finds a row by its format's value");
-
-}  // namespace
-
-const MotionFormatRow& RowOf(MotionFormat format) {
-  return kMotionFormats[static_cast<int>(format)];
-}
-
-std::string Name(MotionFormat format) { return RowOf(format).key; }
-
-std::string Title(MotionFormat format) { return RowOf(format).title; }
-
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path) {
   const std::size_t dot = path.rfind('.');
   if (dot == std::string_view::npos) return std::nullopt;
   for (const MotionFormatRow& row : kMotionFormats) {
     for (const char* ending : row.endings) {
-      if (ending != nullptr && EqualsIgnoringCase(path.substr(dot + 1), ending)) return row.format;
+      if (ending != nullptr && EqualsIgnoringCase(path.substr(dot + 1), ending)) return row.value;
     }
   }
   return std::nullopt;
@@ -52,7 +31,7 @@ std::string MotionFileEndings() {
 std::string MotionKeys() {
   std::string list;
   for (const MotionFormatRow& row : kMotionFormats)
-    list += (list.empty() ? "" : ", ") + Name(row.format);
+    list += (list.empty() ? "" : ", ") + std::string(row.name);
   return list;
 }
 

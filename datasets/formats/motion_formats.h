@@ -32,52 +32,53 @@ enum class MotionFormat {
 };
 
 struct MotionFormatRow {
-  MotionFormat format;
-  const char* key;                     // of the list of files in a manifest
+  const char* name;  // the key of the list of files in a manifest
+  MotionFormat value;
   const char* title;                   // as people write it
   std::array<const char*, 2> endings;  // of file names, whatever the case; null: none
   // Null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
   Result<PointMotion> (*read)(const std::string& path, const PointReadOptions& options);
-  std::optional<TableFormat> table;  // of files that are tables of numbers
+  std::optional<TableFormat> table = std::nullopt;  // of files that are tables of numbers
+  // Of formats whose points are people of a crowd.
+  MaybeError (*write_crowd)(const std::string& path, const PointMotion& motion) = nullptr;
 };
 
 inline constexpr MotionFormatRow kMotionFormats[] = {
-    {MotionFormat::kBvh, "bvh", "BVH", {"bvh"}, nullptr, std::nullopt},
-    {MotionFormat::kC3d, "c3d", "C3D", {"c3d"}, &ReadC3dPoints, std::nullopt},
-    {MotionFormat::kTrc, "trc", "TRC", {"trc"}, &ReadTrc, std::nullopt},
-    {MotionFormat::kCsv, "csv", "CSV", {"csv"}, &ReadCsvPoints, TableFormat::kCsv},
-    {MotionFormat::kStorage,
-     "sto",
+    {"bvh", MotionFormat::kBvh, "BVH", {"bvh"}, nullptr},
+    {"c3d", MotionFormat::kC3d, "C3D", {"c3d"}, &ReadC3dPoints},
+    {"trc", MotionFormat::kTrc, "TRC", {"trc"}, &ReadTrc},
+    {"csv", MotionFormat::kCsv, "CSV", {"csv"}, &ReadCsvPoints, TableFormat::kCsv},
+    {"sto",
+     MotionFormat::kStorage,
      "STO",
      {"sto", "mot"},
      &ReadStoragePoints,
      TableFormat::kStorage},
-    {MotionFormat::kBids, "tsv", "Motion-BIDS", {"tsv"}, &ReadMotionBids, std::nullopt},
-    {MotionFormat::kTrajectoryText,
-     "txt",
+    {"tsv", MotionFormat::kBids, "Motion-BIDS", {"tsv"}, &ReadMotionBids},
+    {"txt",
+     MotionFormat::kTrajectoryText,
      "trajectories",
      {"txt"},
      &ReadTrajectoryText,
-     std::nullopt},
-    {MotionFormat::kTrajectorySqlite,
-     "sqlite",
+     {},
+     &WriteTrajectoryText},
+    {"sqlite",
+     MotionFormat::kTrajectorySqlite,
      "JuPedSim SQLite",
      {"sqlite"},
      &ReadTrajectorySqlite,
-     std::nullopt},
+     {},
+     &WriteTrajectorySqlite},
 };
 
-const MotionFormatRow& RowOf(MotionFormat format);
+constexpr const auto& Names(MotionFormat) { return kMotionFormats; }
+static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
 // Whether its points are people of a crowd.
-inline bool HoldsCrowd(MotionFormat format) {
-  return format == MotionFormat::kTrajectoryText || format == MotionFormat::kTrajectorySqlite;
-}
-// The manifest's key: "bvh", "c3d", ...
-std::string Name(MotionFormat format);
+inline bool HoldsCrowd(MotionFormat format) { return RowOf(format).write_crowd != nullptr; }
 // As people write it: "BVH", "C3D", ...
-std::string Title(MotionFormat format);
+inline std::string Title(MotionFormat format) { return RowOf(format).title; }
 
 // By the file's ending: ".c3d" is C3D, ".mot" and ".sto" storage, ...; nullopt for other endings.
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);

@@ -26,11 +26,11 @@ double NumberIn(std::string_view comment) {
 
 void ReadComment(std::string_view comment, PointMotion* motion) {
   if (Holds(comment, "framerate") && motion->rate_hz == 0.0) motion->rate_hz = NumberIn(comment);
-  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kCentimetre, LengthUnit::kMetre}) {
-    const std::string name = Name(unit);
+  for (const LengthUnitRow& unit : kLengthUnits) {
+    const std::string name = unit.name;
     if (Holds(comment, "x/" + name) || Holds(comment, "x[" + name + "]") ||
         Holds(comment, "x(" + name + ")") || Holds(comment, "in " + name)) {
-      motion->unit = unit;
+      motion->unit = unit.value;
       return;
     }
   }

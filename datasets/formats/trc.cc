@@ -9,6 +9,7 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 namespace {
@@ -82,7 +83,7 @@ class TrcReader {
     }
     num_frames_ = static_cast<std::int64_t>(frames);
     num_markers_ = static_cast<std::int64_t>(markers);
-    motion_.unit = LengthUnitFromName(motion_.unit_text);
+    motion_.unit = FromName<LengthUnit>(motion_.unit_text);
     return std::nullopt;
   }
 
@@ -251,7 +252,7 @@ MaybeError WriteTrc(const std::string& path, const PointMotion& motion) {
       "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
       "OrigNumFrames\n";
   text += rate + '\t' + rate + '\t' + frames + '\t' + std::to_string(markers) + '\t' +
-          Name(motion.unit.value_or(LengthUnit::kMillimetre)) + '\t' + rate + "\t1\t" + frames +
+          NameOf(motion.unit.value_or(LengthUnit::kMillimetre)) + '\t' + rate + "\t1\t" + frames +
           "\nFrame#\tTime";
   for (const std::string& name : motion.names) text += '\t' + name + "\t\t";
   text += "\n\t";

@@ -1,13 +1,15 @@
-// datasets: the unit of lengths in a file. Inside the program lengths are metres; other units live
-// only in readers and writers.
+// datasets: units of length, axes and frame rates of files. Inside the program lengths are metres,
+// z is up and x forward; other units live only in readers and writers.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "datasets/files/error.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -16,14 +18,36 @@ inline constexpr float kMillimetres = 1e3f;
 
 enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
 
+// Everything that programs, messages and files know of a unit: a new one is a value and a row.
+struct LengthUnitRow {
+  const char* name;  // as manifests and --length_unit spell it
+  LengthUnit value;
+  double per_metre;  // so many in a metre: whole, so that conversions round once
+  std::array<const char*, 4> spellings;  // others, whatever their case
+};
+inline constexpr LengthUnitRow kLengthUnits[] = {
+    {"mm",
+     LengthUnit::kMillimetre,
+     1e3,
+     {"millimeter", "millimetre", "millimeters", "millimetres"}},
+    {"cm",
+     LengthUnit::kCentimetre,
+     1e2,
+     {"centimeter", "centimetre", "centimeters", "centimetres"}},
+    {"m", LengthUnit::kMetre, 1.0, {"meter", "metre", "meters", "metres"}},
+};
+constexpr const auto& Names(LengthUnit) { return kLengthUnits; }
+static_assert(RowsAreInOrder(kLengthUnits), "RowOf finds a row by its value");
+
 // Metres in one unit: 0.001, 0.01 or 1.
-double MetresPer(LengthUnit unit);
+inline double MetresPer(LengthUnit unit) { return 1.0 / RowOf(unit).per_metre; }
 
-// "mm", "cm" or "m", as manifests and --length_unit spell them.
-std::string Name(LengthUnit unit);
+// Also of longer and capital spellings ("Metres").
+template <>
+std::optional<LengthUnit> FromName<LengthUnit>(std::string_view name);
 
-// The inverse of Name; also of longer and capital spellings ("Metres"). nullopt for other texts.
-std::optional<LengthUnit> LengthUnitFromName(std::string_view name);
+// The first unit in which a file's length lies between two others, m; nullopt: in none.
+std::optional<LengthUnit> UnitThatGives(double files_length, double shortest, double longest);
 
 // What is wrong with a length_scale, the metres that a file's 1 stands for, where that is no unit:
 // "is 0; it must ..."; empty where it is fine.

@@ -80,7 +80,7 @@ void LookAtAnalog(const C3dFile& file, Inspection* found) {
 }
 
 void LookAtPlatforms(const C3dFile& file, Inspection* found) {
-  const LengthUnit unit = LengthUnitFromName(file.point_unit).value_or(LengthUnit::kMillimetre);
+  const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
   for (std::size_t i = 0; i < file.platforms.size(); ++i) {
     const std::string name = "platform:" + std::to_string(i + 1);
     const Result<PlatformRecord> platform = EvaluatePlatform(file, static_cast<int>(i), unit);

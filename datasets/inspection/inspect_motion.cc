@@ -155,25 +155,21 @@ class MotionInspector {
 
   // The file's word, otherwise what makes a person of the rod.
   void Unit(double rod) {
-    std::optional<LengthUnit> fits;
-    for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kCentimetre}) {
-      const double length = rod * MetresPer(unit);
-      if (!fits && length >= kShortestRod && length <= kLongestRod) fits = unit;
-    }
+    const std::optional<LengthUnit> fits = UnitThatGives(rod, kShortestRod, kLongestRod);
     const LengthUnit unit = motion_.unit ? *motion_.unit : fits.value_or(LengthUnit::kMillimetre);
     metres_ = MetresPer(unit);
-    found_.Fact("unit", Name(unit) + (motion_.unit ? ", as given in the file"
-                                      : fits       ? ", inferred from the rod length"
-                                                   : ", assumed"));
+    found_.Fact("unit", NameOf(unit) + (motion_.unit ? ", as given in the file"
+                                        : fits       ? ", inferred from the rod length"
+                                                     : ", assumed"));
     if (!motion_.unit && !motion_.unit_text.empty()) {
       found_.Warn("the file's unit is " + Quoted(motion_.unit_text) + ", which is unknown");
     }
     if (fits && motion_.unit && *fits != unit) {
-      found_.Warn("the file gives " + Name(unit) + ", but the person looks like " + Name(*fits) +
-                  ": set length_unit");
+      found_.Warn("the file gives " + NameOf(unit) + ", but the person looks like " +
+                  NameOf(*fits) + ": set length_unit");
     }
     if (!motion_.unit && unit != LengthUnit::kMillimetre) {
-      found_.Warn("lengths look like " + Name(unit) +
+      found_.Warn("lengths look like " + NameOf(unit) +
                   "; mm is assumed unless length_unit is given");
     }
     found_.Fact("standing height", "hip " + Rounded(rod * metres_, 3) + " m above the ankles");

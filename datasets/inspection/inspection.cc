@@ -89,7 +89,7 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
   const Result<C3dFile> read = ReadC3d(found->path, {true});
   if (!read.ok()) return read.error();
   const C3dFile& file = read.value();
-  found->format += ", " + Name(file.processor) + (file.floating ? ", floats" : ", integers");
+  found->format += ", " + NameOf(file.processor) + (file.floating ? ", floats" : ", integers");
   if (file.num_frames() < file.announced_frames) {
     found->Warn("the file ends after " + std::to_string(file.num_frames()) + " of " +
                 std::to_string(file.announced_frames) +
@@ -184,7 +184,7 @@ MaybeError LookAtTable(const MotionFormatRow& format, const ColumnMapping& mappi
   PointReadOptions options;
   options.columns = mapping.columns;
   options.time_column = mapping.time_column;
-  const Result<PointMotion> motion = ReadPointMotion(found->path, format.format, options);
+  const Result<PointMotion> motion = ReadPointMotion(found->path, format.value, options);
   PointMotion points = motion.ok() ? WithoutForces(motion.value()) : PointMotion();
   points.rate_hz = rate;
   if (!points.names.empty()) {

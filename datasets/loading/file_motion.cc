@@ -8,6 +8,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/role_choice.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 namespace {
@@ -84,13 +85,13 @@ MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
   const double files = points.unit ? MetresPer(*points.unit) : motion->metres_per_unit;
   motion->metres_per_unit = request.metres_per_unit.value_or(files);
   if (!points.unit && !Trimmed(points.unit_text).empty() && !request.metres_per_unit) {
-    return Error{
-        "gives lengths in " + Quoted(points.unit_text) +
-            ", an unknown unit; give length_unit (mm, cm or m) or length_scale (m) in the manifest",
-        request.path};
+    return Error{"gives lengths in " + Quoted(points.unit_text) +
+                     ", an unknown unit; give length_unit (" + AnyName<LengthUnit>() +
+                     ") or length_scale (m) in the manifest",
+                 request.path};
   }
   if (points.unit && files != motion->metres_per_unit) {
-    request.warn("gives lengths in " + Name(*points.unit) + "; they are read as " +
+    request.warn("gives lengths in " + NameOf(*points.unit) + "; they are read as " +
                  LengthText(motion->metres_per_unit));
   }
   return std::nullopt;

@@ -163,7 +163,7 @@ namespace {
 
 std::string StepText(const FootStep& step, double fps) {
   const std::string from = Rounded(step.lift_off / fps, 3);
-  return std::string(Name(step.foot)) +
+  return NameOf(step.foot) +
          (step.finished ? " " + from + "-" + Rounded(step.landing / fps, 3) : " from " + from) +
          " s " + TravelText(step.travel) + (step.finished ? "" : ", cut off");
 }
@@ -185,8 +185,6 @@ std::string StepsText(const PersonSteps& steps, double fps) {
   }
   return text;
 }
-
-const char* Name(Foot foot) { return foot == Foot::kLeft ? "left" : "right"; }
 
 double FootStep::Direction() const { return std::atan2(travel.y(), travel.x()); }
 

@@ -20,12 +20,15 @@
 #include <vector>
 
 #include "datasets/manifest/recording.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
 enum class Foot { kLeft, kRight };
 inline constexpr Foot kFeet[] = {Foot::kLeft, Foot::kRight};
-const char* Name(Foot foot);  // "left", "right"
+constexpr EnumNames<Foot, 2> Names(Foot) {
+  return {{{"left", Foot::kLeft}, {"right", Foot::kRight}}};
+}
 
 struct FootStep {
   Foot foot = Foot::kLeft;

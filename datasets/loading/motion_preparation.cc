@@ -102,15 +102,6 @@ constexpr int kFewestFrames = 3;                          // an acceleration tak
 
 constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
 
-// The unit in which the rod would have an adult's length.
-std::optional<LengthUnit> LikelyUnit(double rod_m, double metres_per_unit) {
-  for (LengthUnit unit : {LengthUnit::kMillimetre, LengthUnit::kMetre, LengthUnit::kCentimetre}) {
-    const double rod = rod_m / metres_per_unit * MetresPer(unit);
-    if (rod >= kShortestAdult && rod <= kLongestAdult) return unit;
-  }
-  return std::nullopt;
-}
-
 MaybeError CheckTrack(const RecordedPerson& person, const char* what,
                       const std::vector<Eigen::Vector3d>& track) {
   for (std::size_t frame = 0; frame < track.size(); ++frame) {
@@ -136,11 +127,12 @@ MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   const Eigen::Vector3d rod = person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
   const double length = rod.norm();
   if (!(length >= kShortestRod && length <= kLongestRod)) {
-    const std::optional<LengthUnit> likely = LikelyUnit(length, metres_per_unit);
+    const std::optional<LengthUnit> likely =
+        UnitThatGives(length / metres_per_unit, kShortestAdult, kLongestAdult);
     return Error{
         "the hip is " + Rounded(length, 3) + " m high above the ankles when lengths are read as " +
             LengthText(metres_per_unit) + ": " +
-            (likely ? "looks like " + Name(*likely) + ", pass --length_unit=" + Name(*likely)
+            (likely ? "looks like " + NameOf(*likely) + ", pass --length_unit=" + NameOf(*likely)
                     : "check the unit (--length_unit) and the joints chosen; give odd "
                       "units in metres (--length_scale)"),
         person.file, 0};

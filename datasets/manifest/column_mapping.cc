@@ -157,7 +157,7 @@ std::optional<double> ReadLengthScale(JsonFields* fields) {
 
 std::optional<LengthUnit> ReadLengthUnit(JsonFields* fields, const char* key) {
   if (!fields->Has(key)) return std::nullopt;
-  return fields->Choice(key, &LengthUnitFromName, LengthUnit::kMillimetre, "mm, cm or m");
+  return fields->Choice(key, LengthUnit::kMillimetre);
 }
 
 }  // namespace pushid

@@ -46,15 +46,15 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
 void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
   std::string key;
   for (const MotionFormatRow& row : kMotionFormats) {
-    if (!fields->Has(row.key)) continue;
+    if (!fields->Has(row.name)) continue;
     if (!key.empty()) {
-      fields->Fail(row.key, "is given together with " + key + "; the motion is in one of them");
+      fields->Fail(row.name, "is given together with " + key + "; the motion is in one of them");
     }
-    key = row.key;
-    recording->motion_format = row.format;
+    key = row.name;
+    recording->motion_format = row.value;
   }
   if (key.empty()) {
-    fields->Require(kMotionFormats[0].key,
+    fields->Require(kMotionFormats[0].name,
                     "a list of motion files, one per subject, under the "
                     "key of their format: " +
                         MotionKeys());
@@ -142,8 +142,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   ReadMotionNames(&fields, &recording);
   recording.mapping = fields.OptionalText("mapping", "");
   recording.push_csv = fields.OptionalText("push_csv", "");
-  recording.push_kind = fields.Choice("push_kind", &PushKindFromName, PushKind::kExternal,
-                                      "net, net_without_friction or external");
+  recording.push_kind = fields.Choice("push_kind", PushKind::kExternal);
   recording.joints = ReadJointMapping(document, &fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);
@@ -154,8 +153,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.length_unit = ReadLengthUnit(&fields, "length_unit");
   recording.length_scale = ReadLengthScale(&fields);
   ReadPushes(document, &fields, &recording);
-  recording.initial_velocity = fields.Choice("initial_velocity", &InitialVelocityFromName,
-                                             InitialVelocity::kZero, "zero, estimated or free");
+  recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
   }
@@ -180,7 +178,7 @@ std::vector<std::string> KnownKeys() {
       "up",          "forward",     "length_unit", "pushes",    "initial_velocity",
       "frames",      "first_frame", "end_frame",   "condition", kOldConditionKey,
       "length_scale"};
-  for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.key);
+  for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.name);
   return keys;
 }
 

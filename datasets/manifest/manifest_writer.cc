@@ -88,10 +88,10 @@ Json RecordingJson(const ManifestRecording& recording) {
   }
   json["subjects"] = subjects;
   json["pushed_person"] = recording.pushed_person;
-  json[Name(recording.motion_format)] = recording.motion;
+  json[NameOf(recording.motion_format)] = recording.motion;
   SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
-  json["push_kind"] = Name(recording.push_kind);
+  json["push_kind"] = NameOf(recording.push_kind);
   SetUnless(labels.magnitude().empty(), kMagnitudeLabel, labels.magnitude(), &json);
   // A file that has both keeps both; one that has the old key alone gets the new one.
   if (!json.contains(kConditionLabel)) json.erase(kOldConditionKey);
@@ -102,7 +102,7 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetOrKeep(recording.up == "z", "up", recording.up, &json);
   SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
   SetUnless(!recording.length_unit, "length_unit",
-            recording.length_unit ? Name(*recording.length_unit) : "", &json);
+            recording.length_unit ? NameOf(*recording.length_unit) : "", &json);
   SetUnless(!recording.length_scale, "length_scale", recording.length_scale.value_or(0.0), &json);
   Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
   for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
@@ -112,7 +112,7 @@ Json RecordingJson(const ManifestRecording& recording) {
   }
   SetOrKeep(recording.pushes.empty(), "pushes", pushes, &json);
   SetOrKeep(recording.initial_velocity == InitialVelocity::kZero, "initial_velocity",
-            Name(recording.initial_velocity), &json);
+            NameOf(recording.initial_velocity), &json);
   SetUnless(!recording.frames, "frames", recording.frames.value_or(0), &json);
   SetOrKeep(recording.first_frame == 0, "first_frame", recording.first_frame, &json);
   SetUnless(!recording.end_frame, "end_frame", recording.end_frame.value_or(0), &json);
@@ -124,7 +124,7 @@ Json RecordingJson(const ManifestRecording& recording) {
 MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
   Json json = manifest.json->is_object() ? *manifest.json : Json::object();
   if (manifest.length_unit) {
-    const std::string name = Name(*manifest.length_unit);
+    const std::string name = NameOf(*manifest.length_unit);
     const bool in_units =
         json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
     if (in_units) json["units"]["bvh_length"] = name;

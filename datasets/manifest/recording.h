@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/body_roles.h"
+#include "models/enum_names.h"
 #include "models/push.h"  // PushKind
 
 namespace pushid {
@@ -60,6 +60,11 @@ enum class InitialVelocity {
   kEstimated,  // backward difference of frames 1 and 0
   kFree,       // fitted
 };
+constexpr EnumNames<InitialVelocity, 3> Names(InitialVelocity) {
+  return {{{"zero", InitialVelocity::kZero},
+           {"estimated", InitialVelocity::kEstimated},
+           {"free", InitialVelocity::kFree}}};
+}
 
 // A generalized force [fx N, fy N, ftheta N m, fphi N m]; row i drives the step from frame
 // start_frame + i to the next.
@@ -117,15 +122,5 @@ struct Recording {
 
   int num_frames() const { return people.empty() ? 0 : static_cast<int>(people[0].hip.size()); }
 };
-
-// How files and messages spell a recording's choices.
-
-// "net", "net_without_friction", "external".
-std::string Name(PushKind kind);
-std::optional<PushKind> PushKindFromName(std::string_view name);
-
-// "zero", "estimated", "free".
-std::string Name(InitialVelocity initial_velocity);
-std::optional<InitialVelocity> InitialVelocityFromName(std::string_view name);
 
 }  // namespace pushid

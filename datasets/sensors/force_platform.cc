@@ -20,9 +20,9 @@ double MomentLength(const std::string& text, LengthUnit unit) {
   for (char c : text) {
     if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')) letters += c;
   }
-  if (EqualsIgnoringCase(letters, "Nmm")) return 1e-3;
-  if (EqualsIgnoringCase(letters, "Ncm")) return 1e-2;
-  if (EqualsIgnoringCase(letters, "Nm")) return 1.0;
+  for (const LengthUnitRow& row : kLengthUnits) {
+    if (EqualsIgnoringCase(letters, std::string("N") + row.name)) return MetresPer(row.value);
+  }
   return MetresPer(unit);
 }
 

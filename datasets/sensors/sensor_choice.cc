@@ -153,7 +153,7 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
       return Error{Quoted(choice.column) +
                    " is not a platform; it must be platform:1 or another number"};
     }
-    const std::optional<LengthUnit> unit = LengthUnitFromName(file.point_unit);
+    const std::optional<LengthUnit> unit = FromName<LengthUnit>(file.point_unit);
     if (!unit && !Trimmed(file.point_unit).empty()) {
       return Error{"its lengths are in " + Quoted(file.point_unit) +
                        ", which is unknown, so the height of a platform is unknown too",

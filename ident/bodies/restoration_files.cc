@@ -23,7 +23,7 @@ constexpr TensorFolderKind kRestorationFolder = {
 
 MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file) {
   return WriteTensorFolder(kRestorationFolder, folder,
-                           {Name(file.kind), file.settings, file.training, file.tensors});
+                           {NameOf(file.kind), file.settings, file.training, file.tensors});
 }
 
 Result<RestorationFile> ReadRestorationFile(const std::string& folder, const char* flag) {
@@ -31,10 +31,10 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder, const cha
   named.flag = flag;
   Result<TensorFolder> read = ReadTensorFolder(
       named, folder, TrainedRestorationKinds(),
-      [](const std::string& name) { return RestorationKindFromName(name).has_value(); });
+      [](const std::string& name) { return FromName<RestorationKind>(name).has_value(); });
   if (!read.ok()) return read.error();
   TensorFolder& content = read.value();
-  return RestorationFile{*RestorationKindFromName(content.kind), std::move(content.settings),
+  return RestorationFile{*FromName<RestorationKind>(content.kind), std::move(content.settings),
                          std::move(content.training), std::move(content.tensors)};
 }
 
@@ -64,15 +64,14 @@ Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
 
 Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const std::string& path,
                                               TensorReader* reader) {
-  const std::string name = file.settings->value(kCvaeCoordinatesKey, Name(CvaeCoordinates::kTip));
-  const std::optional<CvaeCoordinates> coordinates = CvaeCoordinatesFromName(name);
-  if (!coordinates) {
-    return Error{
-        std::string(kCvaeCoordinatesKey) + " is " + Quoted(name) + "; it must be tip or ldp", path};
+  const std::string name = file.settings->value(kCvaeCoordinatesKey, NameOf(CvaeCoordinates::kTip));
+  CvaeCoordinates coordinates;
+  if (MaybeError error = ParseName(kCvaeCoordinatesKey, name, &coordinates)) {
+    return Error{error->message, path};
   }
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
-  const CvaeLayout layout = {*coordinates, view.value() == RestorationView::kPendulum,
+  const CvaeLayout layout = {coordinates, view.value() == RestorationView::kPendulum,
                              file.settings->value(kCvaeHalvesKey, true)};
   const auto draws = [] {
     const auto random = std::make_shared<Random>(kDrawsSeed);
@@ -92,14 +91,14 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {
-  if (folder == Name(RestorationKind::kRigid)) return false;
+  if (folder == NameOf(RestorationKind::kRigid)) return false;
   const Result<RestorationFile> file = ReadRestorationFile(folder);
   if (!file.ok()) return file.error();
   return file.value().training->value(kMostPeopleKey, 0) == 1;
 }
 
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, const char* flag) {
-  if (folder == Name(RestorationKind::kRigid)) {
+  if (folder == NameOf(RestorationKind::kRigid)) {
     return std::unique_ptr<Restoration>(new RigidRestoration());
   }
   const Result<RestorationFile> file = ReadRestorationFile(folder, flag);

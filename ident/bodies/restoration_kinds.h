@@ -72,9 +72,9 @@ constexpr bool HasRow(const Row (&rows)[kCount], RestorationKind kind) {
 }
 constexpr bool EveryTrainedKindIsMadeAndTrained() {
   for (const RestorationKindRow& row : kRestorationKinds) {
-    if (HasRow(kRestorationTrainers, row.kind) != row.trained ||
-        HasRow(kRestorationMakers, row.kind) != (row.trained && row.follows_pendulum) ||
-        HasRow(kPeerMakers, row.kind) != (row.trained && !row.follows_pendulum)) {
+    if (HasRow(kRestorationTrainers, row.value) != row.trained ||
+        HasRow(kRestorationMakers, row.value) != (row.trained && row.follows_pendulum) ||
+        HasRow(kPeerMakers, row.value) != (row.trained && !row.follows_pendulum)) {
       return false;
     }
   }
@@ -90,7 +90,7 @@ Result<std::unique_ptr<Made>> MakeByKind(const KindMaker<Made> (&makers)[kCount]
                                          const char* hint) {
   std::string known;
   for (const KindMaker<Made>& maker : makers) {
-    known += (known.empty() ? "" : " and ") + std::string(Name(maker.kind));
+    known += (known.empty() ? "" : " and ") + NameOf(maker.kind);
     if (maker.kind != file.kind) continue;
     TensorReader reader(file.tensors);
     Result<std::unique_ptr<Made>> made = maker.make(file, path, &reader);
@@ -100,7 +100,8 @@ Result<std::unique_ptr<Made>> MakeByKind(const KindMaker<Made> (&makers)[kCount]
     return made;
   }
   return Error{
-      "the kind is " + Quoted(Name(file.kind)) + "; known are " + known + " (" + hint + ")", path};
+      "the kind is " + Quoted(NameOf(file.kind)) + "; known are " + known + " (" + hint + ")",
+      path};
 }
 
 }  // namespace pushid

@@ -69,22 +69,6 @@ PersonSummary Summarize(const FormationRun& run, int person) {
 
 }  // namespace
 
-std::string_view Name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::kSettled:
-      return kSettledText;
-    case Outcome::kUnmoved:
-      return "unmoved";
-    case Outcome::kSlow:
-      return kSlowToSettleText;
-    case Outcome::kFell:
-      return kFellText;
-    case Outcome::kNotJudged:
-      return "not judged";
-  }
-  return "";
-}
-
 std::string OutcomeLegend() {
   return "outcome: judged " + WaitText() +
          " after the last push, or after the onset where that is later; " + kSettledText +

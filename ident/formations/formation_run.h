@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
@@ -11,6 +10,8 @@
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
+#include "ident/problem/behaviour_text.h"
+#include "models/enum_names.h"
 #include "models/restoration/postprocess.h"
 #include "models/rollout.h"
 
@@ -26,7 +27,13 @@ enum class Outcome {
   kFell,      // theta or phi beyond 1.0 rad at any time
   kNotJudged  // the run ends before the two seconds are over
 };
-std::string_view Name(Outcome outcome);
+constexpr EnumNames<Outcome, 5> Names(Outcome) {
+  return {{{kSettledText, Outcome::kSettled},
+           {"unmoved", Outcome::kUnmoved},
+           {kSlowToSettleText, Outcome::kSlow},
+           {kFellText, Outcome::kFell},
+           {"not judged", Outcome::kNotJudged}}};
+}
 
 // What a table of outcomes and displacements means, for the line under it.
 std::string OutcomeLegend();

@@ -82,7 +82,7 @@ class WavePicture {
     const Outcome outcome = run_.summaries[person].outcome;
     if (outcome == Outcome::kFell || (outcome == Outcome::kSlow && every == 1)) {
       // There is no room for "slow to settle".
-      svg_.Text(kWaveLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : Name(outcome),
+      svg_.Text(kWaveLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : NameOf(outcome),
                 "ink small");
     }
   }

@@ -17,10 +17,7 @@ TensorFolderKind GeneratorFolder(const char* flag) {
 }
 constexpr int kMostParticles = 1000;
 
-bool IsKind(const std::string& name) {
-  GeneratorKind kind;
-  return !ParseName("kind", name, &kind);
-}
+bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
 Json LayoutJson(const ParticleLayout& layout) {
   Json particles = Json::array();
@@ -75,7 +72,7 @@ Json SettingsJson(const TrainedNetworks& trained) {
   if (settings.choice) {
     json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
   }
-  for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(Name(kind));
+  for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(NameOf(kind));
   json.update(trained.of_kind->Settings());
   return json;
 }
@@ -90,7 +87,7 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.rate = json.at("rate_hz");
   settings.pendulum = json.value("pendulum", false);  // files from before have none
   for (const Json& name : json.value("push_kinds", Json::array())) {
-    const std::optional<PushKind> kind = PushKindFromName(name.get<std::string>());
+    const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
     Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
     settings.push_kinds.push_back(*kind);
   }

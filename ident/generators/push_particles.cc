@@ -83,10 +83,10 @@ std::string OtherPushKinds(const GeneratorSettings& settings, const Scene& scene
   if (settings.push_kinds.empty()) return "";
   const auto& learned = settings.push_kinds;
   std::string known, other;
-  for (const PushKind kind : learned) known += (known.empty() ? "" : ", ") + Name(kind);
+  for (const PushKind kind : learned) known += (known.empty() ? "" : ", ") + NameOf(kind);
   for (const PushKind kind : PushKindsOf(scene)) {
     if (std::find(learned.begin(), learned.end(), kind) != learned.end()) continue;
-    other += (other.empty() ? "" : ", ") + Name(kind);
+    other += (other.empty() ? "" : ", ") + NameOf(kind);
   }
   if (other.empty()) return "";
   return "the generator was trained on pushes of kind " + known +

@@ -25,17 +25,6 @@ constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
 
 constexpr char kNetworkTerm[] = "network:";  // before the sizes
 
-const char* const kKinds[] = {"none", "mlp", "gru", "lstm"};
-const char* const kRodKinds[] = {"constant", "linear", "mlp"};
-
-// The kind of that name; kNone for any other.
-NetworkKind KindOf(const std::string& name) {
-  for (NetworkKind kind : {NetworkKind::kMlp, NetworkKind::kGru, NetworkKind::kLstm}) {
-    if (name == kKinds[static_cast<int>(kind)]) return kind;
-  }
-  return NetworkKind::kNone;
-}
-
 // A size between 1 and kLargestSize, or 0.
 int Size(const std::string& text) {
   if (text.empty() || text.size() > 4 ||
@@ -65,7 +54,8 @@ std::vector<int> HiddenSizes(const std::string& text) {
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
   const std::vector<std::string> parts = Split(text, ':');
   NetworkShape shape;
-  shape.kind = parts.empty() ? NetworkKind::kNone : KindOf(parts[0]);
+  shape.kind = parts.empty() ? NetworkKind::kNone
+                             : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
   shape.hidden = kDefaultHidden;
   const bool known =
       shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
@@ -215,12 +205,12 @@ void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
 
 RodShape RodFromJson(const Json& json) {
   const std::string kind = json.at("kind");
-  const auto* known = std::find(std::begin(kRodKinds), std::end(kRodKinds), kind);
-  if (known == std::end(kRodKinds)) {
+  const std::optional<RodKind> known = FromName<RodKind>(kind);
+  if (!known) {
     throw std::runtime_error("rod: '" + kind + "' is not a kind (constant, linear, mlp)");
   }
   RodShape rod;
-  rod.kind = static_cast<RodKind>(known - kRodKinds);
+  rod.kind = *known;
   rod.hidden = json.at("hidden").get<std::vector<int>>();
   const bool layers_fit = rod.kind == RodKind::kMlp
                               ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers
@@ -244,14 +234,12 @@ PairShape PairFromJson(const Json& json) {
 
 Json ToJson(const LearnedTerms& network) {
   const NetworkShape& s = network.shape;
-  Json json = {
-      {"kind", kKinds[static_cast<int>(s.kind)]},
-      {"hidden", s.hidden},
-      {"embedding", s.embedding},
-      {"rod_input", s.rod_input},
-      {"rod",
-       {{"kind", kRodKinds[static_cast<int>(network.rod.kind)]}, {"hidden", network.rod.hidden}}},
-      {"weights", network.weights}};
+  Json json = {{"kind", NameOf(s.kind)},
+               {"hidden", s.hidden},
+               {"embedding", s.embedding},
+               {"rod_input", s.rod_input},
+               {"rod", {{"kind", NameOf(network.rod.kind)}, {"hidden", network.rod.hidden}}},
+               {"weights", network.weights}};
   if (network.pair.any()) json["interaction"] = {{"hidden", network.pair.hidden}};
   return json;
 }
@@ -260,8 +248,9 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   LearnedTerms network;
   NetworkShape& s = network.shape;
   const std::string kind = json.at("kind");
-  s.kind = KindOf(kind);
-  if (!s.any() && kind != kKinds[0]) {
+  if (const std::optional<NetworkKind> known = FromName<NetworkKind>(kind)) {
+    s.kind = *known;
+  } else {
     throw std::runtime_error("network: '" + kind + "' is not a kind (none, mlp, gru, lstm)");
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));

@@ -2,6 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/names.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_row_makers.h"

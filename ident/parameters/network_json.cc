@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 
 namespace pushid {
 namespace {
@@ -66,7 +67,7 @@ nlohmann::ordered_json ToJson(const InteractionNetwork& network) {
     }
     layers.push_back({{"weights", rows}, {"bias", ToVector(layer.bias)}});
   }
-  Json json = {{"activation", network.mlp.activation == Activation::kTanh ? "tanh" : "relu"},
+  Json json = {{"activation", NameOf(network.mlp.activation)},
                {"layers", layers},
                {"input_mean", ToVector(network.mean)},
                {"input_deviation", ToVector(network.deviation)},
@@ -79,11 +80,10 @@ nlohmann::ordered_json ToJson(const InteractionNetwork& network) {
 
 std::shared_ptr<const InteractionNetwork> InteractionNetworkFromJson(const Json& json) {
   auto network = std::make_shared<InteractionNetwork>();
-  const std::string activation = json.at("activation");
-  if (activation != "tanh" && activation != "relu") {
-    throw std::runtime_error("activation is '" + activation + "'; it must be tanh or relu");
+  if (MaybeError error = ParseName("activation", json.at("activation").get<std::string>(),
+                                   &network->mlp.activation)) {
+    throw std::runtime_error(error->message);
   }
-  network->mlp.activation = activation == "tanh" ? Activation::kTanh : Activation::kRelu;
   Eigen::Index inputs = kNetworkInputs;
   for (const Json& layer : json.at("layers")) {
     const std::string name = "layer " + std::to_string(network->mlp.layers.size());

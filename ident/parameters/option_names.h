@@ -1,37 +1,14 @@
-// ident: options by name, for flags and JSON alike. The names stand beside the enums
-// (models/enum_names.h).
+// ident: options of several names at once, for flags and JSON alike. Those of one name are read by
+// ParseName (datasets/files/names.h).
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "datasets/files/error.h"
-#include "models/enum_names.h"
+#include "datasets/files/names.h"
 #include "models/options.h"
 
 namespace pushid {
-
-// The words for an enum's values.
-template <typename E>
-std::vector<std::string> AllNames() {
-  std::vector<std::string> words;
-  for (const EnumName<E>& row : Names(E{})) words.push_back(row.name);
-  return words;
-}
-
-// Errors: "--posture is 'flat'; it must be upright or initial".
-template <typename E>
-MaybeError ParseName(const std::string& flag, const std::string& text, E* value) {
-  std::string known;
-  for (const EnumName<E>& row : Names(E{})) {
-    if (text == row.name) {
-      *value = row.value;
-      return std::nullopt;
-    }
-    known += (known.empty() ? "" : ", ") + std::string(row.name);
-  }
-  return Error{flag + " is '" + text + "'; it must be one of " + known};
-}
 
 // Interaction terms: comma-separated pieces; "contact" and "ldp" are short for two of them each.
 std::string NameOf(const InteractionTerms& terms);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_row_makers.h"
 

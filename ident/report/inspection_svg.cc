@@ -126,7 +126,7 @@ class Picture {
         svg_.Rect({from, y, to - from, kBar - 2}, std::string("fill:") + kColours[0],
                   StepsText({{step}}, found_.rate_hz));
       }
-      svg_.Text(kWidth - kRight + 6, y + kBar - 2, Name(foot), "faint small");
+      svg_.Text(kWidth - kRight + 6, y + kBar - 2, NameOf(foot), "faint small");
       y += kBar;
     }
     top_ += kFeetPanel;

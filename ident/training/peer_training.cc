@@ -15,7 +15,7 @@ namespace {
 constexpr int kSimlpeEpochs = 40;
 
 Error TooShort(RestorationKind kind) {
-  return Error{std::string("the recordings are too short for --kind=") + Name(kind)};
+  return Error{"the recordings are too short for --kind=" + NameOf(kind)};
 }
 
 RegressionSamples Windows(const std::vector<RestorationSample>& samples, Scaling* scaling) {

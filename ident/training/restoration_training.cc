@@ -37,7 +37,7 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
 std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
-  return std::string("1 ") + Name(options.kind) + " " + Name(options.coordinates) + " " +
+  return "1 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
          NameOf(options.mrt_size) + " " + std::to_string(options.effort) + " " +
          std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
@@ -140,7 +140,7 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
   const auto finish = [trainer, options](RestorationFile* file) {
     file->tensors = ToTensors(trainer->Best());
     *file->settings = {{kViewKey, NameOf(options.view)},
-                       {kCvaeCoordinatesKey, Name(options.coordinates)},
+                       {kCvaeCoordinatesKey, NameOf(options.coordinates)},
                        {kCvaeHalvesKey, options.halves}};
   };
   return RestorationTraining{trainer, finish};
@@ -181,8 +181,8 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
     of_kind.value().finish(&trained.file);
     return trained;
   }
-  return Error{std::string("--kind is '") + Name(options.kind) +
-               "', which is not trained; it must be " + TrainedRestorationKinds()};
+  return Error{"--kind is '" + NameOf(options.kind) + "', which is not trained; it must be " +
+               TrainedRestorationKinds()};
 }
 
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,

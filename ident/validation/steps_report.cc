@@ -41,7 +41,7 @@ Json MedianJson(const std::vector<double>& values) {
 }
 
 Json StepJson(const FootStep& step, double dt) {
-  return {{"foot", Name(step.foot)},
+  return {{"foot", NameOf(step.foot)},
           {"lift_off_s", step.lift_off * dt},
           {"landing_s", step.finished ? Json(step.landing * dt) : Json(nullptr)},
           {"length_m", step.Length()},

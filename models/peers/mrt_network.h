@@ -119,7 +119,7 @@ Eigen::MatrixXf PredictedWays(const MrtWeights& weights, const MrtView& view);
 class MrtPeer : public Peer {
  public:
   explicit MrtPeer(MrtWeights weights) : weights_(std::move(weights)) {}
-  std::string_view name() const override { return Name(RestorationKind::kMrt); }
+  std::string_view name() const override { return RowOf(RestorationKind::kMrt).name; }
   int given_frames() const override { return kMrtGiven; }
   std::vector<BodyMotion> Continue(const std::vector<BodyMotion>& people,
                                    int frames) const override;

@@ -31,7 +31,7 @@ Eigen::VectorXf SimlpeTarget(const BodyMotion& motion, int last);
 class SimlpePeer : public Peer {
  public:
   explicit SimlpePeer(SimlpeWeights weights) : weights_(std::move(weights)) {}
-  std::string_view name() const override { return Name(RestorationKind::kSimlpe); }
+  std::string_view name() const override { return RowOf(RestorationKind::kSimlpe).name; }
   int given_frames() const override { return kSimlpeGiven; }
   std::vector<BodyMotion> Continue(const std::vector<BodyMotion>& people,
                                    int frames) const override;

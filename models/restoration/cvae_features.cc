@@ -10,17 +10,6 @@
 
 namespace pushid {
 
-const char* Name(CvaeCoordinates coordinates) {
-  return coordinates == CvaeCoordinates::kTip ? "tip" : "ldp";
-}
-
-std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name) {
-  for (CvaeCoordinates coordinates : {CvaeCoordinates::kTip, CvaeCoordinates::kLdp}) {
-    if (name == Name(coordinates)) return coordinates;
-  }
-  return std::nullopt;
-}
-
 const std::vector<int>& CvaeLayout::LowerJoints() const {
   static const std::vector<int> lower(std::begin(kLowerJoints), std::end(kLowerJoints));
   static const std::vector<int> all = [] {

@@ -17,17 +17,17 @@
 // positions.
 #pragma once
 
-#include <optional>
-#include <string_view>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/restoration/restoration.h"
 
 namespace pushid {
 
 enum class CvaeCoordinates { kTip, kLdp };
-const char* Name(CvaeCoordinates coordinates);  // "tip", "ldp"
-std::optional<CvaeCoordinates> CvaeCoordinatesFromName(std::string_view name);
+constexpr EnumNames<CvaeCoordinates, 2> Names(CvaeCoordinates) {
+  return {{{"tip", CvaeCoordinates::kTip}, {"ldp", CvaeCoordinates::kLdp}}};
+}
 
 // What the chain is made of; to leave parts of LDP's out is to see what they are worth.
 struct CvaeLayout {

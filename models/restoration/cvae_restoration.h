@@ -67,7 +67,7 @@ class CvaeRestoration : public Restoration {
   // draws: of z where there is no pendulum, made anew for every call of Restore.
   explicit CvaeRestoration(CvaeWeights weights, std::function<NormalSource()> draws = nullptr)
       : weights_(std::move(weights)), draws_(std::move(draws)) {}
-  std::string_view kind() const override { return Name(RestorationKind::kCvae); }
+  std::string_view kind() const override { return RowOf(RestorationKind::kCvae).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const CvaeWeights& weights() const { return weights_; }
 

@@ -56,7 +56,7 @@ class Restoration {
 // The first pose carried along by the rod's tip: what any network has to beat.
 class RigidRestoration : public Restoration {
  public:
-  std::string_view kind() const override { return Name(RestorationKind::kRigid); }
+  std::string_view kind() const override { return RowOf(RestorationKind::kRigid).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
 };
 

@@ -4,10 +4,7 @@
 // the functions that make it from a file and train it.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "models/enum_names.h"
 
@@ -16,8 +13,8 @@ namespace pushid {
 enum class RestorationKind { kRigid, kWindow, kCvae, kSimlpe, kMrt };
 
 struct RestorationKindRow {
-  RestorationKind kind;
-  const char* name;       // in files and on the command line
+  const char* name;  // in files and on the command line
+  RestorationKind value;
   const char* what;       // for the list of kinds on the command line
   bool trained;           // it has weights, and stands in a folder
   bool follows_pendulum;  // otherwise it is a peer (peers/peer.h), which continues recorded bodies
@@ -26,48 +23,21 @@ struct RestorationKindRow {
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {
-    {RestorationKind::kRigid, "rigid", "the first pose carried by the rod's tip", false, true,
+    {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, true,
      false, false},
-    {RestorationKind::kWindow, "window", "fast, default", true, true, true, true},
-    {RestorationKind::kCvae, "cvae", "LDP's chain", true, true, false, false},
-    {RestorationKind::kSimlpe, "simlpe", "siMLPe, which continues 12 given frames", true, false,
+    {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
+    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, false},
+    {"simlpe", RestorationKind::kSimlpe, "siMLPe, which continues 12 given frames", true, false,
      false, false},
-    {RestorationKind::kMrt, "mrt", "MRT, which continues 20 given frames of a whole group", true,
+    {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,
      false, false, false},
 };
-
-constexpr bool RestorationRowsAreInOrder() {
-  int value = 0;
-  for (const RestorationKindRow& row : kRestorationKinds) {
-    if (static_cast<int>(row.kind) != value++) return false;
-  }
-  return true;
-}
-static_assert(RestorationRowsAreInOrder(), "RowOf finds a row by its kind's value");
-
-constexpr const RestorationKindRow& RowOf(RestorationKind kind) {
-  return kRestorationKinds[static_cast<int>(kind)];
-}
-inline const char* Name(RestorationKind kind) { return RowOf(kind).name; }
-
-inline std::optional<RestorationKind> RestorationKindFromName(std::string_view name) {
-  for (const RestorationKindRow& row : kRestorationKinds) {
-    if (name == row.name) return row.kind;
-  }
-  return std::nullopt;
-}
+constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
+static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
 // Of those that can be trained, for messages: "window, cvae, simlpe or mrt".
 inline std::string TrainedRestorationKinds() {
-  std::vector<std::string> names;
-  for (const RestorationKindRow& row : kRestorationKinds) {
-    if (row.trained) names.push_back(row.name);
-  }
-  std::string list;
-  for (size_t i = 0; i < names.size(); ++i) {
-    list += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  }
-  return list;
+  return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
 }
 
 // What a restoration is told of the motion, besides the first pose, mass and size.

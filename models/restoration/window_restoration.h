@@ -19,7 +19,7 @@ struct WindowWeights {
 class WindowRestoration : public Restoration {
  public:
   explicit WindowRestoration(WindowWeights weights) : weights_(std::move(weights)) {}
-  std::string_view kind() const override { return Name(RestorationKind::kWindow); }
+  std::string_view kind() const override { return RowOf(RestorationKind::kWindow).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const WindowWeights& weights() const { return weights_; }
 

@@ -47,7 +47,7 @@ class PointsFolderTest : public RecordingFolderTest {
     if (format != MotionFormat::kC3d) return;
     C3dFile c3d;
     c3d.point_rate_hz = motion_.rate_hz;
-    c3d.point_unit = Name(*motion_.unit);
+    c3d.point_unit = NameOf(*motion_.unit);
     c3d.point_names = motion_.names;
     c3d.points = motion_.positions;
     ASSERT_FALSE(WriteC3d(Path(file), c3d));

@@ -41,7 +41,7 @@ void C3dSeeds(const std::string& out) {
       file.floating = type % 2 == 0;
       file.platforms[0].type = type;
       if (type == 3) file.platforms[0].channels = {0, 1, 2, 3, 4, 5, 6, 6};
-      Check(WriteC3d(In(out, "c3d", Name(processor) + std::to_string(type) + ".c3d"), file));
+      Check(WriteC3d(In(out, "c3d", NameOf(processor) + std::to_string(type) + ".c3d"), file));
     }
   }
   const std::pair<const char*, HandmadeC3d> handmade[] = {

@@ -19,7 +19,7 @@ constexpr double kMotionWidth = 250, kMotionHeight = 170;
 std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
   std::vector<ChartLane> lanes;
   for (Foot foot : kFeet) {
-    ChartLane lane{Name(foot), {}, kLiftedLook};
+    ChartLane lane{NameOf(foot), {}, kLiftedLook};
     for (const FootStep& step : run.recording.steps[person].steps) {
       const int end = std::min(step.landing, run.recording.num_frames() - 1);
       if (step.foot == foot) lane.bars.emplace_back(run.Seconds(step.lift_off), run.Seconds(end));

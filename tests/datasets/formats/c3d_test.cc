@@ -62,7 +62,7 @@ TEST(C3dBytesTest, WhatIsWrittenIsRead) {
       AppendC3dReal(value, processor, &bytes);
       ASSERT_EQ(bytes.size(), 4u);
       EXPECT_EQ(C3dBytes(bytes, processor).Real(0), static_cast<double>(static_cast<float>(value)))
-          << Name(processor) << " " << value;
+          << NameOf(processor) << " " << value;
     }
   }
 }
@@ -71,7 +71,7 @@ TEST_F(C3dTest, RoundTripOfEveryFormat) {
   const C3dFile original = SampleC3d();
   for (C3dProcessor processor : {C3dProcessor::kIntel, C3dProcessor::kDec, C3dProcessor::kMips}) {
     for (bool floating : {true, false}) {
-      SCOPED_TRACE(Name(processor) + (floating ? " float" : " integer"));
+      SCOPED_TRACE(NameOf(processor) + (floating ? " float" : " integer"));
       C3dFile file = original;
       file.processor = processor;
       file.floating = floating;

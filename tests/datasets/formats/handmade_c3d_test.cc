@@ -55,7 +55,7 @@ TEST_F(HandmadeC3dTest, SamplesAreRawLessOffsetTimesBothScales) {
   for (const Case& one : cases) {
     for (C3dProcessor processor : kProcessors) {
       for (bool floating : {false, true}) {
-        SCOPED_TRACE(one.what + (" " + Name(processor)) + (floating ? " float" : " integer"));
+        SCOPED_TRACE(one.what + (" " + NameOf(processor)) + (floating ? " float" : " integer"));
         HandmadeC3d file = one.make(processor);
         file.floating = floating;
         const C3dFile read = Read(file);
@@ -97,7 +97,7 @@ TEST_F(HandmadeC3dTest, ScalesAreOfEveryChannelOrOfNone) {
 TEST_F(HandmadeC3dTest, EventsOfTheHeader) {
   for (C3dProcessor processor : kProcessors) {
     const C3dFile read = Read(HeaderEventsC3d(processor));
-    ASSERT_EQ(read.events.size(), 2u) << Name(processor);
+    ASSERT_EQ(read.events.size(), 2u) << NameOf(processor);
     EXPECT_EQ(read.events[0].label, "RHS");
     EXPECT_EQ(read.events[0].time_s, 1.5);
     EXPECT_EQ(read.events[1].label, "LTO2");
@@ -142,7 +142,7 @@ TEST_F(HandmadeC3dTest, MoreFramesThanTheHeaderCounts) {
          {TrialC3d(kFrames, processor), LongFramesC3d(kFrames, processor)}) {
       const C3dFile read = Read(file);
       EXPECT_EQ(read.announced_frames, kFrames);
-      ASSERT_EQ(read.num_frames(), kFrames) << Name(processor);
+      ASSERT_EQ(read.num_frames(), kFrames) << NameOf(processor);
       EXPECT_EQ(read.points[0][kFrames - 1], Eigen::Vector3d((kFrames - 1) % 1000, 200.0, 300.0));
     }
   }
@@ -178,7 +178,7 @@ TEST_F(HandmadeC3dTest, OriginsOfSegmentsArePoints) {
   for (C3dProcessor processor : kProcessors) {
     for (int points : {0, 1}) {
       for (int ratio : {1, 2}) {
-        SCOPED_TRACE(Name(processor) + " " + std::to_string(points) + std::to_string(ratio));
+        SCOPED_TRACE(NameOf(processor) + " " + std::to_string(points) + std::to_string(ratio));
         const C3dFile read = Read(Poses(processor, points, ratio));
         ASSERT_EQ(read.points.size(), points + 2u);
         EXPECT_EQ(read.num_frames(), 3);

@@ -22,9 +22,9 @@ TEST(MotionFormatsTest, ByTheFilesEnding) {
 // Every format is found by its key, which is an ending of its files, and can be read.
 TEST(MotionFormatsTest, EveryRow) {
   for (const MotionFormatRow& row : kMotionFormats) {
-    EXPECT_EQ(MotionFormatOfFile(std::string("a.") + row.key), row.format);
-    EXPECT_EQ(RowOf(row.format).key, row.key);
-    EXPECT_EQ(HasSkeleton(row.format), row.format == MotionFormat::kBvh);
+    EXPECT_EQ(MotionFormatOfFile(std::string("a.") + row.name), row.value);
+    EXPECT_EQ(RowOf(row.value).name, row.name);
+    EXPECT_EQ(HasSkeleton(row.value), row.value == MotionFormat::kBvh);
   }
   EXPECT_EQ(Title(MotionFormat::kC3d), "C3D");
   EXPECT_EQ(Title(MotionFormat::kBids), "Motion-BIDS");

@@ -31,9 +31,9 @@ TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
     with_unit(unit);
     ExpectTheWalker();
   }
-  EXPECT_EQ(LengthUnitFromName("CENTIMETERS"), LengthUnit::kCentimetre);
-  EXPECT_EQ(LengthUnitFromName("M"), LengthUnit::kMetre);
-  EXPECT_EQ(LengthUnitFromName("metres"), LengthUnit::kMetre);
+  EXPECT_EQ(FromName<LengthUnit>("CENTIMETERS"), LengthUnit::kCentimetre);
+  EXPECT_EQ(FromName<LengthUnit>("M"), LengthUnit::kMetre);
+  EXPECT_EQ(FromName<LengthUnit>("metres"), LengthUnit::kMetre);
   with_unit("inch");
   EXPECT_TRUE(Contains(Message(), "a.trc: recording 'a': gives lengths in 'inch'"));
   entry().length_unit = LengthUnit::kMillimetre;

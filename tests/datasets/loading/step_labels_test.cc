@@ -69,7 +69,7 @@ void Compare(const Recording& recording, int person, const std::vector<Label>& l
     ++agreement->labelled;
     const int landing = label.landing < 0 ? recording.num_frames() : label.landing;
     const auto match = std::find_if(found.begin(), found.end(), [&](const FootStep& step) {
-      return Name(step.foot) == label.foot &&
+      return NameOf(step.foot) == label.foot &&
              std::abs(step.lift_off - label.lift_off) <= kLiftOffWithin * recording.fps &&
              std::abs(step.landing - landing) <= kLandingWithin * recording.fps &&
              step.lift_off < landing && label.lift_off < step.landing;
@@ -87,7 +87,7 @@ void Compare(const Recording& recording, int person, const std::vector<Label>& l
     found.erase(match);
   }
   for (const FootStep& step : found) {
-    agreement->odd.push_back(where + Name(step.foot) + " found " + std::to_string(step.lift_off) +
+    agreement->odd.push_back(where + NameOf(step.foot) + " found " + std::to_string(step.lift_off) +
                              " to " + std::to_string(step.landing));
   }
 }

@@ -92,7 +92,7 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
       << "draws repeat";
   WriteWindow();
   Replace("\"settings\": {", "\"settings\": {\"sees\": \"people\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "must be one of pendulum, neighbours, pose"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "must be pendulum, neighbours or pose"));
 }
 
 TEST_F(RestorationFilesTest, RigidNeedsNoFolder) {

@@ -189,7 +189,7 @@ TEST(FitSetup, WhatDoesNotGoTogetherIsNamed) {
 TEST(FitSetup, BadOptionsAreNamed) {
   const std::pair<GivenOptions, std::string> cases[] = {
       {{{"preset", "tial"}}, "--preset is 'tial'"},
-      {{{"posture", "flat"}}, "--posture is 'flat'; it must be one of upright, initial"},
+      {{{"posture", "flat"}}, "--posture is 'flat'; it must be upright or initial"},
       {{{"sigma_hip", "wide"}}, "--sigma_hip is 'wide'; it must be positive"},
       {{{"starts", "two"}}, "--starts is 'two'; it must be a whole number"},
       {{{"starts", "0"}}, "--starts is 0; it must be positive"},

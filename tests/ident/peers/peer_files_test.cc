@@ -112,7 +112,7 @@ TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
   EXPECT_TRUE(Contains(error(file), "scaling.tokens.mean is missing; train again"));
   AddTensors(RandomMrt(), &file.tensors);
   (*file.settings)[kMrtSizeKey] = "large";
-  EXPECT_TRUE(Contains(error(file), "size is 'large'; it must be one of small, published"));
+  EXPECT_TRUE(Contains(error(file), "size is 'large'; it must be small or published"));
   (*file.settings)[kMrtSizeKey] = "published";
   EXPECT_TRUE(Contains(error(file), "local_token.weights is 64 x 66, not 128 x 66"));
   const auto nowhere = LoadPeer(Path("nowhere"));
