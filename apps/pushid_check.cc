@@ -7,7 +7,6 @@
 
 #include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/restoration_files.h"

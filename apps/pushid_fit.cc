@@ -7,7 +7,6 @@
 #include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
-#include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"

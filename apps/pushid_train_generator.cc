@@ -4,11 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/model_file.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_generator_flags.h"
 #include "apps/support/app_support.h"
-#include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"

@@ -9,7 +9,6 @@
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
 #include "apps/support/app_support.h"
-#include "apps/support/training_line.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"

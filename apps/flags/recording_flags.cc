@@ -135,6 +135,20 @@ Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting) {
   return LoadFlaggedRecordings({}, true);
 }
 
+Provenance ProvenanceOfRun() {
+  Provenance from;
+  from.version = Version();
+  from.configuration = EffectiveFlags();
+  // Where the data lay is no part of what was found; the hash is.
+  from.configuration.erase("recordings");
+  from.changed_flags = ChangedFlags();
+  from.manifest = FLAGS_recordings;
+  from.setting = FLAGS_setting;
+  const Result<std::string> hash = HashManifests(FLAGS_recordings);
+  if (hash.ok()) from.manifest_hash = hash.value();
+  return from;
+}
+
 MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty()) continue;

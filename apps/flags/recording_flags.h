@@ -9,6 +9,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/model/fitted_model.h"
 
 DECLARE_string(recordings);
 DECLARE_string(setting);
@@ -41,6 +42,9 @@ MaybeError CheckRecordingFlags();
 
 // Those of another --setting, with whole bodies.
 Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
+
+// Version, flags and manifest of this program's run, as a model keeps them.
+Provenance ProvenanceOfRun();
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);

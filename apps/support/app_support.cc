@@ -5,12 +5,16 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
+#include "datasets/files/json_file.h"
 #include "datasets/loading/load_recordings.h"
+#include "ident/model/model_json.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -44,10 +48,19 @@ void WarnGrouped(const std::vector<std::string>& messages) {
 
 std::string Version() { return PUSHID_VERSION; }
 
-std::string HostName() {
-  char name[256] = "";
-  if (gethostname(name, sizeof name - 1) != 0) return "";
-  return name;
+MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
+                          double begin) {
+  RunInfo run;
+  char date[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  run.date = date;
+  char host[256] = "";
+  if (gethostname(host, sizeof host - 1) == 0) run.host = host;
+  run.model_path = path;
+  run.num_threads = num_threads;
+  run.total_seconds = Now() - begin;
+  return WriteJson(path, ToJson(model, run));
 }
 
 void HideProgress() { g_show_progress = false; }
@@ -114,6 +127,27 @@ void SetBlasThreads(int num_threads) {
   // Ends those that look for work; the next product that wants them starts them again.
   auto* const end_threads = Loaded<int()>("blas_thread_shutdown_");
   if (num_threads == 1 && end_threads != nullptr) end_threads();
+}
+
+std::string KeptCheckpoints(const std::string& folder) {
+  return "the last checkpoint is in " + folder + ", and the same command continues from there";
+}
+
+TrainingLine::TrainingLine() : made_(Now()) {}
+
+double TrainingLine::Seconds() const { return Now() - made_; }
+
+void TrainingLine::Show(const std::string& step, double done) {
+  const std::string name = step.substr(0, step.rfind(' '));
+  if (name != step_) step_ = name, start_ = Now(), done_at_start_ = done;
+  std::string text =
+      step + ": " + std::to_string(static_cast<int>(std::lround(100.0 * done))) + " %";
+  const double gained = done - done_at_start_;
+  if (gained > 0.0) {
+    const double left = (Now() - start_) / gained * (1.0 - done);
+    text += ", " + std::to_string(static_cast<int>(std::lround(left))) + " s left";
+  }
+  line_.Show(text);
 }
 
 }  // namespace pushid

@@ -12,6 +12,8 @@
 
 namespace pushid {
 
+struct FittedModel;  // ident/model/fitted_model.h
+
 inline constexpr int kDone = 0, kBadInput = 1, kFitFailed = 2;
 
 // The program's name, as messages begin with it; path: argv[0].
@@ -26,7 +28,10 @@ void Warn(const std::string& message);
 void WarnGrouped(const std::vector<std::string>& messages);
 
 std::string Version();
-std::string HostName();
+
+// A model's file, with date, host, threads and the seconds since `begin` (of Now()).
+MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
+                          double begin);
 
 // No ProgressLine shows anything from now on (--quiet).
 void HideProgress();
@@ -58,5 +63,23 @@ void SayWhenInterrupted(const std::string& what);
 // may need. Products that threads share also round otherwise, so that results would depend on how
 // many cores a machine has.
 void SetBlasThreads(int num_threads);
+
+// What Ctrl-C is told of a training into this folder.
+std::string KeptCheckpoints(const std::string& folder);
+
+// How far a training has come: "window, epoch 12: 43 %, 12 s left"; the time left from the share
+// done so far. Steps are told apart by what stands before their last word.
+class TrainingLine {
+ public:
+  TrainingLine();
+  void Show(const std::string& step, double done);
+  void Finish() { line_.Finish(); }
+  double Seconds() const;  // since it was made
+
+ private:
+  ProgressLine line_;
+  std::string step_;
+  double made_, start_ = 0.0, done_at_start_ = 0.0;
+};
 
 }  // namespace pushid
