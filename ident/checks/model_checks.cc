@@ -25,6 +25,11 @@ std::vector<std::string> ProfileNames(const std::string& profile) {
   return names;
 }
 
+bool IsLarge(const FitOptions& options) {
+  const auto& learned = options.model.learned;
+  return learned != nullptr && learned->weights.size() > size_t{kMostGaussNewtonWeights};
+}
+
 Error NotAsFitted(const std::string& id, const std::string& what) {
   return Error{"recording " + id + " " + what};
 }
@@ -46,14 +51,15 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, in
   if (bootstrap && recordings < 2) {
     return Error{"--bootstrap draws people or recordings with replacement; it needs at least two"};
   }
-  const bool stopped_early = options.early_stopping > 0.0 && !NeedsGradientTraining(options);
+  // Whether it was trained by its gradient, or will be: a model's file holds its network.
+  const bool large = IsLarge(options);
+  const bool stopped_early = options.early_stopping > 0.0 && !large;
   if (stopped_early && (bootstrap || !checks.profile.empty())) {
     return Error{
         "--profile and --bootstrap need the minimum of the cost, which a fit with --early_stopping "
         "does not reach; prevent overfitting with --network_prior instead"};
   }
-  if (NeedsGradientTraining(options) &&
-      (checks.push_check || checks.horizon_check || checks.prior_check)) {
+  if (large && (checks.push_check || checks.horizon_check || checks.prior_check)) {
     return Error{
         "--push_check, --horizon_check and --prior_check refit many times, and this network is too "
         "large for that (trained by its gradient); choose a smaller one"};
@@ -112,9 +118,7 @@ Result<std::vector<PendulumRecording>> AsFitted(const std::vector<PendulumRecord
 
 MaybeError ResumeFit(const std::vector<PendulumRecording>& recordings, FitResult* fit) {
   // The reader holds what is learned; a fit holds only what was trained by its gradient.
-  const auto& learned = fit->options.model.learned;
-  fit->options.hold_network =
-      learned != nullptr && learned->weights.size() > size_t{kMostGaussNewtonWeights};
+  fit->options.hold_network = IsLarge(fit->options);
   SolveStart& best = fit->starts[fit->best_start];
   const FitProblem problem(recordings, fit->options);
   std::optional<FitPoint> point = problem.PointAt(best.to.Flat());

@@ -23,6 +23,7 @@ Row PresetRow() {
       "setting), ldp (plain PD and friction from upright), or ldp_groups (that with LDP's "
       "potential and torques between people, and a network beside them)",
       nullptr);
+  row.choices = PresetNames();
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
   row.json = "/preset";
   row.write = [](const FitOptions& o) { return Json(o.preset); };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "datasets/manifest/recording.h"
 #include "ident/parameters/learned_terms_io.h"
@@ -95,6 +96,15 @@ FitOptions LdpGroupsPreset() {
   return o;
 }
 
+struct NamedPreset {
+  const char* name;
+  FitOptions (*make)();
+};
+constexpr NamedPreset kPresets[] = {{"tail", TailPreset},
+                                    {"ldp", LdpPreset},
+                                    {"ldp_groups", LdpGroupsPreset},
+                                    {"group", GroupPreset}};
+
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   if (kind != SelfForceKind::kLinear) return;
   for (int id = kAx; id <= kDq; ++id) {
@@ -176,6 +186,12 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->settling_weight = options->mode_weight = options->stability_weight = 0.0;
 }
 
+std::vector<std::string> PresetNames() {
+  std::vector<std::string> names = {kAutoPreset};
+  for (const NamedPreset& preset : kPresets) names.push_back(preset.name);
+  return names;
+}
+
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {
   if (name != kAutoPreset) return name;
   const bool groups =
@@ -185,14 +201,15 @@ std::string PresetFor(const std::string& name, const std::vector<PendulumRecordi
 }
 
 Result<FitOptions> StartPreset(const std::string& name) {
-  if (name == "tail") return TailPreset();
-  if (name == "ldp") return LdpPreset();
-  if (name == "ldp_groups") return LdpGroupsPreset();
-  if (name == "group") return GroupPreset();
   if (name == kAutoPreset) {
     return Error{"the preset auto looks at recordings: ask PresetFor what it stands for"};
   }
-  return Error{"--preset is '" + name + "'; it must be auto, tail, ldp, ldp_groups or group"};
+  std::string known = kAutoPreset;
+  for (const NamedPreset& preset : kPresets) {
+    if (name == preset.name) return preset.make();
+    known += (&preset == std::end(kPresets) - 1 ? " or " : ", ") + std::string(preset.name);
+  }
+  return Error{"--preset is '" + name + "'; it must be " + known};
 }
 
 Result<FitOptions> MakePreset(const std::string& name) {

@@ -26,6 +26,9 @@ namespace pushid {
 
 inline constexpr char kAutoPreset[] = "auto";
 
+// The names of all, kAutoPreset among them.
+std::vector<std::string> PresetNames();
+
 // What "auto" stands for on these recordings; other names as they are.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
 

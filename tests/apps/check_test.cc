@@ -36,6 +36,7 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
       {},
       {"--pool=mu", "--pool_by=subject", "--sigmas=fixed", "--seed=3"},
       {"--self_force=linear,mlp:2"},
+      {"--stance=threshold"},
       {"--resample=2"}};
   for (const std::vector<std::string>& fit : fits) {
     SCOPED_TRACE(fit.empty() ? "default" : fit[0]);
