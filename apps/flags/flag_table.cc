@@ -54,7 +54,7 @@ bool HasEffect(const std::string& name) {
   return gflags::GetCommandLineFlagInfo(name.c_str(), &flag) && Changed(flag);
 }
 
-std::string Listed(const std::vector<std::string>& names, const std::string& between) {
+std::string WithDashes(const std::vector<std::string>& names, const std::string& between) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "--" : between + "--") + name;
   return text;
@@ -120,7 +120,7 @@ MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
     const size_t name = sentence.find("{}");
     if (name != std::string::npos) return Error{sentence.replace(name, 2, rule.flag)};
     if (acts) return Error{sentence};
-    return Error{"--" + rule.flag + " needs " + Listed(rule.others, " or ") + sentence};
+    return Error{"--" + rule.flag + " needs " + WithDashes(rule.others, " or ") + sentence};
   }
   return std::nullopt;
 }
@@ -210,7 +210,7 @@ std::string FlagHelp(const MovedFlags& moved) {
   }
   if (moved.names.empty()) return text;
   return text + "\n" + moved.what + " moved to " + moved.program + " (" +
-         Listed(moved.names, ", ") + "); " + ProgramName() + " takes these flags until " +
+         WithDashes(moved.names, ", ") + "); " + ProgramName() + " takes these flags until " +
          MovedFlags::kUntil + ".\n";
 }
 
