@@ -51,10 +51,6 @@ struct TableReadOptions {
 Result<NumericTable> ReadNumericTable(const std::string& path, TableFormat format,
                                       const TableReadOptions& options = {});
 
-// Writes all columns, atomically; NaN as an empty cell (CSV) or nan (storage).
-MaybeError WriteNumericTable(const std::string& path, TableFormat format,
-                             const NumericTable& table);
-
 // The column that holds the time: `wanted` when given, otherwise time, t, time_s, ...; -1: none.
 int FindTimeColumn(const std::vector<std::string>& names, const std::string& wanted);
 

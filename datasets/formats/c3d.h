@@ -8,7 +8,7 @@
 // segment's origin, under its name.
 //
 // Three processors wrote them (Intel, DEC with VAX floats, MIPS big-endian), with points and
-// samples as scaled 16-bit integers or as floats; all six are read and written. The reader is
+// samples as scaled 16-bit integers or as floats; all six are read. The reader is
 // strict: what points outside the file, contradicts itself or is cut short is an Error with the
 // byte it stands at.
 #pragma once
@@ -101,11 +101,6 @@ struct C3dReadOptions {
 };
 
 Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options = {});
-
-// Writes points, analog channels, events and platforms (not `parameters`), atomically. Integers are
-// scaled to the largest value of the points and of each channel. Names longer than 127 bytes,
-// tracks of unequal length, samples that are not finite and more than 65535 frames are Errors.
-MaybeError WriteC3d(const std::string& path, const C3dFile& file);
 
 // The points of a C3D file.
 

@@ -18,6 +18,7 @@ namespace pushid {
 // integers, VAX F floats: two little-endian words, the upper one first, value
 // (0x800000 | fraction) 2^(exponent - 152), zero when the exponent is zero.
 
+inline constexpr int kVaxBias = 128, kFractionBits = 24;
 inline constexpr std::size_t kC3dBlock = 512;  // bytes; the sections of a file begin with one
 
 class C3dBytes {
@@ -43,11 +44,6 @@ class C3dBytes {
   std::string_view bytes_;
   C3dProcessor processor_ = C3dProcessor::kIntel;
 };
-
-void AppendC3dWord(std::uint16_t value, C3dProcessor processor, std::string* out);
-// Rounded to the 24 bits that every processor keeps; DEC has no infinity and no NaN, so the caller
-// writes none.
-void AppendC3dReal(double value, C3dProcessor processor, std::string* out);
 
 // "at byte 1234: ..." of the file at `path`.
 Error C3dError(const std::string& path, std::size_t at, const std::string& message);

@@ -10,6 +10,8 @@
 #include "datasets/loading/load_recordings.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
+#include "tests/datasets/table_writers.h"
 
 namespace pushid {
 namespace {

@@ -14,6 +14,8 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/trc.h"
 #include "datasets/synthetic/synthetic_skeleton.h"
+#include "tests/datasets/c3d_writer.h"
+#include "tests/datasets/table_writers.h"
 
 namespace pushid {
 namespace {

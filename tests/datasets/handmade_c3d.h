@@ -10,6 +10,7 @@
 
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/c3d_parameters.h"
+#include "tests/datasets/c3d_writer.h"
 
 namespace pushid {
 

@@ -15,7 +15,9 @@
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/handmade_c3d.h"
+#include "tests/datasets/table_writers.h"
 #include "tests/fuzz/model_seeds.h"
 
 namespace {

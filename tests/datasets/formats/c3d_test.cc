@@ -11,6 +11,7 @@
 #include "datasets/formats/c3d_parameters.h"
 #include "datasets/sensors/force_platform.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
 
 namespace pushid {

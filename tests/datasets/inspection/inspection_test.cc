@@ -10,7 +10,9 @@
 
 #include "datasets/formats/trc.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
+#include "tests/datasets/table_writers.h"
 
 namespace pushid {
 namespace {

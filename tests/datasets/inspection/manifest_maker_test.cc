@@ -6,6 +6,7 @@
 #include "datasets/files/name_pattern.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
 
 namespace pushid {

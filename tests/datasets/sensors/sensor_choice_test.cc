@@ -5,6 +5,7 @@
 
 #include "datasets/files/numeric_table.h"
 #include "tests/datasets/c3d_samples.h"
+#include "tests/datasets/c3d_writer.h"
 #include "tests/test_support.h"
 
 namespace pushid {

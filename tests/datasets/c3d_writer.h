@@ -1,6 +1,12 @@
-// datasets: C3D files written.
+// Tests: C3D files written, of all three processors, with points and samples as integers or floats.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
@@ -8,13 +14,52 @@
 #include "datasets/formats/c3d_parameters.h"
 
 namespace pushid {
-namespace {
 
-constexpr double kLargestInteger = 32000.0;
-constexpr std::size_t kLongestName = 127;
-constexpr std::size_t kMostEntries = 255;  // of one dimension
+inline std::uint32_t ToVax(double value) {
+  int exponent = 0;
+  const double half = std::frexp(std::fabs(value), &exponent);  // in [0.5, 1)
+  auto fraction = static_cast<std::uint32_t>(std::lround(std::ldexp(half, kFractionBits)));
+  if (fraction >> kFractionBits != 0) {  // rounded up to 1
+    fraction >>= 1;
+    ++exponent;
+  }
+  if (value == 0.0 || exponent + kVaxBias < 1) return 0;
+  return (std::signbit(value) ? 0x80000000u : 0u) |
+         static_cast<std::uint32_t>(exponent + kVaxBias) << 23 | (fraction & 0x7fffff);
+}
 
-std::string WritingProblem(const C3dFile& file) {
+inline void AppendByte(std::uint32_t value, std::string* out) {
+  out->push_back(static_cast<char>(value & 0xff));
+}
+
+inline void AppendC3dWord(std::uint16_t value, C3dProcessor processor, std::string* out) {
+  const bool big = processor == C3dProcessor::kMips;
+  AppendByte(big ? value >> 8 : value, out);
+  AppendByte(big ? value : value >> 8, out);
+}
+
+// Rounded to the 24 bits that every processor keeps; DEC has no infinity and no NaN, so the caller
+// writes none.
+inline void AppendC3dReal(double value, C3dProcessor processor, std::string* out) {
+  std::uint32_t bits = 0;
+  if (processor == C3dProcessor::kDec) {
+    bits = ToVax(value);
+  } else {
+    const float rounded = static_cast<float>(value);
+    std::memcpy(&bits, &rounded, sizeof bits);
+  }
+  const bool upper_first = processor != C3dProcessor::kIntel;
+  const auto upper = static_cast<std::uint16_t>(bits >> 16),
+             lower = static_cast<std::uint16_t>(bits & 0xffff);
+  AppendC3dWord(upper_first ? upper : lower, processor, out);
+  AppendC3dWord(upper_first ? lower : upper, processor, out);
+}
+
+inline constexpr double kLargestInteger = 32000.0;
+inline constexpr std::size_t kLongestName = 127;
+inline constexpr std::size_t kMostEntries = 255;  // of one dimension
+
+inline std::string WritingProblem(const C3dFile& file) {
   const std::size_t frames = file.num_frames();
   if (frames < 1 || frames > 65535) return "it has " + std::to_string(frames) + " frames";
   if (file.point_names.size() != file.points.size()) return "not every point has a name";
@@ -42,13 +87,13 @@ std::string WritingProblem(const C3dFile& file) {
 }
 
 // Rounded up to a whole number of 512-byte blocks.
-void FillBlock(std::string* bytes) {
+inline void FillBlock(std::string* bytes) {
   bytes->resize((bytes->size() + kC3dBlock - 1) / kC3dBlock * kC3dBlock, '\0');
 }
 
-class Writer {
+class C3dWriter {
  public:
-  explicit Writer(const C3dFile& file) : file_(file) {}
+  explicit C3dWriter(const C3dFile& file) : file_(file) {}
 
   std::string Write() {
     double largest = 1e-6;
@@ -288,12 +333,13 @@ class Writer {
   std::string header_, parameters_, data_;
 };
 
-}  // namespace
-
-MaybeError WriteC3d(const std::string& path, const C3dFile& file) {
+// Writes points, analog channels, events and platforms (not `parameters`), atomically. Integers are
+// scaled to the largest value of the points and of each channel. Names longer than 127 bytes,
+// tracks of unequal length, samples that are not finite and more than 65535 frames are Errors.
+inline MaybeError WriteC3d(const std::string& path, const C3dFile& file) {
   const std::string problem = WritingProblem(file);
   if (!problem.empty()) return Error{"the C3D file cannot be written: " + problem, path};
-  return WriteFileAtomically(path, Writer(file).Write());
+  return WriteFileAtomically(path, C3dWriter(file).Write());
 }
 
 }  // namespace pushid

@@ -1,0 +1,82 @@
+// Tests: TRC files and tables of numbers written.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/trc.h"
+#include "datasets/formats/units.h"
+
+namespace pushid {
+
+// Writes all points of the motion (positions in motion.unit, millimetres when unset), atomically;
+// points not seen as empty cells.
+inline MaybeError WriteTrc(const std::string& path, const PointMotion& motion) {
+  const std::size_t markers = motion.positions.size();
+  if (markers == 0 || markers != motion.names.size() || motion.num_frames() == 0 ||
+      !(motion.rate_hz > 0.0)) {
+    return Error{"a motion without points, frames or rate is not written", path};
+  }
+  const std::string rate = DoubleText(motion.rate_hz), frames = std::to_string(motion.num_frames());
+  std::string text = "PathFileType\t4\t(X/Y/Z)\tpushid.trc\n";
+  text +=
+      "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+      "OrigNumFrames\n";
+  text += rate + '\t' + rate + '\t' + frames + '\t' + std::to_string(markers) + '\t' +
+          NameOf(motion.unit.value_or(LengthUnit::kMillimetre)) + '\t' + rate + "\t1\t" + frames +
+          "\nFrame#\tTime";
+  for (const std::string& name : motion.names) text += '\t' + name + "\t\t";
+  text += "\n\t";
+  for (std::size_t i = 1; i <= markers; ++i) {
+    for (const char* axis : {"\tX", "\tY", "\tZ"}) text += axis + std::to_string(i);
+  }
+  text += "\n\n";
+  for (int frame = 0; frame < motion.num_frames(); ++frame) {
+    text += std::to_string(frame + 1) + '\t' + DoubleText(frame / motion.rate_hz);
+    for (const auto& track : motion.positions) {
+      for (int i = 0; i < 3; ++i) {
+        text += '\t';
+        if (track[frame].allFinite()) AppendDouble(track[frame][i], &text);
+      }
+    }
+    text += '\n';
+  }
+  return WriteFileAtomically(path, text);
+}
+
+// Writes all columns, atomically; NaN as an empty cell (CSV) or nan (storage).
+inline MaybeError WriteNumericTable(const std::string& path, TableFormat format,
+                                    const NumericTable& table) {
+  const bool storage = format == TableFormat::kStorage;
+  const char separator = storage ? '\t' : ',';
+  if (table.chosen.size() != table.names.size() || table.num_rows() == 0) {
+    return Error{"a table without rows, or with columns left out, is not written", path};
+  }
+  std::string text;
+  if (storage) {
+    text = "pushid\nversion=1\nnRows=" + std::to_string(table.num_rows()) +
+           "\nnColumns=" + std::to_string(table.names.size()) +
+           "\ninDegrees=" + (table.in_degrees ? "yes" : "no") + "\nendheader\n";
+  }
+  const std::size_t columns = table.names.size();
+  for (std::size_t i = 0; i < columns; ++i) {
+    text += table.names[i] + (i + 1 < columns ? separator : '\n');
+  }
+  for (int row = 0; row < table.num_rows(); ++row) {
+    for (std::size_t i = 0; i < columns; ++i) {
+      const double value = table.data[i][row];
+      if (std::isfinite(value)) {
+        AppendDouble(value, &text);
+      } else if (storage) {
+        text += "nan";
+      }
+      text += i + 1 < columns ? separator : '\n';
+    }
+  }
+  return WriteFileAtomically(path, text);
+}
+
+}  // namespace pushid
