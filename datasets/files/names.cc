@@ -7,13 +7,22 @@
 
 namespace pushid {
 
-std::string ListOfNames(const std::vector<std::string>& names) {
-  constexpr std::size_t kListed = 60;
+std::string ListOfNames(const std::vector<std::string>& names, std::size_t most,
+                        const std::string& plural) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(kListed, names.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
     text += (i > 0 ? ", " : "") + names[i];
   }
-  return text + (names.size() > kListed ? ", ... (" + std::to_string(names.size()) + ")" : "");
+  if (names.size() <= most) return text;
+  return text + ", ... (" + std::to_string(names.size()) + (plural.empty() ? "" : " ") + plural +
+         ")";
+}
+
+Error UnknownNameError(const std::string& path, const std::string& noun,
+                       const std::vector<std::string>& names, const std::string& name) {
+  return {"there is no " + noun + " " + Quoted(name) + "; it has " +
+              ListOfNames(names, kNamesInErrors, noun + "s") + MeantText(name, names),
+          path};
 }
 
 namespace {

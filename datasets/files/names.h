@@ -11,8 +11,16 @@
 
 namespace pushid {
 
-// "a, b, c, ... (75)": the first sixty names, and how many there are.
-std::string ListOfNames(const std::vector<std::string>& names);
+// "a, b, c, ... (75 points)": the first names, and how many there are if not all are listed.
+std::string ListOfNames(const std::vector<std::string>& names, std::size_t most = 60,
+                        const std::string& plural = "");
+
+// How many of a file's names an error lists.
+inline constexpr std::size_t kNamesInErrors = 8;
+
+// "there is no joint 'Hip'; it has Hips, Spine, ... (75 joints); is Hips meant?"
+Error UnknownNameError(const std::string& path, const std::string& noun,
+                       const std::vector<std::string>& names, const std::string& name);
 
 // What a misspelt name was meant to be.
 

@@ -22,6 +22,12 @@ int BvhSkeleton::num_channels() const {
   return static_cast<int>(count);
 }
 
+std::vector<std::string> BvhSkeleton::Names() const {
+  std::vector<std::string> names;
+  for (const BvhJoint& joint : joints) names.push_back(joint.name);
+  return names;
+}
+
 int BvhSkeleton::Find(const std::string& name) const {
   for (std::size_t i = 0; i < joints.size(); ++i) {
     if (joints[i].name == name) return static_cast<int>(i);

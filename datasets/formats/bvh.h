@@ -64,6 +64,7 @@ struct BvhSkeleton {
 
   int num_channels() const;
   int Find(const std::string& name) const;  // index of the joint, or -1
+  std::vector<std::string> Names() const;
 };
 
 // A BVH file as it stands: lengths in `length_unit`, angles in degrees.
@@ -120,10 +121,6 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path,
 // joints not depth first, NaN, no frames, frame time out of range) is an Error. A leaf without an
 // end site gets one at its own place, which other programs insist on.
 MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit);
-
-// "there is no joint 'Hip'; it has Hips, Spine, ..." for callers that look joints up by name.
-Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
-                        const std::string& name);
 
 // Forward kinematics of a BVH skeleton: world positions from one row of channel values.
 // The conventions are those of bvh.h.

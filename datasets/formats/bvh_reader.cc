@@ -95,7 +95,7 @@ Result<std::vector<int>> ChooseJoints(const std::string& path, const BvhSkeleton
   std::vector<int> chosen;
   for (const std::string& name : options.joints) {
     const int joint = skeleton.Find(name);
-    if (joint < 0) return UnknownJointError(path, skeleton, name);
+    if (joint < 0) return UnknownNameError(path, "joint", skeleton.Names(), name);
     chosen.push_back(joint);
   }
   if (options.joints.empty()) {
@@ -105,21 +105,6 @@ Result<std::vector<int>> ChooseJoints(const std::string& path, const BvhSkeleton
 }
 
 }  // namespace
-
-Error UnknownJointError(const std::string& path, const BvhSkeleton& skeleton,
-                        const std::string& name) {
-  constexpr std::size_t kListed = 8;
-  std::string message = "there is no joint " + Quoted(name) + "; it has ";
-  for (std::size_t i = 0; i < skeleton.joints.size() && i < kListed; ++i) {
-    message += (i > 0 ? ", " : "") + skeleton.joints[i].name;
-  }
-  if (skeleton.joints.size() > kListed) {
-    message += ", ... (" + std::to_string(skeleton.joints.size()) + " joints)";
-  }
-  std::vector<std::string> names;
-  for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
-  return {message + MeantText(name, names), path, 0};
-}
 
 Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options) {
   LineReader reader;

@@ -147,15 +147,7 @@ Result<PointMotion> ReadC3dPoints(const std::string& path, const PointReadOption
   motion.up = UpOfScreen(file.screen_y);
   motion.names = std::move(file.point_names);
   motion.content_hash = file.content_hash;
-  if (options.choose) {
-    Result<std::vector<int>> chosen = options.choose(motion.names);
-    if (!chosen.ok()) return chosen.error();
-    motion.chosen = std::move(chosen.value());
-  } else {
-    for (std::size_t i = 0; i < motion.names.size(); ++i) {
-      motion.chosen.push_back(static_cast<int>(i));
-    }
-  }
+  if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
   for (int index : motion.chosen) motion.positions.push_back(file.points[index]);
   return motion;
 }

@@ -1,12 +1,12 @@
 // datasets: C3D files read.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/c3d_parameters.h"
+#include "datasets/formats/point_motion.h"
 
 namespace pushid {
 namespace {
@@ -196,8 +196,6 @@ class Reader {
   // The fourth word holds a negative number where the point was not seen; some programs leave zeros
   // instead. Positions no lens can see (NaN, 1e30) count as not seen.
   Eigen::Vector3d Point(std::size_t at) const {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    const Eigen::Vector3d unseen(kNaN, kNaN, kNaN);
     Eigen::Vector3d position;
     double seen = 0.0;
     if (file_.floating) {
@@ -207,8 +205,7 @@ class Reader {
       for (int i = 0; i < 3; ++i) position[i] = scale_ * bytes_.Integer(at + 2 * i);
       seen = bytes_.Integer(at + 6);
     }
-    if (!(seen >= 0.0) || !position.allFinite() || position.isZero(0.0)) return unseen;
-    return position;
+    return SeenPosition(seen >= 0.0 ? position : Eigen::Vector3d(Eigen::Vector3d::Zero()));
   }
 
   // ANALOG:NAME, NAME2, ...: one number for each channel. None at all leaves `neutral`, and a value

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -62,11 +61,6 @@ MaybeError SetUnit(const std::string& path, const BidsHeader& header, PointMotio
   }
   motion->unit = FromName<LengthUnit>(motion->unit_text);
   return std::nullopt;
-}
-
-Eigen::Vector3d Seen(const Eigen::Vector3d& position, double missing) {
-  const bool seen = position.allFinite() && !(position.array() == missing).all();
-  return seen ? position : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 }
 
 Error MissingPushChannels(const std::string& path, const std::vector<std::string>& names) {
@@ -205,22 +199,12 @@ Result<PointMotion> ReadMotionBids(const std::string& path, const PointReadOptio
   motion.up = header.value().up;
   if (MaybeError failed = SetUnit(path, header.value(), &motion)) return *std::move(failed);
   const std::vector<TablePoint> points = TrackedPoints(header.value().channels);
-  for (const TablePoint& point : points) {
-    motion.chosen.push_back(static_cast<int>(motion.names.size()));
-    motion.names.push_back(point.name);
-  }
+  for (const TablePoint& point : points) motion.names.push_back(point.name);
   if (points.empty()) return motion;
-  if (options.choose) {
-    Result<std::vector<int>> chosen = options.choose(motion.names);
-    if (!chosen.ok()) return chosen.error();
-    motion.chosen = std::move(chosen.value());
-  }
+  if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
   TableReadOptions table_options;
   table_options.choose = [&](const std::vector<std::string>&) -> Result<std::vector<int>> {
-    std::vector<int> columns;
-    for (int point : motion.chosen) {
-      columns.insert(columns.end(), points[point].columns, points[point].columns + 3);
-    }
+    std::vector<int> columns = ColumnsOf(points, motion.chosen);
     if (columns.empty()) columns.push_back(0);  // counts the rows
     return columns;
   };
@@ -228,16 +212,7 @@ Result<PointMotion> ReadMotionBids(const std::string& path, const PointReadOptio
   if (!table.ok()) return table.error();
   double missing = std::nan("");
   if (!ParseDouble(header.value().missing, &missing)) missing = std::nan("");
-  const std::vector<std::vector<double>>& data = table.value().data;
-  for (std::size_t i = 0; i < motion.chosen.size(); ++i) {
-    std::vector<Eigen::Vector3d> track;
-    track.reserve(table.value().num_rows());
-    for (int row = 0; row < table.value().num_rows(); ++row) {
-      track.push_back(
-          Seen({data[3 * i][row], data[3 * i + 1][row], data[3 * i + 2][row]}, missing));
-    }
-    motion.positions.push_back(std::move(track));
-  }
+  TakeTracks(table.value(), missing, &motion);
   ContentHash hash;
   hash.Add(table.value().content_hash);
   hash.Add(header.value().content_hash);

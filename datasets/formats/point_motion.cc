@@ -2,23 +2,47 @@
 #include "datasets/formats/point_motion.h"
 
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/numeric_table.h"
 
 namespace pushid {
 
-Error UnknownPointError(const std::string& path, const std::vector<std::string>& names,
-                        const std::string& name) {
-  constexpr std::size_t kListed = 8;
-  std::string message = "there is no point " + Quoted(name) + "; it has ";
-  for (std::size_t i = 0; i < names.size() && i < kListed; ++i) {
-    message += (i > 0 ? ", " : "") + names[i];
+MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
+  if (!options.choose) {
+    motion->chosen.resize(motion->names.size());
+    std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
+    return std::nullopt;
   }
-  if (names.size() > kListed) message += ", ... (" + std::to_string(names.size()) + " points)";
-  return {message + MeantText(name, names), path};
+  Result<std::vector<int>> chosen = options.choose(motion->names);
+  if (!chosen.ok()) return chosen.error();
+  motion->chosen = std::move(chosen.value());
+  return std::nullopt;
+}
+
+Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position, double missing) {
+  const bool seen = position.allFinite() && !(position.array() == missing).all();
+  return seen ? position : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen) {
+  std::vector<int> columns;
+  for (int index : chosen) {
+    columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
+  }
+  return columns;
+}
+
+void TakeTracks(const NumericTable& table, double missing, PointMotion* motion) {
+  for (std::size_t i = 0; i < motion->chosen.size(); ++i) {
+    const std::vector<double>*x = &table.data[3 * i], *y = x + 1, *z = x + 2;
+    std::vector<Eigen::Vector3d>& track = motion->positions.emplace_back(table.num_rows());
+    for (int row = 0; row < table.num_rows(); ++row) {
+      track[row] = SeenPosition({(*x)[row], (*y)[row], (*z)[row]}, missing);
+    }
+  }
 }
 
 namespace {
@@ -49,9 +73,7 @@ Result<std::vector<TablePoint>> NamedPoints(const std::string& path,
         if (names[i] == *columns[axis]) point.columns[axis] = static_cast<int>(i);
       }
       if (point.columns[axis] < 0) {
-        Error error = UnknownPointError(path, names, *columns[axis]);
-        error.message.replace(error.message.find("point"), 5, "column");
-        return error;
+        return UnknownNameError(path, "column", names, *columns[axis]);
       }
     }
     points.push_back(point);
@@ -127,16 +149,10 @@ Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
       return Error{"there is no column '" + options.time_column + "' for the time", path};
     }
     for (const TablePoint& point : points) motion.names.push_back(point.name);
-    for (std::size_t i = 0; i < points.size(); ++i) motion.chosen.push_back(static_cast<int>(i));
-    if (options.choose && !points.empty()) {
-      Result<std::vector<int>> chosen = options.choose(motion.names);
-      if (!chosen.ok()) return chosen.error();
-      motion.chosen = std::move(chosen.value());
+    if (!points.empty()) {
+      if (MaybeError failed = ChoosePoints(options, &motion)) return *std::move(failed);
     }
-    std::vector<int> columns;
-    for (int index : motion.chosen) {
-      columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
-    }
+    std::vector<int> columns = ColumnsOf(points, motion.chosen);
     if (time_column >= 0) columns.push_back(time_column);
     if (columns.empty() && !names.empty()) columns.push_back(0);  // counts the rows
     return columns;
@@ -150,18 +166,7 @@ Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
     motion.rate_hz = 1.0 / step.value();
     motion.first_time_s = table.value().data.back().front();
   }
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<std::vector<double>>& data = table.value().data;
-  for (std::size_t i = 0; i < motion.chosen.size(); ++i) {
-    std::vector<Eigen::Vector3d> track;
-    track.reserve(table.value().num_rows());
-    for (int row = 0; row < table.value().num_rows(); ++row) {
-      const Eigen::Vector3d position(data[3 * i][row], data[3 * i + 1][row], data[3 * i + 2][row]);
-      const bool seen = position.allFinite() && !position.isZero(0.0);
-      track.push_back(seen ? position : Eigen::Vector3d::Constant(kNaN));
-    }
-    motion.positions.push_back(std::move(track));
-  }
+  TakeTracks(table.value(), 0.0, &motion);
   return motion;
 }
 

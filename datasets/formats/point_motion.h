@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/numeric_table.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {
@@ -51,9 +52,11 @@ struct PointReadOptions {
   bool accept_truncated = false;  // of C3D, see C3dReadOptions
 };
 
-// "there is no point 'hip'; it has LASI, RASI, ..." for callers that look points up by name.
-Error UnknownPointError(const std::string& path, const std::vector<std::string>& names,
-                        const std::string& name);
+// The points that the options choose of motion->names; without a choice all.
+MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion);
+
+// NaN where a point was not seen: not finite, or `missing` in all coordinates.
+Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position, double missing = 0.0);
 
 // Points as three columns of a table.
 
@@ -61,6 +64,11 @@ struct TablePoint {
   std::string name;
   int columns[3] = {-1, -1, -1};  // x, y, z
 };
+
+// The columns of the chosen points, x, y and z of each; and their tracks, from a table that kept
+// those columns first.
+std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen);
+void TakeTracks(const NumericTable& table, double missing, PointMotion* motion);
 
 // Columns that belong together by their names: hip_x, hip_y, hip_z; hip.X, ...; hipX; hip:x; the
 // point is called what is left without axis and separator. Columns without a partner are no points.

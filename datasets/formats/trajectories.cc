@@ -152,15 +152,10 @@ MaybeError TrajectoryRows::Fill(const PointReadOptions& options, PointMotion* mo
   if (people_.empty()) return Error{"the file contains no positions", motion->path};
   std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
   for (const auto& [id, track] : people_) {
-    motion->chosen.push_back(static_cast<int>(motion->names.size()));
     motion->names.push_back(std::to_string(id));
     tracks.push_back(&track);
   }
-  if (options.choose) {
-    Result<std::vector<int>> chosen = options.choose(motion->names);
-    if (!chosen.ok()) return chosen.error();
-    motion->chosen = std::move(chosen.value());
-  }
+  if (MaybeError failed = ChoosePoints(options, motion)) return failed;
   // Differences of whole numbers as text has them may overflow.
   const double frames = static_cast<double>(last_) - static_cast<double>(first_) + 1.0;
   std::size_t rows = 0;

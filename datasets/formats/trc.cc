@@ -101,13 +101,7 @@ class TrcReader {
                                std::to_string(motion_.names.size()) + " markers are named here");
     }
     if (MaybeError failed = Next("X1, Y1, Z1, ...", &fields)) return failed;
-    if (options_.choose) {
-      Result<std::vector<int>> chosen = options_.choose(motion_.names);
-      if (!chosen.ok()) return chosen.error();
-      motion_.chosen = std::move(chosen.value());
-    } else {
-      for (int i = 0; i < num_markers_; ++i) motion_.chosen.push_back(i);
-    }
+    if (MaybeError failed = ChoosePoints(options_, &motion_)) return failed;
     motion_.positions.resize(motion_.chosen.size());
     return std::nullopt;
   }
@@ -215,10 +209,8 @@ class TrcReader {
     }
     for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
       const double* at = row_.data() + 3 * motion_.chosen[i];
-      const Eigen::Vector3d position(at[0], at[1], at[2]);
-      // NaN where it was not seen; some programs leave zeros instead.
-      motion_.positions[i].push_back(position.isZero(0.0) ? Eigen::Vector3d::Constant(std::nan(""))
-                                                          : position);
+      // Some programs leave zeros where it was not seen.
+      motion_.positions[i].push_back(SeenPosition({at[0], at[1], at[2]}));
     }
     return std::nullopt;
   }

@@ -58,7 +58,7 @@ Result<FileMotion> ReadSkeleton(const FileMotionRequest& request) {
         ChoosePendulumJoints(request.path, skeleton, request.joints);
     if (!joints.ok()) return joints.error();
     if (MaybeError failed =
-            SetRoles(request, NamesOf(skeleton), &skeleton, joints.value(), &motion)) {
+            SetRoles(request, skeleton.Names(), &skeleton, joints.value(), &motion)) {
       return *std::move(failed);
     }
     return Wanted(request, joints.value(), skeleton.joints.size(), &motion);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/manifest/body_roles.h"
@@ -37,12 +38,6 @@ std::vector<std::string> NamesOnSide(const std::string& side, const std::string&
   return {side + part, letter + part, part + side, part + letter};
 }
 
-std::vector<std::string> NamesOf(const BvhSkeleton& skeleton) {
-  std::vector<std::string> names;
-  for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
-  return names;
-}
-
 namespace {
 
 // What differs between the joints of a skeleton and the points of other files.
@@ -55,8 +50,7 @@ struct Source {
   bool is_bvh() const { return skeleton != nullptr; }
   const char* noun() const { return is_bvh() ? "joint" : "point"; }
   Error Unknown(const std::string& name) const {
-    return is_bvh() ? UnknownJointError(path, *skeleton, name)
-                    : UnknownPointError(path, names, name);
+    return UnknownNameError(path, noun(), names, name);
   }
 };
 
@@ -224,13 +218,13 @@ Result<std::vector<int>> Choose(const Source& source, const char* key,
                                 const Result<std::vector<int>>& fallback) {
   if (!reference) {
     if (!fallback.ok() || !fallback.value().empty()) return fallback;
-    Error error = source.Unknown("");
-    error.message = std::string("no ") + source.noun() + " could be recognised as " + key +
-                    "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
-                    "\"right_ankle\": ...}; the " +
-                    (source.is_bvh() ? "skeleton" : "file") + " has " +
-                    error.message.substr(error.message.find("it has ") + 7);
-    return error;
+    const std::string noun = source.noun();
+    return Error{"no " + noun + " could be recognised as " + key +
+                     "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
+                     "\"right_ankle\": ...}; the " +
+                     (source.is_bvh() ? "skeleton" : "file") + " has " +
+                     ListOfNames(source.names, kNamesInErrors, noun + "s"),
+                 source.path};
   }
   return Meant(source, key, *reference);
 }
@@ -280,7 +274,7 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
 
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping) {
-  return ChooseFrom({path, NamesOf(skeleton), &skeleton}, mapping);
+  return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
 }
 
 Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,

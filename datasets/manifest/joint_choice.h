@@ -58,8 +58,6 @@ std::string PrefixOf(const std::string& name);
 // "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
 std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part);
 
-std::vector<std::string> NamesOf(const BvhSkeleton& skeleton);
-
 // Whether a skeleton has the 22 joints of the FZJ push recordings in their order, by its parents:
 // those are the joints of models/restoration/body.h.
 bool IsFzjSkeleton(const BvhSkeleton& skeleton);

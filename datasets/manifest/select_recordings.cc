@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -27,15 +28,9 @@ std::string SettingsOf(const Manifest& manifest) {
 }
 
 std::string SomeIdsOf(const Manifest& manifest) {
-  constexpr std::size_t kListed = 6;
-  std::string text;
-  for (std::size_t i = 0; i < manifest.recordings.size() && i < kListed; ++i) {
-    text += (i > 0 ? ", " : "") + manifest.recordings[i].id;
-  }
-  if (manifest.recordings.size() > kListed) {
-    text += ", ... (" + std::to_string(manifest.recordings.size()) + " recordings)";
-  }
-  return text;
+  std::vector<std::string> ids;
+  for (const ManifestRecording& recording : manifest.recordings) ids.push_back(recording.id);
+  return ListOfNames(ids, 6, "recordings");
 }
 
 MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& ids,

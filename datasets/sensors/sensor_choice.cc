@@ -20,9 +20,7 @@ constexpr char kPlatform[] = "platform:";
 
 Error NoColumn(const SensorChoice& choice, const char* noun,
                const std::vector<std::string>& names) {
-  Error error = UnknownPointError(choice.file, names, choice.column);
-  error.message.replace(error.message.find("point"), 5, noun);
-  return error;
+  return UnknownNameError(choice.file, noun, names, choice.column);
 }
 
 // The column of this name, or the three whose common part it is; empty: none.

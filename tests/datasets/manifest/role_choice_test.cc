@@ -12,7 +12,7 @@ namespace {
 BodyRoles RolesOf(const BvhSkeleton& skeleton, const JointMapping& mapping = {}) {
   const auto pendulum = ChoosePendulumJoints("a.bvh", skeleton, mapping);
   EXPECT_TRUE(pendulum.ok()) << pendulum.error().ToString();
-  const auto roles = ChooseRoles("a.bvh", NamesOf(skeleton), &skeleton, pendulum.value(), mapping);
+  const auto roles = ChooseRoles("a.bvh", skeleton.Names(), &skeleton, pendulum.value(), mapping);
   EXPECT_TRUE(roles.ok()) << roles.error().ToString();
   return roles.value();
 }
@@ -38,7 +38,7 @@ std::string Played(const BodyRoles& roles, const std::vector<std::string>& names
 
 TEST(RoleChoiceTest, CmuShouldersAreClavicles) {
   const BvhSkeleton skeleton = BvhOf(CmuSkeleton());
-  EXPECT_EQ(Played(RolesOf(skeleton), NamesOf(skeleton)),
+  EXPECT_EQ(Played(RolesOf(skeleton), skeleton.Names()),
             "hip=Hips lower_spine=Spine upper_spine=Spine1 neck=Neck head=Head "
             "right_clavicle=RightShoulder right_shoulder=RightArm right_elbow=RightForeArm "
             "right_wrist=RightHand left_clavicle=LeftShoulder left_shoulder=LeftArm "
@@ -78,7 +78,7 @@ TEST(RoleChoiceTest, AnkleWithoutTheSkeletonsPrefix) {
   mapping.Set(kRightAnkle, {"my_RightFoot"});
   const auto pendulum = ChoosePendulumJoints("a.bvh", skeleton, mapping);
   ASSERT_TRUE(pendulum.ok()) << pendulum.error().ToString();
-  const auto roles = ChooseRoles("a.bvh", NamesOf(skeleton), &skeleton, pendulum.value(), mapping);
+  const auto roles = ChooseRoles("a.bvh", skeleton.Names(), &skeleton, pendulum.value(), mapping);
   ASSERT_TRUE(roles.ok());
   EXPECT_TRUE(UnfilledRoles(roles.value()).empty()) << RolesText(roles);
 }
@@ -88,7 +88,7 @@ TEST(RoleChoiceTest, XsensShouldersAreShoulders) {
   const BodyRoles roles = RolesOf(skeleton);
   EXPECT_TRUE(FilledRoles(roles).empty());
   EXPECT_TRUE(
-      Contains(Played(roles, NamesOf(skeleton)),
+      Contains(Played(roles, skeleton.Names()),
                "hip=Hips lower_spine=Chest middle_spine=Chest3 upper_spine=Chest4 neck=Neck "
                "head=Head right_clavicle=RightCollar right_shoulder=RightShoulder "));
 }
@@ -117,7 +117,7 @@ TEST(RoleChoiceTest, WhatTheManifestNamesWins) {
   EXPECT_EQ(roles.joints[kUpperSpine], (std::vector<int>{2, 3}));
   mapping.Set(kLeftKnee, {"knee"});
   const BvhSkeleton skeleton = BvhOf(joints);
-  const auto wrong = ChooseRoles("a.bvh", NamesOf(skeleton), &skeleton,
+  const auto wrong = ChooseRoles("a.bvh", skeleton.Names(), &skeleton,
                                  ChoosePendulumJoints("a.bvh", skeleton, {}).value(), mapping);
   ASSERT_FALSE(wrong.ok());
   EXPECT_TRUE(Contains(wrong.error().ToString(), "joints: left_knee: there is no joint 'knee'"));
