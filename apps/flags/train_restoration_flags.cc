@@ -115,7 +115,8 @@ MaybeError CheckKind(RestorationKind kind, RestorationView view) {
   return std::nullopt;
 }
 
-MaybeError CheckFlags() {
+// What the command line says, but the model.
+MaybeError ReadOptions(RestorationRunOptions* options) {
   if (MaybeError missing =
           Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
     return missing;
@@ -124,28 +125,31 @@ MaybeError CheckFlags() {
   if (!kind || !RowOf(*kind).trained) {
     return Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
-  CvaeCoordinates coordinates;
-  if (MaybeError error = ParseName("--coordinates", FLAGS_coordinates, &coordinates)) return error;
-  RestorationView view;
-  if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return error;
-  MrtSize size;
-  if (MaybeError error = ParseName("--mrt_size", FLAGS_mrt_size, &size)) return error;
-  if (MaybeError error = CheckKind(*kind, view)) return error;
+  RestorationTrainingOptions& training = options->training;
+  training.kind = *kind;
+  for (const MaybeError& error :
+       {ParseName("--coordinates", FLAGS_coordinates, &training.coordinates),
+        ParseName("--sees", FLAGS_sees, &training.view),
+        ParseName("--mrt_size", FLAGS_mrt_size, &training.mrt_size)}) {
+    if (error) return error;
+  }
+  if (MaybeError error = CheckKind(*kind, training.view)) return error;
   if (FLAGS_crossvalidate == 0) {
     if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
   } else if (FLAGS_crossvalidate < 2) {
     return Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
-  if (ObservedFrames() > 0 && FLAGS_crossvalidate == 0) {
+  options->observed = ObservedFrames();
+  if (options->observed > 0 && FLAGS_crossvalidate == 0) {
     return Error{"--observed needs --crossvalidate: training uses whole recordings"};
   }
   if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
-      (!RowOf(*kind).differentiable || view != RestorationView::kPendulum)) {
+      (!RowOf(*kind).differentiable || training.view != RestorationView::kPendulum)) {
     return Error{"--body_weight needs --kind=window and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
-  if (FLAGS_body_weight == 0.0 && FLAGS_rounds != RestorationRunOptions{}.rounds) {
+  if (FLAGS_body_weight == 0.0 && FLAGS_rounds != options->rounds) {
     return Error{"--rounds does nothing without --body_weight; give --body_weight=1"};
   }
   if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
@@ -157,64 +161,52 @@ MaybeError CheckFlags() {
   }
   if (!(FLAGS_checkpoint_seconds >= 0.0)) return Error{"--checkpoint_seconds must not be negative"};
   if (FLAGS_num_threads < 1) return Error{"--num_threads must be positive"};
+  options->rounds = FLAGS_rounds;
+  options->inner_folds = FLAGS_inner_folds;
+  options->held_out = FLAGS_held_out;
+  options->predicted_pendulums = FLAGS_predicted_pendulums;
+  options->mirrored = FLAGS_mirrored;
+  training.halves = FLAGS_halves;
+  training.effort = FLAGS_effort;
+  training.seed = FLAGS_seed;
+  training.num_threads = FLAGS_num_threads;
+  training.checkpoint_seconds = FLAGS_checkpoint_seconds;
   return std::nullopt;
 }
 
-Result<RestorationRunOptions> RunOptions() {
-  RestorationView view;
-  if (MaybeError error = ParseName("--sees", FLAGS_sees, &view)) return *error;
+// The pendulum's options as the model has them.
+MaybeError ReadModel(FitOptions* fit) {
   const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
   if (!model.ok()) return model.error();
-  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
-  if (!postprocess.ok()) return postprocess.error();
-  RestorationRunOptions options;
-  options.fit = model.value().fit.options;
-  if (RodMoves(options.fit.model)) {
-    return Error{
-        "its rod changes length, and bodies need a rod of constant length; fit --rod=constant",
-        FLAGS_model};
-  }
-  options.fit.num_threads = FLAGS_num_threads;
-  options.fit.body_weight = FLAGS_body_weight;
-  options.rounds = FLAGS_rounds;
-  options.postprocess = postprocess.value();
-  options.inner_folds = FLAGS_inner_folds;
-  options.held_out = FLAGS_held_out;
-  options.predicted_pendulums = FLAGS_predicted_pendulums;
-  options.mirrored = FLAGS_mirrored;
-  options.observed = ObservedFrames();
-  options.training.kind = *FromName<RestorationKind>(FLAGS_kind);
-  options.training.coordinates = *FromName<CvaeCoordinates>(FLAGS_coordinates);
-  options.training.view = view;
-  options.training.halves = FLAGS_halves;
-  if (MaybeError error = ParseName("--mrt_size", FLAGS_mrt_size, &options.training.mrt_size)) {
-    return *error;
-  }
-  options.training.effort = FLAGS_effort;
-  options.training.seed = FLAGS_seed;
-  options.training.num_threads = FLAGS_num_threads;
-  options.training.checkpoint_seconds = FLAGS_checkpoint_seconds;
-  return options;
+  *fit = model.value().fit.options;
+  fit->num_threads = FLAGS_num_threads;
+  fit->body_weight = FLAGS_body_weight;
+  if (!RodMoves(fit->model)) return std::nullopt;
+  return Error{
+      "its rod changes length, and bodies need a rod of constant length; fit --rod=constant",
+      FLAGS_model};
 }
 
 }  // namespace
 
 Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
-  if (MaybeError error = CheckFlags()) return *error;
-  if (FLAGS_check) {
-    const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
-    if (!postprocess.ok()) return postprocess.error();
-    TrainRestorationFlags checked;
-    checked.check = true;
-    return checked;
-  }
-  const Result<RestorationRunOptions> options = RunOptions();
-  if (!options.ok()) return options.error();
+  TrainRestorationFlags flags;
+  if (MaybeError error = ReadOptions(&flags.options)) return *error;
+  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
+  if (!postprocess.ok()) return postprocess.error();
+  flags.options.postprocess = postprocess.value();
+  flags.check = FLAGS_check;
+  if (flags.check) return flags;
+  if (MaybeError error = ReadModel(&flags.options.fit)) return *error;
   const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
   if (!scheme.ok()) return scheme.error();
   if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
-  return TrainRestorationFlags{options.value(), FLAGS_out,      FLAGS_crossvalidate,
-                               scheme.value(),  FLAGS_json_out, FLAGS_more_settings};
+  flags.scheme = scheme.value();
+  flags.out = FLAGS_out;
+  flags.crossvalidate = FLAGS_crossvalidate;
+  flags.json_out = FLAGS_json_out;
+  flags.more_settings = FLAGS_more_settings;
+  return flags;
 }
 
 }  // namespace pushid

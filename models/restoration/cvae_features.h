@@ -6,7 +6,7 @@
 //   change of the facing direction since the frame before, rad              1
 //   joint positions, m                                                      3 per joint
 //   their change since the frame before, m/s                                3 per joint
-//   joint rotations against frame 0 (FitSkeleton of body.h), six numbers           6 per joint
+//   joint rotations against frame 0 (FitSkeleton), six numbers             6 per joint
 // The pendulum of a frame has 15: cart x, y against frame 0, theta, phi, end of the rod against the
 // hip at frame 0 (3), rod length, and the changes of x, y, theta, phi and end of rod since the
 // frame before.
