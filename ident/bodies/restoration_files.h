@@ -23,8 +23,6 @@ inline constexpr int kRestorationFormat = 1;
 inline constexpr char kViewKey[] = "sees";
 inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 inline constexpr char kCvaeHalvesKey[] = "halves";
-// The same, of kMrt: a name of MrtSize.
-inline constexpr char kMrtSizeKey[] = "size";
 
 // In RestorationFile::training: the most people of one recording that it learned from.
 inline constexpr char kMostPeopleKey[] = "most_people";

@@ -10,6 +10,9 @@
 
 namespace pushid {
 
+// In RestorationFile::settings, of kMrt: a name of MrtSize. Files of before have none.
+inline constexpr char kMrtSizeKey[] = "size";
+
 // Errors: a kind that is no peer, a size of MRT that is none, missing or misshapen tensors.
 Result<std::unique_ptr<Peer>> MakePeer(const RestorationFile& file, const std::string& folder);
 Result<std::unique_ptr<Peer>> LoadPeer(const std::string& folder);

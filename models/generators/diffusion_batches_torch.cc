@@ -1,7 +1,7 @@
 // models: batches of groups.
-#include "models/generators/diffusion_module_torch.h"
-
 #include <algorithm>
+
+#include "models/generators/diffusion_module_torch.h"
 
 namespace pushid {
 namespace {

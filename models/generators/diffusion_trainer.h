@@ -11,7 +11,6 @@
 // cosine, gradients clipped; what is used is the exponential mean of the weights.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,21 +44,14 @@ class DiffusionTrainer : public Trainer {
  public:
   DiffusionTrainer(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
                    const DiffusionTrainingOptions& options);
-  ~DiffusionTrainer() override;
 
-  bool Done() const override;
   // Mean losses of some steps; of the held groups, always in the same noise, at the end.
-  TrainingPoint RunRound() override;
-  double ShareDone() const override;
-  std::string State() const override;
-  bool Resume(const std::string& state) override;
   DiffusionNetwork Network() const;  // of the mean weights
   // What LibTorch estimates from this noisy motion; for comparison with GroupDenoiser.
   Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy, double t);
 
  private:
   struct Torch;
-  std::unique_ptr<Torch> torch_;
 };
 
 }  // namespace pushid

@@ -1,8 +1,8 @@
 // models: the trainer of the diffusion network, in LibTorch.
 #include <algorithm>
 
-#include "models/generators/diffusion_module_torch.h"
 #include "models/generators/diffusion_generator.h"
+#include "models/generators/diffusion_module_torch.h"
 #include "models/generators/diffusion_trainer.h"
 
 namespace pushid {
@@ -30,7 +30,7 @@ torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& share,
 
 }  // namespace
 
-struct DiffusionTrainer::Torch {
+struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
   Torch(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
         const DiffusionTrainingOptions& given)
       : options(given),
@@ -130,14 +130,25 @@ struct DiffusionTrainer::Torch {
     return Loss(Estimate(mean.get(), Noised(batch.truth, share, noise), time, batch), batch)
         .item<double>();
   }
+
+  bool Done() const override { return step >= options.steps; }
+
+  double ShareDone() const override { return static_cast<double>(step) / options.steps; }
+
+  TrainingPoint RunRound() override {
+    const int begin = step, end = std::min(begin + kDiffusionRound, options.steps);
+    double sum = 0.0;
+    for (; step < end; ++step) sum += Step();
+    return {step, sum / std::max(1, end - begin), HeldLoss(), "diffusion"};
+  }
 };
 
 DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
                                    const std::vector<ObservedGroup>& held,
-                                   const DiffusionTrainingOptions& options) {
+                                   const DiffusionTrainingOptions& options)
+    : Trainer(std::make_unique<Torch>(learnt, held, options)) {
   StartTraining(options);
-  torch_ = std::make_unique<Torch>(learnt, held, options);
-  Torch& t = *torch_;
+  Torch& t = As<Torch>();
   t.module = std::make_shared<DiffusionModule>(options.structure, options.dropout);
   t.mean = std::make_shared<DiffusionModule>(options.structure, options.dropout);
   CopyWeights(*t.module, t.mean.get());
@@ -147,40 +158,24 @@ DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
       torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
 }
 
-DiffusionTrainer::~DiffusionTrainer() = default;
-
-bool DiffusionTrainer::Done() const { return torch_->step >= torch_->options.steps; }
-
-double DiffusionTrainer::ShareDone() const {
-  return static_cast<double>(torch_->step) / torch_->options.steps;
+DiffusionNetwork DiffusionTrainer::Network() const {
+  const Torch& t = As<Torch>();
+  return t.mean->Network(t.scales);
 }
-
-TrainingPoint DiffusionTrainer::RunRound() {
-  Torch& t = *torch_;
-  const int begin = t.step, end = std::min(begin + kDiffusionRound, t.options.steps);
-  double sum = 0.0;
-  for (; t.step < end; ++t.step) sum += t.Step();
-  return {t.step, sum / std::max(1, end - begin), t.HeldLoss(), "diffusion"};
-}
-
-DiffusionNetwork DiffusionTrainer::Network() const { return torch_->mean->Network(torch_->scales); }
 
 Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
                                            const Eigen::MatrixXf& noisy, double t) {
   torch::NoGradGuard no_grad;
-  const DiffusionBatch batch = BatchOf(features, torch_->options.structure);
+  const Torch& training = As<Torch>();
+  const DiffusionBatch batch = BatchOf(features, training.options.structure);
   const int64_t frames = features.frames;
   const torch::Tensor all =
       ToTensor(noisy).view({features.people, frames, kMotionRows}).transpose(1, 2);
   const torch::Tensor padded = torch::constant_pad_nd(all, {0, batch.given.size(2) - frames});
   const torch::Tensor time = torch::full({features.people}, t);
-  torch_->mean->eval();
-  const torch::Tensor estimate = torch_->Estimate(torch_->mean.get(), padded, time, batch);
+  training.mean->eval();
+  const torch::Tensor estimate = training.Estimate(training.mean.get(), padded, time, batch);
   return ToMatrix(estimate.narrow(2, 0, frames).transpose(1, 2).flatten(0, 1)).transpose();
 }
-
-std::string DiffusionTrainer::State() const { return StateOf(torch_.get()); }
-
-bool DiffusionTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

@@ -7,7 +7,6 @@
 // say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -56,21 +55,14 @@ class ParticleTrainer : public Trainer {
  public:
   ParticleTrainer(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
                   const std::vector<LearntParticles>& held, const ParticleTrainingOptions& options);
-  ~ParticleTrainer() override;
 
-  bool Done() const override;
   // Mean losses of some steps; of the held windows (fixed, not jittered) at the end.
-  TrainingPoint RunRound() override;
-  double ShareDone() const override;
-  std::string State() const override;
-  bool Resume(const std::string& state) override;
   ParticleNetwork Network() const;
   // What LibTorch forecasts without noise; for comparison with ParticleRollout.
   Trajectories Forecast(const ObservedMotion& person, int frames) const;
 
  private:
   struct Torch;
-  std::unique_ptr<Torch> torch_;
 };
 
 }  // namespace pushid

@@ -23,7 +23,7 @@ double RateShareToZero(int step, int steps, int warm_up) {
 
 }  // namespace
 
-struct ParticleTrainer::Torch {
+struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
   Torch(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
         const std::vector<LearntParticles>& held, const ParticleTrainingOptions& given)
       : options(given),
@@ -55,7 +55,7 @@ struct ParticleTrainer::Torch {
 
   int AllSteps() const { return options.steps + options.noise_steps; }
   bool InDrift() const { return step < options.steps; }
-  bool Done() const { return step >= AllSteps(); }
+  bool Done() const override { return step >= AllSteps(); }
 
   std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
     return std::make_unique<torch::optim::AdamW>(
@@ -140,15 +140,27 @@ struct ParticleTrainer::Torch {
     return losses(module->Forecast(batch, none, options.observed, options.predicted), batch)
         .item<double>();
   }
+
+  double ShareDone() const override { return static_cast<double>(step) / AllSteps(); }
+
+  TrainingPoint RunRound() override {
+    const bool in_drift = InDrift();
+    const int end = std::min(step + kParticleRound, in_drift ? options.steps : AllSteps());
+    double sum = 0.0;
+    const int count = end - step;
+    for (; step < end; ++step) sum += in_drift ? DriftStep() : NoiseStep();
+    if (!in_drift && Done()) Correlate();
+    return {step, sum / std::max(1, count), HeldLoss(in_drift), in_drift ? "drift" : "noise"};
+  }
 };
 
 ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
                                  const std::vector<LearntParticles>& learnt,
                                  const std::vector<LearntParticles>& held,
-                                 const ParticleTrainingOptions& options) {
+                                 const ParticleTrainingOptions& options)
+    : Trainer(std::make_unique<Torch>(layout, learnt, held, options)) {
   StartTraining(options);
-  torch_ = std::make_unique<Torch>(layout, learnt, held, options);
-  Torch& t = *torch_;
+  Torch& t = As<Torch>();
   t.module = std::make_shared<ParticleModule>(t.statistics);
   t.drift = t.Adam(t.module->DriftParameters());
   t.noise = t.Adam(t.module->NoiseParameters());
@@ -158,27 +170,9 @@ ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
   t.critics = t.Adam(t.critic->parameters());
 }
 
-ParticleTrainer::~ParticleTrainer() = default;
-
-bool ParticleTrainer::Done() const { return torch_->Done(); }
-
-double ParticleTrainer::ShareDone() const {
-  return static_cast<double>(torch_->step) / torch_->AllSteps();
-}
-
-TrainingPoint ParticleTrainer::RunRound() {
-  Torch& t = *torch_;
-  const bool in_drift = t.InDrift();
-  const int end = std::min(t.step + kParticleRound, in_drift ? t.options.steps : t.AllSteps());
-  double sum = 0.0;
-  const int count = end - t.step;
-  for (; t.step < end; ++t.step) sum += in_drift ? t.DriftStep() : t.NoiseStep();
-  if (!in_drift && t.Done()) t.Correlate();
-  return {t.step, sum / std::max(1, count), t.HeldLoss(in_drift), in_drift ? "drift" : "noise"};
-}
-
 ParticleNetwork ParticleTrainer::Network() const {
-  return torch_->module->Network(torch_->statistics);
+  const Torch& t = As<Torch>();
+  return t.module->Network(t.statistics);
 }
 
 Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames) const {
@@ -186,13 +180,9 @@ Trajectories ParticleTrainer::Forecast(const ObservedMotion& person, int frames)
   ParticleBatch batch;
   batch.frames = ToTensor(person.frames).unsqueeze(0);
   batch.controls = ToTensor(person.controls).unsqueeze(0);
-  const torch::Tensor forecast = torch_->module->Forecast(
+  const torch::Tensor forecast = As<Torch>().module->Forecast(
       batch, NoJitter(batch), static_cast<int>(person.frames.cols()), frames);
   return ToMatrix(forecast.squeeze(0)).transpose();
 }
-
-std::string ParticleTrainer::State() const { return StateOf(torch_.get()); }
-
-bool ParticleTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

@@ -1,7 +1,7 @@
 // models: windows, and what is known of all of them.
-#include "models/generators/particle_module_torch.h"
-
 #include <algorithm>
+
+#include "models/generators/particle_module_torch.h"
 
 namespace pushid {
 namespace {

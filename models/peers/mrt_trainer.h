@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -46,13 +45,7 @@ class MrtTrainer : public Trainer {
   // Groups without a window, or without a frame after the given ones to be judged by, are left out;
   // there must be one of each.
   MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> held, const MrtOptions& options);
-  ~MrtTrainer() override;
 
-  bool Done() const override;
-  TrainingPoint RunRound() override;
-  double ShareDone() const override;
-  std::string State() const override;
-  bool Resume(const std::string& state) override;
   MrtWeights Best() const;
   int64_t NumParameters() const;
   // What LibTorch makes of a view with the best weights; PredictedWays must say the same.
@@ -60,7 +53,6 @@ class MrtTrainer : public Trainer {
 
  private:
   struct Torch;
-  std::unique_ptr<Torch> torch_;
 };
 
 // Whether a group has a window to learn from, and a frame to be judged by.

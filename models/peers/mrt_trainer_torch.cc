@@ -106,7 +106,7 @@ double DistanceAfter(const Peer& peer, const std::vector<MrtGroup>& groups) {
 bool HasWindow(const MrtGroup& group) { return NumFrames(group) >= kMrtGiven + kMrtFrames; }
 bool HasFrameAfter(const MrtGroup& group) { return NumFrames(group) > kMrtGiven; }
 
-struct MrtTrainer::Torch {
+struct MrtTrainer::Torch : KeptRun<Run, Torch> {
   MrtOptions options;
   std::vector<MrtGroup> training, held;
   std::vector<Window> windows;
@@ -140,13 +140,41 @@ struct MrtTrainer::Torch {
   torch::Tensor Ways(MrtModule* module, const MrtBatch& batch) const {
     return torch::matmul(to_ways, module->Forward(batch) * spread + mean);
   }
+
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    epochs.Keep(fields);
+  }
+
+  bool Done() const override { return epochs.Done(options.epochs, options.patience); }
+
+  double ShareDone() const override { return static_cast<double>(epochs.epoch) / options.epochs; }
+
+  TrainingPoint RunRound() override {
+    const std::vector<std::vector<Window>> batches = Drawn();
+    double sum = 0.0;
+    epochs.network->train();
+    for (size_t b = 0; b < batches.size(); ++b) {
+      const double share = static_cast<double>(b) / static_cast<double>(batches.size());
+      const double done = (epochs.epoch + share) / options.epochs;
+      SetLearningRate(epochs.optimizer.get(), options.learning_rate * OneCycle(done));
+      AskedBatch batch = Asked(training, batches[b], epochs.network->Weights(scalings));
+      AddNoise(options.input_noise, &batch.inputs);
+      const torch::Tensor loss = DistanceLoss(Ways(epochs.network.get(), batch.inputs), batch);
+      Improve(epochs.optimizer.get(), loss);
+      sum += loss.item<double>();
+    }
+    ++epochs.epoch;
+    const double after = DistanceAfter(MrtPeer(epochs.network->Weights(scalings)), held);
+    return epochs.Judged(sum / static_cast<double>(batches.size()), after);
+  }
 };
 
 MrtTrainer::MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> held,
                        const MrtOptions& options)
-    : torch_(std::make_unique<Torch>()) {
+    : Trainer(std::make_unique<Torch>()) {
   StartTraining(options);
-  Torch& t = *torch_;
+  Torch& t = As<Torch>();
   t.options = options;
   for (MrtGroup& group : training) {
     if (HasWindow(group)) t.training.push_back(std::move(group));
@@ -170,52 +198,22 @@ MrtTrainer::MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> hel
                  options.learning_rate, options.weight_decay);
 }
 
-MrtTrainer::~MrtTrainer() = default;
-
-bool MrtTrainer::Done() const {
-  return torch_->epochs.Done(torch_->options.epochs, torch_->options.patience);
+MrtWeights MrtTrainer::Best() const {
+  const Torch& t = As<Torch>();
+  return t.epochs.best->Weights(t.scalings);
 }
-
-double MrtTrainer::ShareDone() const {
-  return static_cast<double>(torch_->epochs.epoch) / torch_->options.epochs;
-}
-
-TrainingPoint MrtTrainer::RunRound() {
-  Torch& t = *torch_;
-  const std::vector<std::vector<Window>> batches = t.Drawn();
-  double sum = 0.0;
-  t.epochs.network->train();
-  for (size_t b = 0; b < batches.size(); ++b) {
-    const double share = static_cast<double>(b) / static_cast<double>(batches.size());
-    const double done = (t.epochs.epoch + share) / t.options.epochs;
-    SetLearningRate(t.epochs.optimizer.get(), t.options.learning_rate * OneCycle(done));
-    AskedBatch batch = Asked(t.training, batches[b], t.epochs.network->Weights(t.scalings));
-    AddNoise(t.options.input_noise, &batch.inputs);
-    const torch::Tensor loss = DistanceLoss(t.Ways(t.epochs.network.get(), batch.inputs), batch);
-    Improve(t.epochs.optimizer.get(), loss);
-    sum += loss.item<double>();
-  }
-  ++t.epochs.epoch;
-  const double held = DistanceAfter(MrtPeer(t.epochs.network->Weights(t.scalings)), t.held);
-  return t.epochs.Judged(sum / static_cast<double>(batches.size()), held);
-}
-
-MrtWeights MrtTrainer::Best() const { return torch_->epochs.best->Weights(torch_->scalings); }
 
 int64_t MrtTrainer::NumParameters() const {
-  return NumNumbers(torch_->epochs.network->parameters());
+  return NumNumbers(As<Torch>().epochs.network->parameters());
 }
 
 Eigen::MatrixXf MrtTrainer::LibTorchWays(const MrtView& view) const {
   torch::NoGradGuard no_grad;
-  MrtModule* best = torch_->epochs.best.get();
+  const Torch& t = As<Torch>();
+  MrtModule* best = t.epochs.best.get();
   best->eval();
-  const MrtBatch batch = BatchOf({Scaled(torch_->scalings, view)});
-  return ToMatrix(torch_->Ways(best, batch)[0]).transpose();
+  const MrtBatch batch = BatchOf({Scaled(t.scalings, view)});
+  return ToMatrix(t.Ways(best, batch)[0]).transpose();
 }
-
-std::string MrtTrainer::State() const { return StateOf(&torch_->epochs); }
-
-bool MrtTrainer::Resume(const std::string& state) { return ResumeFrom(state, &torch_->epochs); }
 
 }  // namespace pushid

@@ -31,8 +31,9 @@ class Peer {
                                            int frames) const = 0;
 };
 
-// The transform over time by which the peers read and write motions: the orthonormal DCT-II of `frames` values: row k of the matrix gives coefficient k, and the matrix
-// transposed gives the values back.
+// The transform over time by which the peers read and write motions: the orthonormal DCT-II of
+// `frames` values: row k of the matrix gives coefficient k, and the matrix transposed gives the
+// values back.
 inline Eigen::MatrixXd CosineTransform(int frames) {
   Eigen::MatrixXd transform(frames, frames);
   for (int k = 0; k < frames; ++k) {

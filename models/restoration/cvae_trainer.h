@@ -16,7 +16,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -45,15 +44,9 @@ class CvaeTrainer : public Trainer {
   // scalings: the layout, and for the foot skate, which is in m; they become part of Best().
   CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
               const CvaeWeights& scalings, const CvaeOptions& options);
-  ~CvaeTrainer() override;
 
-  bool Done() const override;
-  double ShareDone() const override;
   // The held-out loss is the mean error of the joint positions, m, of whole sequences predicted
   // from their first frame: of autoencoders with the encoder's z, of samplers with their own.
-  TrainingPoint RunRound() override;
-  std::string State() const override;
-  bool Resume(const std::string& state) override;
   CvaeWeights Best() const;
 
   // Of the four stages' networks: 865536, 136960, 1097904, 159232; 0 of stages that are not.
@@ -61,7 +54,6 @@ class CvaeTrainer : public Trainer {
 
  private:
   struct Torch;
-  std::unique_ptr<Torch> torch_;
 };
 
 }  // namespace pushid

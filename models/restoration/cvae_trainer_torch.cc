@@ -12,7 +12,7 @@ const char* const kStageNames[4] = {"lower autoencoder", "lower sampler", "upper
 
 }  // namespace
 
-struct CvaeTrainer::Torch : CvaeStages {
+struct CvaeTrainer::Torch : KeptRun<Run, Torch>, CvaeStages {
   template <typename Fields>
   void Keep(Fields* fields) {
     fields->Part("lower", lower.get());
@@ -37,13 +37,41 @@ struct CvaeTrainer::Torch : CvaeStages {
     fields->Tensor("first", &first);
     fields->Tensor("state", &state);
   }
+
+  bool Done() const override { return stage == 4; }
+
+  double ShareDone() const override {
+    double all = 0.0, done = 0.0;
+    for (int i = 0; i < 4; ++i) {
+      all += Steps(i);
+      if (i < stage) done += Steps(i);
+    }
+    return Done() ? 1.0 : (done + step) / all;
+  }
+
+  TrainingPoint RunRound() override {
+    double sum = 0.0;
+    int steps = 0;
+    while (steps < options.round && step < Steps(stage)) sum += Step(), ++steps;
+    TrainingPoint point = {++rounds, sum / std::max(1, steps), HeldLoss(), kStageNames[stage]};
+    // Best of the part in which the network goes on from its own frames.
+    if (point.validation_loss < best_loss && step >= Steps(stage) / 2) {
+      best_loss = point.validation_loss;
+      CopyWeights(Half(), (Upper() ? best_upper : best_lower).get());
+    }
+    if (step >= Steps(stage)) {
+      FinishStage();
+      if (stage < 4) StartStage();
+    }
+    return point;
+  }
 };
 
 CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSequence> held,
                          const CvaeWeights& scalings, const CvaeOptions& options)
-    : torch_(std::make_unique<Torch>()) {
+    : Trainer(std::make_unique<Torch>()) {
   StartTraining(options);
-  Torch& t = *torch_;
+  Torch& t = As<Torch>();
   t.options = options;
   t.scalings = scalings;
   t.training = Gather(training);
@@ -64,60 +92,27 @@ CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSeq
   t.StartStage();
 }
 
-CvaeTrainer::~CvaeTrainer() = default;
-
-bool CvaeTrainer::Done() const { return torch_->stage == 4; }
-
-double CvaeTrainer::ShareDone() const {
-  double all = 0.0, done = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    all += torch_->Steps(i);
-    if (i < torch_->stage) done += torch_->Steps(i);
-  }
-  return Done() ? 1.0 : (done + torch_->step) / all;
-}
-
-TrainingPoint CvaeTrainer::RunRound() {
-  Torch& t = *torch_;
-  double sum = 0.0;
-  int steps = 0;
-  while (steps < t.options.round && t.step < t.Steps(t.stage)) sum += t.Step(), ++steps;
-  TrainingPoint point = {++t.rounds, sum / std::max(1, steps), t.HeldLoss(), kStageNames[t.stage]};
-  // Best of the part in which the network goes on from its own frames.
-  if (point.validation_loss < t.best_loss && t.step >= t.Steps(t.stage) / 2) {
-    t.best_loss = point.validation_loss;
-    CopyWeights(t.Half(), (t.Upper() ? t.best_upper : t.best_lower).get());
-  }
-  if (t.step >= t.Steps(t.stage)) {
-    t.FinishStage();
-    if (t.stage < 4) t.StartStage();
-  }
-  return point;
-}
-
 CvaeWeights CvaeTrainer::Best() const {
-  CvaeWeights weights = torch_->scalings;
+  const Torch& t = As<Torch>();
+  CvaeWeights weights = t.scalings;
   const auto take = [&](const HalfModule& half, CvaeSampler* sampler, CvaeDecoder* decoder) {
     if (weights.layout.pendulum) *sampler = half.sampler->SamplerWeights();
     *decoder = half.decoder->Weights();
   };
-  take(*torch_->lower, &weights.lower_sampler, &weights.lower_decoder);
-  if (weights.layout.halves) take(*torch_->upper, &weights.upper_sampler, &weights.upper_decoder);
+  take(*t.lower, &weights.lower_sampler, &weights.lower_decoder);
+  if (weights.layout.halves) take(*t.upper, &weights.upper_sampler, &weights.upper_decoder);
   return weights;
 }
 
 std::array<int64_t, 4> CvaeTrainer::NumParameters() const {
+  const Torch& t = As<Torch>();
   std::array<int64_t, 4> all = {};
   for (int i = 0; i < 4; ++i) {
-    if (!torch_->Has(i)) continue;
-    const HalfModule& half = i < 2 ? *torch_->lower : *torch_->upper;
+    if (!t.Has(i)) continue;
+    const HalfModule& half = i < 2 ? *t.lower : *t.upper;
     all[i] = NumNumbers(i % 2 == 0 ? half.AutoencoderParameters() : half.sampler->parameters());
   }
   return all;
 }
-
-std::string CvaeTrainer::State() const { return StateOf(torch_.get()); }
-
-bool CvaeTrainer::Resume(const std::string& state) { return ResumeFrom(state, torch_.get()); }
 
 }  // namespace pushid

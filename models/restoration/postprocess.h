@@ -40,7 +40,8 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 // All that the options ask for, in this order.
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);
 
-// Only the feet, where the model says when they stand: feet that stand while the pendulum's model says so, and land where its cart is.
+// Only the feet, where the model says when they stand: feet that stand while the pendulum's model
+// says so, and land where its cart is.
 //
 //   standing   ankle and toe do not move, however high and fast the restoration has them
 //   stepping   they go where the restoration has them, and rest where it has them rest (the other

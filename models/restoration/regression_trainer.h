@@ -6,7 +6,6 @@
 // least validation loss; training ends early after `patience` epochs without a better one.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "models/restoration/dense_network.h"
@@ -35,18 +34,11 @@ class RegressionTrainer : public Trainer {
  public:
   RegressionTrainer(const RegressionSamples& training, const RegressionSamples& validation,
                     const RegressionOptions& options);
-  ~RegressionTrainer() override;
 
-  bool Done() const override;
-  TrainingPoint RunRound() override;
-  double ShareDone() const override;
-  std::string State() const override;
-  bool Resume(const std::string& state) override;
   DenseNetwork Best() const;
 
  private:
   struct Torch;
-  std::unique_ptr<Torch> torch_;
 };
 
 }  // namespace pushid

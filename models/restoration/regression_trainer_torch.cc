@@ -42,20 +42,54 @@ torch::Tensor AbsoluteLoss(const torch::Tensor& output, const torch::Tensor& tar
 
 }  // namespace
 
-struct RegressionTrainer::Torch {
+struct RegressionTrainer::Torch : KeptRun<Run, Torch> {
   RegressionOptions options;
   torch::Tensor inputs, targets, weights, held_inputs, held_targets, held_weights;
   Epochs<Network> epochs;
 
   int64_t BatchesPerEpoch() const { return (inputs.size(0) + options.batch - 1) / options.batch; }
+
+  template <typename Fields>
+  void Keep(Fields* fields) {
+    epochs.Keep(fields);
+  }
+
+  bool Done() const override { return epochs.Done(options.epochs, options.patience); }
+
+  double ShareDone() const override { return static_cast<double>(epochs.epoch) / options.epochs; }
+
+  TrainingPoint RunRound() override {
+    const int64_t batches = BatchesPerEpoch();
+    const torch::Tensor order = torch::randperm(inputs.size(0));
+    double sum = 0.0;
+    epochs.network->train();
+    for (int64_t b = 0; b < batches; ++b) {
+      const double done = (epochs.epoch + static_cast<double>(b) / batches) / options.epochs;
+      SetLearningRate(epochs.optimizer.get(), options.learning_rate * OneCycle(done));
+      const torch::Tensor rows = order.slice(0, b * options.batch, (b + 1) * options.batch);
+      torch::Tensor x = inputs.index_select(0, rows);
+      x = x + options.input_noise * torch::randn_like(x);
+      const torch::Tensor loss = AbsoluteLoss(
+          epochs.network->forward(x), targets.index_select(0, rows), weights.index_select(0, rows));
+      Improve(epochs.optimizer.get(), loss);
+      sum += loss.item<double>();
+    }
+    ++epochs.epoch;
+    torch::NoGradGuard no_grad;
+    epochs.network->eval();
+    const double held =
+        AbsoluteLoss(epochs.network->forward(held_inputs), held_targets, held_weights)
+            .item<double>();
+    return epochs.Judged(sum / static_cast<double>(batches), held);
+  }
 };
 
 RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
                                      const RegressionSamples& validation,
                                      const RegressionOptions& options)
-    : torch_(std::make_unique<Torch>()) {
+    : Trainer(std::make_unique<Torch>()) {
   StartTraining(options);
-  Torch& t = *torch_;
+  Torch& t = As<Torch>();
   t.options = options;
   t.inputs = ToTensor(training.inputs), t.targets = ToTensor(training.targets);
   t.weights = ToTensor(training.weights);
@@ -68,49 +102,6 @@ RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
                  options.learning_rate, options.weight_decay);
 }
 
-RegressionTrainer::~RegressionTrainer() = default;
-
-bool RegressionTrainer::Done() const {
-  return torch_->epochs.Done(torch_->options.epochs, torch_->options.patience);
-}
-
-double RegressionTrainer::ShareDone() const {
-  return static_cast<double>(torch_->epochs.epoch) / torch_->options.epochs;
-}
-
-TrainingPoint RegressionTrainer::RunRound() {
-  Torch& t = *torch_;
-  const int64_t batches = t.BatchesPerEpoch();
-  const torch::Tensor order = torch::randperm(t.inputs.size(0));
-  double sum = 0.0;
-  t.epochs.network->train();
-  for (int64_t b = 0; b < batches; ++b) {
-    const double done = (t.epochs.epoch + static_cast<double>(b) / batches) / t.options.epochs;
-    SetLearningRate(t.epochs.optimizer.get(), t.options.learning_rate * OneCycle(done));
-    const torch::Tensor rows = order.slice(0, b * t.options.batch, (b + 1) * t.options.batch);
-    torch::Tensor x = t.inputs.index_select(0, rows);
-    x = x + t.options.input_noise * torch::randn_like(x);
-    const torch::Tensor loss =
-        AbsoluteLoss(t.epochs.network->forward(x), t.targets.index_select(0, rows),
-                     t.weights.index_select(0, rows));
-    Improve(t.epochs.optimizer.get(), loss);
-    sum += loss.item<double>();
-  }
-  ++t.epochs.epoch;
-  torch::NoGradGuard no_grad;
-  t.epochs.network->eval();
-  const double held =
-      AbsoluteLoss(t.epochs.network->forward(t.held_inputs), t.held_targets, t.held_weights)
-          .item<double>();
-  return t.epochs.Judged(sum / static_cast<double>(batches), held);
-}
-
-DenseNetwork RegressionTrainer::Best() const { return torch_->epochs.best->Weights(); }
-
-std::string RegressionTrainer::State() const { return StateOf(&torch_->epochs); }
-
-bool RegressionTrainer::Resume(const std::string& state) {
-  return ResumeFrom(state, &torch_->epochs);
-}
+DenseNetwork RegressionTrainer::Best() const { return As<Torch>().epochs.best->Weights(); }
 
 }  // namespace pushid

@@ -167,6 +167,15 @@ bool ResumeFrom(const std::string& state, Torch* torch) {
   }
 }
 
+// State and Resume of a run (Trainer::Run) that lists its fields.
+template <typename Run, typename Self>
+struct KeptRun : Run {
+  std::string State() override { return StateOf(static_cast<Self*>(this)); }
+  bool Resume(const std::string& state) override {
+    return ResumeFrom(state, static_cast<Self*>(this));
+  }
+};
+
 // Training by epochs that keeps the best one: what the trainers of windows, of siMLPe and of MRT
 // share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
 template <typename Network>

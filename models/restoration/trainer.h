@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace pushid {
 
@@ -31,19 +32,34 @@ struct TrainingPoint {
 // done: share of all steps, 0 .. 1.
 using TrainingProgress = std::function<void(const TrainingPoint& point, double done)>;
 
+// A training of one kind has a class derived from this, with what it gives in the end, and in its
+// *_torch.cc a struct derived from Run.
 class Trainer {
  public:
-  Trainer() = default;
-  virtual ~Trainer() = default;
-  Trainer(const Trainer&) = delete;
-  Trainer& operator=(const Trainer&) = delete;
-
-  virtual bool Done() const = 0;
-  virtual TrainingPoint RunRound() = 0;
-  virtual double ShareDone() const = 0;  // after a round; 0 .. 1
-  virtual std::string State() const = 0;
+  bool Done() const { return run_->Done(); }
+  TrainingPoint RunRound() { return run_->RunRound(); }
+  double ShareDone() const { return run_->ShareDone(); }  // after a round; 0 .. 1
+  std::string State() const { return run_->State(); }
   // False when the state is not one of this training.
-  virtual bool Resume(const std::string& state) = 0;
+  bool Resume(const std::string& state) { return run_->Resume(state); }
+
+ protected:
+  struct Run {
+    virtual ~Run() = default;
+    virtual bool Done() const = 0;
+    virtual TrainingPoint RunRound() = 0;
+    virtual double ShareDone() const = 0;
+    virtual std::string State() = 0;
+    virtual bool Resume(const std::string& state) = 0;
+  };
+  explicit Trainer(std::unique_ptr<Run> run) : run_(std::move(run)) {}
+  template <typename Torch>
+  Torch& As() const {
+    return static_cast<Torch&>(*run_);
+  }
+
+ private:
+  std::unique_ptr<Run> run_;
 };
 
 }  // namespace pushid
