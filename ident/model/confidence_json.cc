@@ -134,7 +134,7 @@ Leverage LeverageFrom(const Json& json) {
 
 ProfileClass ClassFrom(const Json& row, const std::string& key) {
   ProfileClass found;
-  if (MaybeError error = ParseName(key, row.at(key), &found)) {
+  if (MaybeError error = ParseName(key, row.at(key).get<std::string>(), &found)) {
     throw std::runtime_error(error->ToString());
   }
   return found;
