@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <set>
 
 #include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
@@ -35,14 +34,8 @@ Result<uint64_t> SeedOf(const FitOptions& options) {
 Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
   const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
   FitOptions& options = model->fit.options;
-  std::vector<std::string> ids;
-  std::set<std::string> seen;  // a replica of a bootstrap has a recording several times
-  const bool chosen = RecordingFlagsFromCommandLine().chosen || Given("leave_out");
-  for (const FittedRecording& fitted : model->fit.recordings) {
-    if (!chosen && seen.insert(fitted.id).second) ids.push_back(fitted.id);
-  }
   LoadAs(fit_flags);
-  const auto loaded = LoadFlaggedRecordings(ids, options.body_weight > 0.0);
+  const auto loaded = LoadFlaggedRecordings(FittedIds(model->fit), options.body_weight > 0.0);
   if (!loaded.ok()) return loaded.error();
   if (options.body_weight > 0.0) {
     const auto folder = fit_flags.find("body_restoration");

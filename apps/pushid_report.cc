@@ -26,13 +26,8 @@ using namespace pushid;
 
 // The recordings to draw: those of the flags, or those that were fitted.
 Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
-  const RecordingFlags flags = RecordingFlagsFromCommandLine();
-  if (flags.manifest.empty()) return std::vector<Recording>();
-  std::vector<std::string> ids;
-  for (const FittedRecording& r : fit.recordings) {
-    if (!flags.chosen) ids.push_back(r.id);
-  }
-  return LoadFlaggedRecordings(ids, true);
+  if (FLAGS_recordings.empty()) return std::vector<Recording>();
+  return LoadFlaggedRecordings(FittedIds(fit), true);
 }
 
 int WriteWhole(const FittedModel& model) {

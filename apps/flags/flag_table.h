@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/parameters/option_names.h"
+#include "models/enum_names.h"
 
 // A string flag that takes one of an enum's names: shells complete them.
 #define DEFINE_choice(name, value, help)            \

@@ -1,6 +1,7 @@
 // apps: loading what --recordings names.
 #include "apps/flags/recording_flags.h"
 
+#include <set>
 #include <sstream>
 
 #include "apps/flags/command_line.h"
@@ -70,6 +71,17 @@ Result<LoadOptions> LoadOptionsOfFlags() {
 RecordingFlags RecordingFlagsFromCommandLine() {
   const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
   return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
+}
+
+std::vector<std::string> FittedIds(const FitResult& fit) {
+  std::vector<std::string> ids;
+  if (RecordingFlagsFromCommandLine().chosen || !FLAGS_leave_out.empty()) return ids;
+  // A replica of a bootstrap has a recording several times.
+  std::set<std::string> seen;
+  for (const FittedRecording& fitted : fit.recordings) {
+    if (seen.insert(fitted.id).second) ids.push_back(fitted.id);
+  }
+  return ids;
 }
 
 void LoadAs(const std::map<std::string, std::string>& configuration) {
