@@ -71,8 +71,9 @@ struct MovedFlags {
   static constexpr char kUntil[] = "version 0.4";
 };
 
-// Under headings, without those that moved.
-std::string FlagHelp(const MovedFlags& moved);
+// Under headings, without those that moved. full: what is rarely changed, too, is described and not
+// only named.
+std::string FlagHelp(const MovedFlags& moved, bool full);
 // One line a flag: name, `bool` or `value`, the words it takes, the first sentence of its help;
 // tabs between. What `pushid completion` is made of.
 std::string FlagList(const MovedFlags& moved);

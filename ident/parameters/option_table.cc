@@ -139,6 +139,11 @@ Row PoolByRow() {
   return row;
 }
 
+Row Rare(Row row) {
+  row.heading = kRarelyChanged;
+  return row;
+}
+
 Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
   return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
     TableEdits edits;
@@ -152,27 +157,27 @@ std::vector<Row> WeightRows() {
   using O = FitOptions;
   return {
       LossRow(),
-      NumberRow(
+      Rare(NumberRow(
           "sigma_hip", "/sigmas/hip_m", [](O & o) -> auto& { return o.sigmas.hip; }, kPositive,
-          "standard deviation of the hip's position, m"),
-      NumberRow(
+          "standard deviation of the hip's position, m")),
+      Rare(NumberRow(
           "sigma_velocity", "/sigmas/velocity_m_s",
           [](O & o) -> auto& { return o.sigmas.velocity; }, kPositive,
-          "standard deviation of the cart's velocity, m/s"),
-      NumberRow(
+          "standard deviation of the cart's velocity, m/s")),
+      Rare(NumberRow(
           "sigma_angle", "/sigmas/angle_rad", [](O & o) -> auto& { return o.sigmas.angle; },
-          kPositive, "standard deviation of the angles, rad"),
-      NumberRow(
+          kPositive, "standard deviation of the angles, rad")),
+      Rare(NumberRow(
           "sigma_rate", "/sigmas/rate_rad_s", [](O & o) -> auto& { return o.sigmas.rate; },
-          kPositive, "standard deviation of the angular rates, rad/s"),
+          kPositive, "standard deviation of the angular rates, rad/s")),
       MayBeAbsent(NameRow<SigmaSource>(
           "sigmas", "/sigmas/source", [](O & o) -> auto& { return o.sigma_source; },
           "the residuals' standard deviations: estimate (from the residuals, starting at "
           "--sigma_*), or fixed (at --sigma_*)")),
-      MayBeAbsent(NumberRow(
+      Rare(MayBeAbsent(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", [](O & o) -> auto& { return o.marker_noise; },
           kPositive,
-          "standard deviation of a marker's position, m: lower limit of estimated sigmas")),
+          "standard deviation of a marker's position, m: lower limit of estimated sigmas"))),
       NumberRow(
           "robust", "/sigmas/robust", [](O & o) -> auto& { return o.sigmas.robust; }, kNotNegative,
           "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
@@ -181,12 +186,12 @@ std::vector<Row> WeightRows() {
           [](O & o) -> auto& { return o.recording_weight; },
           "weight of a recording: effective (its number of independent frames), frame (every frame "
           "counts as one) or recording (every recording counts as one frame)"),
-      MayBeAbsent(NumberRow(
+      Rare(MayBeAbsent(NumberRow(
           "effective_weight", "/effective_weight",
           [](O & o) -> auto& { return o.effective_weight; },
           {0.0, 1e6, false, "must be a number from 0 to 1e6"},
           "--recording_weight=effective: independent frames per frame at the start of their "
-          "estimation; 0: one frame per recording")),
+          "estimation; 0: one frame per recording"))),
       MayBeAbsent(NameRow<ClusterBy>(
           "cluster", "/cluster", [](O & o) -> auto& { return o.cluster; },
           "unit with independent errors: subject, recording, or auto (subject where people were "
@@ -300,11 +305,14 @@ const std::vector<FitOptionRow>& FitOptionRows() {
   static const std::vector<FitOptionRow> rows = [] {
     std::vector<FitOptionRow> all;
     const auto add = [&all](const std::string& heading, const std::vector<FitOptionRow>& part) {
-      for (const FitOptionRow& row : part) all.emplace_back(row).heading = heading;
+      for (const FitOptionRow& row : part) {
+        all.push_back(row);
+        if (row.heading.empty()) all.back().heading = heading;
+      }
     };
     add("model", ModelOptionRows());
     add("fit", WeightRows());
-    add("fit", SolverRows());
+    add(kRarelyChanged, SolverRows());
     add("model", TableRows());
     return all;
   }();

@@ -23,10 +23,13 @@ enum class OptionStage {
   kTable        // last: edits single parameters
 };
 
+// The heading of what most users leave alone; --helpfull describes it.
+inline constexpr char kRarelyChanged[] = "rarely changed";
+
 struct FitOptionRow {
   std::string name;  // of the flag, without its dashes
   std::string help;
-  std::string heading;               // of --help: model, fit
+  std::string heading;               // of --help: model, fit, kRarelyChanged
   std::vector<std::string> choices;  // the words it takes; empty: any
   OptionStage stage = OptionStage::kModel;
   bool is_bool = false;         // --name, --noname; the others take --name=value
