@@ -97,7 +97,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   google::InitGoogleLogging(argv[0]);
   if (FLAGS_quiet) HideProgress();
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
-    std::printf("%s\n%s", usage.c_str(), FlagHelp(moved).c_str());
+    std::printf("%s\n%s", usage.c_str(), FlagHelp(moved, Asked("helpfull")).c_str());
     return kDone;
   }
   if (Asked("version")) {

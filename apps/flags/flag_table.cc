@@ -84,6 +84,7 @@ const std::vector<Heading>& Headings() {
       {"recordings", {"recording_flags"}},
       {"model", {"model_flags"}},
       {"fit", {}},
+      {kRarelyChanged, {}},
       {"checks", {"check_flags"}},
       {"settings", {}},  // what stands nowhere else: the program's own
       {"prediction", {"observed_flags", "futures_flags"}},
@@ -95,7 +96,7 @@ const std::vector<Heading>& Headings() {
 
 std::string HeadingOf(const FlagInfo& flag) {
   if (IsOutputFlag(flag.name)) return "output";
-  if (flag.name == "num_threads") return "general";
+  if (flag.name == "num_threads" || flag.name == "seed") return "general";
   const FitOptionRow* const row = FindFitOption(flag.name);
   if (row != nullptr && flag.filename.find("fit_option") != std::string::npos) return row->heading;
   for (const Heading& heading : Headings()) {
@@ -187,8 +188,9 @@ std::string MovedFlags::FirstGiven() const {
   return given == names.end() ? "" : *given;
 }
 
-std::string FlagHelp(const MovedFlags& moved) {
+std::string FlagHelp(const MovedFlags& moved, bool full) {
   std::map<std::string, std::string> below;
+  std::vector<std::string> named;
   for (const FlagInfo& flag : OwnFlags()) {
     if (moved.Has(flag.name)) continue;
     const std::string value =
@@ -196,13 +198,20 @@ std::string FlagHelp(const MovedFlags& moved) {
     // What did not move with the others.
     const std::string heading = HeadingOf(flag);
     const bool left = heading == "checks" && !moved.names.empty();
+    if (heading == kRarelyChanged && !full) {
+      named.push_back(flag.name);
+      continue;
+    }
     below[left ? "settings" : heading] +=
         "  --" + flag.name + value + "\n      " + flag.description + "\n";
   }
   below["general"] +=
       "  --flagfile=FILE\n      read flags from a file, one per line\n"
-      "  --help, -h\n      print this\n"
+      "  --help, -h, --helpfull\n      print this\n"
       "  --version\n      print the version\n";
+  if (!named.empty()) {
+    below[kRarelyChanged] = "  " + WithDashes(named, " ") + "\n      --helpfull describes them\n";
+  }
   std::string text;
   for (const Heading& heading : Headings()) {
     const auto flags = below.find(heading.title);
