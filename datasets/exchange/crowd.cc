@@ -89,7 +89,6 @@ PointMotion HipTrajectories(const Recording& recording) {
   motion.rate_hz = recording.fps;
   motion.unit = LengthUnit::kMetre;
   for (const RecordedPerson& person : recording.people) {
-    motion.chosen.push_back(static_cast<int>(motion.names.size()));
     motion.names.push_back(person.subject_id);
     motion.positions.push_back(person.hip);
     for (std::size_t frame = 0; frame < person.weight.size(); ++frame) {
@@ -97,6 +96,7 @@ PointMotion HipTrajectories(const Recording& recording) {
       motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
     }
   }
+  ChoosePoints({}, &motion);
   return motion;
 }
 

@@ -11,6 +11,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "models/enum_names.h"
 
@@ -81,11 +82,9 @@ class JsonFields {
   // Other keys than these are mistakes, which would be read over.
   void Only(const std::vector<std::string>& keys) {
     if (!object_.is_object()) return;
-    std::string list;
-    for (const std::string& key : keys) list += (list.empty() ? "" : ", ") + key;
     for (const auto& [key, value] : object_.items()) {
       const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
-      if (!known) Fail(key, "is not known; there may be " + list);
+      if (!known) Fail(key, "is not known; there may be " + ListOfNames(keys));
     }
   }
 
@@ -117,6 +116,9 @@ class JsonFields {
     return At(key).get<double>();
   }
 
+  double OptionalNumber(const char* key, const std::string& what, double fallback) {
+    return Has(key) ? Number(key, what) : fallback;
+  }
   // A whole number in [lowest, highest].
   int Whole(const char* key, const std::string& what, int lowest, int highest) {
     const double value = Number(key, what);
@@ -126,6 +128,11 @@ class JsonFields {
       return lowest;
     }
     return static_cast<int>(value);
+  }
+
+  int OptionalWhole(const char* key, const std::string& what, int lowest, int highest,
+                    int fallback) {
+    return Has(key) ? Whole(key, what, lowest, highest) : fallback;
   }
 
   // The list under `key`, or an empty one.

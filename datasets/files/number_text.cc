@@ -180,4 +180,11 @@ bool TableCells::Next(std::string_view* cell) {
   return true;
 }
 
+std::vector<std::string_view> CellsOf(std::string_view row, char separator) {
+  std::vector<std::string_view> cells;
+  TableCells rest(row, separator);
+  for (std::string_view cell; rest.Next(&cell);) cells.push_back(cell);
+  return cells;
+}
+
 }  // namespace pushid

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "datasets/files/error.h"
 
@@ -61,5 +62,8 @@ class TableCells {
   char separator_;
   bool more_;
 };
+
+// All cells of a row.
+std::vector<std::string_view> CellsOf(std::string_view row, char separator);
 
 }  // namespace pushid

@@ -130,30 +130,24 @@ MaybeError FindColumns(const LineReader& reader, const std::vector<std::string>&
       missing);
 }
 
-std::vector<std::string> Cells(std::string_view line) {
-  std::vector<std::string> cells;
-  TableCells row(line, '\t');
-  for (std::string_view cell; row.Next(&cell);) cells.emplace_back(Trimmed(cell));
-  return cells;
-}
-
 Result<std::vector<BidsChannel>> ReadChannels(const std::string& file, ContentHash* hash) {
   LineReader reader;
   if (MaybeError failed = reader.Open(file)) return *std::move(failed);
   std::string_view line;
   if (!reader.NextNonBlank(&line)) return Error{"the file is empty", file};
-  const std::vector<std::string> names = Cells(line);
+  const std::vector<std::string_view> head = CellsOf(line, '\t');
+  const std::vector<std::string> names(head.begin(), head.end());
   std::vector<int> columns;
   if (MaybeError failed = FindColumns(reader, names, &columns)) return *std::move(failed);
   std::vector<BidsChannel> channels;
   std::set<std::string> seen;
   while (reader.NextNonBlank(&line)) {
-    const std::vector<std::string> cells = Cells(line);
+    const std::vector<std::string_view> cells = CellsOf(line, '\t');
     if (cells.size() != names.size()) {
       return reader.ErrorHere("the row has " + std::to_string(cells.size()) + " cells, not " +
                               std::to_string(names.size()) + ", separated by tabs");
     }
-    const auto cell = [&](int i) { return columns[i] < 0 ? std::string() : cells[columns[i]]; };
+    const auto cell = [&](int i) { return std::string(columns[i] < 0 ? "" : cells[columns[i]]); };
     channels.push_back({cell(0), cell(1), cell(2), cell(3), cell(4), cell(5)});
     if (!seen.insert(cell(0)).second) {
       return reader.ErrorHere("two channels are called " + Quoted(cell(0)));

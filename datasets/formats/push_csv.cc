@@ -1,6 +1,8 @@
 // datasets: a push as a CSV file.
 #include "datasets/formats/push_csv.h"
 
+#include <algorithm>
+#include <iterator>
 #include <string_view>
 
 #include "datasets/files/atomic_file.h"
@@ -12,34 +14,22 @@ namespace {
 
 constexpr char kHeader[] = "frame,fx,fy,ftheta,fphi";
 constexpr const char* kPushColumns[] = {"frame", "fx", "fy", "ftheta", "fphi"};
-constexpr int kNumColumns = 5;
-
-// Cuts the next field off `line`; a line ends its last field, and `more` says whether a comma came.
-std::string_view NextField(std::string_view* line, bool* more) {
-  const std::size_t comma = line->find(',');
-  *more = comma != std::string_view::npos;
-  const std::string_view field = line->substr(0, comma);
-  line->remove_prefix(*more ? comma + 1 : line->size());
-  return Trimmed(field);
-}
+constexpr std::size_t kNumColumns = 5;
 
 bool IsHeader(std::string_view line) {
-  bool more = true;
-  for (int i = 0; i < kNumColumns; ++i) {
-    if (!more || NextField(&line, &more) != kPushColumns[i]) return false;
-  }
-  return !more;
+  const std::vector<std::string_view> cells = CellsOf(line, ',');
+  return std::equal(cells.begin(), cells.end(), std::begin(kPushColumns), std::end(kPushColumns));
 }
 
 MaybeError ParseRow(const LineReader& reader, std::string_view line, std::int64_t expected_frame,
                     Eigen::Vector4d* force) {
-  bool more = true;
-  for (int i = 0; i < kNumColumns; ++i) {
-    if (!more) {
+  const std::vector<std::string_view> cells = CellsOf(line, ',');
+  for (std::size_t i = 0; i < kNumColumns; ++i) {
+    if (i == cells.size()) {
       return reader.ErrorHere("the row has " + std::to_string(i) + " values, not " +
                               std::to_string(kNumColumns) + " (" + kHeader + ")");
     }
-    const std::string_view field = NextField(&line, &more);
+    const std::string_view field = cells[i];
     if (i > 0) {
       if (!ParseDouble(field, &(*force)[i - 1])) {
         return reader.ErrorHere(std::string(kPushColumns[i]) + ": " + NumberProblem(field));
@@ -57,7 +47,7 @@ MaybeError ParseRow(const LineReader& reader, std::string_view line, std::int64_
                               "push is given by start_frame in the manifest)");
     }
   }
-  if (more) {
+  if (cells.size() > kNumColumns) {
     return reader.ErrorHere("the row has more than " + std::to_string(kNumColumns) + " values (" +
                             kHeader + ")");
   }

@@ -17,13 +17,7 @@ constexpr double kRateTolerance = 0.01;
 constexpr std::int64_t kMostMarkers = 100000;
 
 std::vector<std::string_view> TabFields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t tab = line.find('\t');
-    fields.push_back(Trimmed(line.substr(0, tab)));
-    if (tab == std::string_view::npos) break;
-    line.remove_prefix(tab + 1);
-  }
+  std::vector<std::string_view> fields = CellsOf(line, '\t');
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
   return fields;
 }

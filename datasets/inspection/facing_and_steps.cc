@@ -88,10 +88,6 @@ Facing FacingOf(const PointMotion& motion, const PelvisSides& pelvis, const Trac
   return facing;
 }
 
-namespace {
-using Track = std::vector<Eigen::Vector3d>;
-}  // namespace
-
 Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen) {
   Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
   for (int index : chosen) {
@@ -122,16 +118,12 @@ PersonSteps StepsOf(const PointMotion& motion, const PendulumJoints& joints,
   };
   // As loading does: a toe or heel that is lost for long is not used.
   const double gap = PreparationOptions{}.max_gap_s * motion.rate_hz;
-  const auto if_seen = [&](const std::vector<int>& chosen) {
-    return chosen.empty() || LongestHidden(motion, chosen) > gap ? Track() : track(chosen);
-  };
   RecordedPerson person;
-  person.left_ankle = track(joints.left_ankle);
-  person.right_ankle = track(joints.right_ankle);
-  person.left_toe = if_seen(joints.left_toe);
-  person.right_toe = if_seen(joints.right_toe);
-  person.left_heel = if_seen(joints.left_heel);
-  person.right_heel = if_seen(joints.right_heel);
+  for (const PendulumTrack& row : kPendulumTracks) {
+    const std::vector<int>& chosen = joints.*row.joints;
+    const bool lost = chosen.empty() || LongestHidden(motion, chosen) > gap;
+    if (row.required || !lost) person.*row.track = track(chosen);
+  }
   return FindSteps(person, motion.rate_hz);
 }
 

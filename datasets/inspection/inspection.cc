@@ -47,7 +47,7 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   BvhPositionOptions options;
   options.length_unit = LengthUnit::kMetre;  // as it stands: the unit is what is to be found
   options.choose_joints = [&](const BvhSkeleton& skeleton) -> Result<std::vector<int>> {
-    for (const BvhJoint& joint : skeleton.joints) names.push_back(joint.name);
+    names = skeleton.Names();
     const Result<PendulumJoints> joints =
         ChoosePendulumJoints(found->path, skeleton, mapping.joints);
     if (!joints.ok()) {
@@ -60,13 +60,14 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
     pelvis = SidesOf(roles);
     std::vector<int> kept;
     places = joints.value();
-    for (std::vector<int>* place : {&places->hip, &places->left_ankle, &places->right_ankle,
-                                    &places->left_toe, &places->right_toe, &places->left_heel,
-                                    &places->right_heel, &pelvis.left, &pelvis.right}) {
-      if (place->empty()) continue;
+    const auto keep = [&kept](std::vector<int>* place) {
+      if (place->empty()) return;
       kept.push_back((*place)[0]);
       *place = {static_cast<int>(kept.size()) - 1};
-    }
+    };
+    for (const PendulumTrack& row : kPendulumTracks) keep(&((*places).*row.joints));
+    keep(&pelvis.left);
+    keep(&pelvis.right);
     return kept;
   };
   Result<BvhPositions> bvh = ReadBvhPositions(found->path, options);
@@ -74,10 +75,8 @@ MaybeError LookAtBvh(const ColumnMapping& mapping, Inspection* found) {
   PointMotion motion;
   motion.path = found->path;
   motion.rate_hz = 1.0 / bvh.value().frame_time_s;
-  for (int joint : bvh.value().joints) {
-    motion.chosen.push_back(static_cast<int>(motion.names.size()));
-    motion.names.push_back(names[joint]);
-  }
+  for (int joint : bvh.value().joints) motion.names.push_back(names[joint]);
+  ChoosePoints({}, &motion);
   motion.positions = std::move(bvh.value().positions);
   found->Fact("joints", ListOfNames(names));
   if (!body.empty()) found->Fact("body", body);

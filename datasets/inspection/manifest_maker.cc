@@ -66,9 +66,7 @@ class Maker {
       return first;
     }
     if (!massless_.empty()) {
-      std::string names;
-      for (const std::string& name : massless_) names += (names.empty() ? "" : ", ") + name;
-      return Error{"no mass is given for " + names +
+      return Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
                    "; list them in a file with the columns id,mass_kg"};
     }
     WarnOfUnusedMasses();
@@ -84,9 +82,8 @@ class Maker {
     }
     for (const std::string& name : push_pattern_->names()) {
       if (pattern_.Has(name)) continue;
-      std::string known;
-      for (const std::string& one : pattern_.names()) known += (known.empty() ? "" : ", ") + one;
-      return Error{what + " has the name {" + name + "}, but the pattern has only " + known};
+      return Error{what + " has the name {" + name + "}, but the pattern has only " +
+                   ListOfNames(pattern_.names())};
     }
     return std::nullopt;
   }
@@ -129,11 +126,13 @@ class Maker {
 
   // As the manifest names it.
   std::string FromManifest(const std::string& relative) const {
-    const fs::path file = fs::path(options_.folder) / relative;
+    return BesideManifest(fs::path(options_.folder) / relative);
+  }
+  std::string BesideManifest(const fs::path& file) const {
     std::error_code failed;
     const fs::path base = fs::absolute(options_.manifest_path).parent_path();
     const fs::path path = fs::proximate(fs::absolute(file), base, failed);
-    return failed ? file.generic_string() : path.generic_string();
+    return (failed ? file : path).generic_string();
   }
 
   MaybeError AddRecording(const std::string& id, std::vector<FoundFile>* files) {
@@ -178,7 +177,7 @@ class Maker {
                    " people, so there is no person " + std::to_string(recording.pushed_person)};
     }
     SetPush(values, &recording);
-    recording.mapping = options_.mapping.empty() ? "" : MappingFromManifest();
+    recording.mapping = options_.mapping.empty() ? "" : BesideManifest(options_.mapping);
     SetAxes(&recording);
     recording.length_unit = options_.length_unit;
     recording.length_scale = options_.length_scale;
@@ -192,13 +191,6 @@ class Maker {
     if (!options_.up.empty()) recording->up = options_.up;
     if (!options_.forward.empty()) recording->forward = options_.forward;
     *recording->json = {{"up", recording->up}, {"forward", recording->forward}};
-  }
-
-  // The mapping is named from where the program runs.
-  std::string MappingFromManifest() const {
-    std::error_code failed;
-    const fs::path base = fs::absolute(options_.manifest_path).parent_path();
-    return fs::proximate(fs::absolute(options_.mapping), base, failed).generic_string();
   }
 
   double MassOf(const std::string& subject) {

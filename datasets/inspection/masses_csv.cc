@@ -10,13 +10,6 @@ namespace {
 
 constexpr char kBidsPrefix[] = "sub-";  // of participants
 
-std::vector<std::string> Cells(std::string_view line, char separator) {
-  std::vector<std::string> cells;
-  TableCells row(line, separator);
-  for (std::string_view cell; row.Next(&cell);) cells.emplace_back(Trimmed(cell));
-  return cells;
-}
-
 // Which cells hold who and how heavy.
 struct MassColumns {
   char separator = ',';
@@ -26,10 +19,10 @@ struct MassColumns {
 Result<MassColumns> ReadHead(const LineReader& reader, std::string_view line) {
   MassColumns columns;
   if (line.find('\t') == std::string_view::npos) {
-    if (Cells(line, ',') == std::vector<std::string>{"id", "mass_kg"}) return columns;
+    if (CellsOf(line, ',') == std::vector<std::string_view>{"id", "mass_kg"}) return columns;
     return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
   }
-  const std::vector<std::string> names = Cells(line, '\t');
+  const std::vector<std::string_view> names = CellsOf(line, '\t');
   const auto place = [&names](const char* name) {
     return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   };
@@ -53,11 +46,11 @@ Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
   const Result<MassColumns> columns = ReadHead(reader, line);
   if (!columns.ok()) return columns.error();
   while (reader.NextNonBlank(&line)) {
-    std::vector<std::string> cells = Cells(line, columns.value().separator);
+    std::vector<std::string_view> cells = CellsOf(line, columns.value().separator);
     cells.resize(std::max(cells.size(), columns.value().count));
-    std::string id = cells[columns.value().id];
+    std::string id(cells[columns.value().id]);
     if (id.rfind(kBidsPrefix, 0) == 0 && columns.value().separator == '\t') id.erase(0, 4);
-    const std::string& mass = cells[columns.value().mass];
+    const std::string_view mass = cells[columns.value().mass];
     double value = 0.0;
     if (!ParseDouble(mass, &value)) return reader.ErrorHere("mass_kg: " + NumberProblem(mass));
     if (!(value > 0.0 && value <= kHeaviestPerson)) {

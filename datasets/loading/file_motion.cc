@@ -29,11 +29,9 @@ std::vector<int> Wanted(const FileMotionRequest& request, const PendulumJoints& 
                         std::size_t all, FileMotion* motion) {
   std::vector<int> read(request.keep_all_joints ? all : 0);
   std::iota(read.begin(), read.end(), 0);
-  // The order of a braced list: what only the feet's steps need comes last.
-  motion->places = {Among(joints.hip, &read),         Among(joints.left_ankle, &read),
-                    Among(joints.right_ankle, &read), Among(joints.left_toe, &read),
-                    Among(joints.right_toe, &read),   Among(joints.left_heel, &read),
-                    Among(joints.right_heel, &read)};
+  for (const PendulumTrack& row : kPendulumTracks) {
+    motion->places.*row.joints = Among(joints.*row.joints, &read);
+  }
   return read;
 }
 

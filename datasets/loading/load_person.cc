@@ -178,27 +178,29 @@ class PersonLoader {
 
   // A toe or heel that is lost for long says nothing of where the foot stands.
   static void Forget(int track, PendulumJoints* places) {
-    for (std::vector<int>* place :
-         {&places->left_toe, &places->right_toe, &places->left_heel, &places->right_heel}) {
-      if (std::find(place->begin(), place->end(), track) != place->end()) place->clear();
+    for (const PendulumTrack& row : kPendulumTracks) {
+      if (!row.required && Holds(places->*row.joints, track)) (places->*row.joints).clear();
     }
   }
 
   // A marker that is never seen plays no role.
   static void ForgetRoles(int track, BodyRoles* roles) {
     for (std::vector<int>& joints : roles->joints) {
-      if (std::find(joints.begin(), joints.end(), track) != joints.end()) joints.clear();
+      if (Holds(joints, track)) joints.clear();
     }
     for (std::vector<int>* joints : {&roles->left_asis, &roles->right_asis, &roles->back}) {
-      if (std::find(joints->begin(), joints->end(), track) != joints->end()) joints->clear();
+      if (Holds(*joints, track)) joints->clear();
     }
   }
 
   static bool IsPlace(const PendulumJoints& places, int track) {
-    for (const std::vector<int>* place : {&places.hip, &places.left_ankle, &places.right_ankle}) {
-      if (std::find(place->begin(), place->end(), track) != place->end()) return true;
+    for (const PendulumTrack& row : kPendulumTracks) {
+      if (row.required && Holds(places.*row.joints, track)) return true;
     }
     return false;
+  }
+  static bool Holds(const std::vector<int>& joints, int track) {
+    return std::find(joints.begin(), joints.end(), track) != joints.end();
   }
 
   MaybeError Turn(FileMotion* motion, RecordedPerson* person) const {
@@ -225,13 +227,9 @@ class PersonLoader {
   }
 
   void Take(FileMotion& motion, RecordedPerson* person) const {
-    person->hip = Mean(motion.tracks, motion.places.hip);
-    person->left_ankle = Mean(motion.tracks, motion.places.left_ankle);
-    person->right_ankle = Mean(motion.tracks, motion.places.right_ankle);
-    person->left_toe = Mean(motion.tracks, motion.places.left_toe);
-    person->right_toe = Mean(motion.tracks, motion.places.right_toe);
-    person->left_heel = Mean(motion.tracks, motion.places.left_heel);
-    person->right_heel = Mean(motion.tracks, motion.places.right_heel);
+    for (const PendulumTrack& row : kPendulumTracks) {
+      person->*row.track = Mean(motion.tracks, motion.places.*row.joints);
+    }
     if (!options_.keep_all_joints) return;
     person->joint_names = motion.names;
     person->joint_parents = motion.parents;

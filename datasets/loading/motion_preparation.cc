@@ -7,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/tracks.h"
+#include "datasets/manifest/joint_choice.h"
 
 namespace pushid {
 namespace {
@@ -18,9 +19,9 @@ constexpr double kSlowestCutoff = 0.5;  // Hz
 // change(track) for hip, feet and, where they were kept, every joint.
 template <typename Change>
 void ForEachTrack(RecordedPerson* person, const Change& change) {
-  for (Track* track : {&person->hip, &person->left_ankle, &person->right_ankle, &person->left_toe,
-                       &person->right_toe, &person->left_heel, &person->right_heel}) {
-    if (!track->empty()) change(track);
+  for (const PendulumTrack& row : kPendulumTracks) {
+    Track& track = person->*row.track;
+    if (!track.empty()) change(&track);
   }
   if (person->joints.empty()) return;
   std::vector<Track> tracks(person->joints[0].size());

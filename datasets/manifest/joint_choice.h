@@ -7,6 +7,7 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/manifest/recording.h"
 
 namespace pushid {
 
@@ -15,6 +16,22 @@ struct PendulumJoints {
   std::vector<int> hip, left_ankle, right_ankle;
   // Of the feet, where the file has them; empty otherwise.
   std::vector<int> left_toe{}, right_toe{}, left_heel{}, right_heel{};
+};
+
+// What a person's tracks are the means of; those that only the feet's steps need come last.
+struct PendulumTrack {
+  std::vector<int> PendulumJoints::*joints;
+  std::vector<Eigen::Vector3d> RecordedPerson::*track;
+  bool required;
+};
+inline constexpr PendulumTrack kPendulumTracks[] = {
+    {&PendulumJoints::hip, &RecordedPerson::hip, true},
+    {&PendulumJoints::left_ankle, &RecordedPerson::left_ankle, true},
+    {&PendulumJoints::right_ankle, &RecordedPerson::right_ankle, true},
+    {&PendulumJoints::left_toe, &RecordedPerson::left_toe, false},
+    {&PendulumJoints::right_toe, &RecordedPerson::right_toe, false},
+    {&PendulumJoints::left_heel, &RecordedPerson::left_heel, false},
+    {&PendulumJoints::right_heel, &RecordedPerson::right_heel, false},
 };
 
 // What `mapping` names, and for the rest the defaults:

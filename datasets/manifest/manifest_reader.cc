@@ -86,10 +86,8 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
     read.person = push.Whole("person", "the index of a subject, from 0", 0, people - 1);
     read.csv = push.Text("csv", "the name of a push CSV file");
     if (!push.failed() && read.csv.empty()) push.Fail("csv", "is empty");
-    if (push.Has("start_frame")) {
-      read.start_frame =
-          push.Whole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame);
-    }
+    read.start_frame =
+        push.OptionalWhole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame, 0);
     if (!push.failed() && read.csv == recording->push_csv && read.start_frame == 0 &&
         read.person == recording->pushed_person) {
       push.Fail("csv", "is also given as push_csv; the push would count twice");
@@ -157,10 +155,8 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
   }
-  if (fields.Has("first_frame")) {
-    recording.first_frame =
-        fields.Whole("first_frame", "the file's frame that becomes frame 0", 0, kAnyFrame);
-  }
+  recording.first_frame =
+      fields.OptionalWhole("first_frame", "the file's frame that becomes frame 0", 0, kAnyFrame, 0);
   if (fields.Has("end_frame")) {
     recording.end_frame =
         fields.Whole("end_frame", "the frame after the last one used, after first_frame",

@@ -17,19 +17,9 @@ namespace {
 
 constexpr int kMinSamples = 3;
 
-std::vector<std::string_view> Fields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const size_t comma = line.find(',');
-    fields.push_back(Trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 MaybeError ParseRow(const LineReader& reader, std::string_view line,
                     const std::vector<std::string>& columns, std::vector<double>* row) {
-  const std::vector<std::string_view> fields = Fields(line);
+  const std::vector<std::string_view> fields = CellsOf(line, ',');
   if (fields.size() != columns.size()) {
     return reader.ErrorHere("the row has " + std::to_string(fields.size()) + " values, not " +
                             std::to_string(columns.size()));
@@ -79,8 +69,8 @@ Result<SensorRecord> ReadSensorCsv(const std::string& path) {
   }
   SensorRecord record;
   record.file = path;
-  std::vector<std::string> columns;
-  for (std::string_view field : Fields(line)) columns.emplace_back(field);
+  const std::vector<std::string_view> cells = CellsOf(line, ',');
+  const std::vector<std::string> columns(cells.begin(), cells.end());
   record.is_vector = columns == std::vector<std::string>{"time", "fx", "fy", "fz"};
   if (!record.is_vector && columns != std::vector<std::string>{"time", "force"}) {
     return reader.ErrorHere("the header is " + Quoted(line) +
@@ -114,10 +104,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double OptionalNumber(JsonFields* fields, const char* key, const char* what, double fallback) {
-  return fields->Has(key) ? fields->Number(key, what) : fallback;
-}
-
 void ReadDirection(JsonFields* fields, SensorChoice* sensor) {
   if (!fields->Has("direction")) return;
   const Json& value = fields->At("direction");
@@ -148,18 +134,18 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     SensorChoice sensor;
     sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
     sensor.column = fields.OptionalText("column", "");
-    sensor.gain = OptionalNumber(&fields, "gain", "the N per unit", 1.0);
+    sensor.gain = fields.OptionalNumber("gain", "the N per unit", 1.0);
     sensor.up = fields.OptionalText("up", "");
     sensor.forward = fields.OptionalText("forward", "");
     ReadDirection(&fields, &sensor);
-    sensor.height_fraction = OptionalNumber(&fields, "height", "a fraction of the rod", 1.0);
+    sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
     if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
     if (fields.Has("height") && fields.Has("height_m")) {
       fields.Fail("height", "is given together with height_m; give one of them");
     }
     if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
-    sensor.idle_force = OptionalNumber(&fields, "idle_force", "a force in N", 0.0);
-    sensor.zero_n = OptionalNumber(&fields, "zero", "what it reads at rest in N", 0.0);
+    sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
+    sensor.zero_n = fields.OptionalNumber("zero", "what it reads at rest in N", 0.0);
     if (!fields.error() && !(sensor.idle_force >= 0.0)) {
       fields.Fail("idle_force", "must be a force of at least 0 N");
     }
