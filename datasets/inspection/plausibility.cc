@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -10,7 +11,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kStrong = 1000.0;                       // N
+constexpr double kStrongPush = 1000.0;                   // N
 constexpr double kStandsOut = 3.0;                       // times the largest of the other rows
 constexpr double kShortRod = 0.6, kLongRod = 1.2;        // m
 constexpr double kSeen = 0.5;                            // s after the push began
@@ -22,10 +23,25 @@ constexpr double kElsewhere = 60.0 * M_PI / 180.0;       // rad between push and
 
 double Horizontal(const Eigen::Vector4d& row) { return row.head<2>().norm(); }
 
-std::string Case(const std::string& id, double value, const char* unit) {
-  return id + ": " + (value > 100.0 ? std::to_string(std::lround(value)) : Rounded(value, 3)) +
-         " " + unit;
-}
+double Degrees(double radians) { return std::round(radians * 180.0 / M_PI); }
+
+// What is doubted of each kind, and what to ask.
+struct Doubt {
+  const char *what, *advice;
+};
+constexpr Doubt kDoubts[] = {
+    {"the push is above 1 kN",
+     "people rarely push so hard: is its unit N, and is its window right?"},
+    {"the push's first row stands out",
+     "the person already moves when the push begins: see pushid-push --initial_velocity"},
+    {"the person moves in another direction than the push",
+     "are `up` and `forward` right, and the push's sign?"},
+    {"the person moves before being pushed", "is the push's start right, and the sensor's clock?"},
+    {"the hip is implausibly fast", "does a marker jump there, and are unit and fps right?"},
+    {"according to the ankles people do not face forward",
+     "are `up` and `forward` right, and the ankles not exchanged?"},
+    {"the distance between hip and ankles is implausible", "are `joints` and the unit right?"},
+};
 
 // rad between the push's impulse and where the hip goes; 0 where either is nothing.
 double AngleToWay(const Recording& recording, const Push& push) {
@@ -62,14 +78,10 @@ void PlausibilityCheck::Look(const Recording& recording) {
   for (const Push& push : recording.pushes) {
     double peak = 0.0;
     for (const Eigen::Vector4d& row : push.force) peak = std::max(peak, Horizontal(row));
-    if (peak > kStrong) strong_.cases.push_back(Case(recording.id, peak, "N"));
-    if (FirstRowStandsOut(push)) {
-      first_.cases.push_back(Case(recording.id, Horizontal(push.force[0]), "N"));
-    }
+    if (peak > kStrongPush) Add(kStrong, recording.id, peak, "N");
+    if (FirstRowStandsOut(push)) Add(kFirstRow, recording.id, Horizontal(push.force[0]), "N");
     const double angle = AngleToWay(recording, push);
-    if (angle > kElsewhere) {
-      way_.cases.push_back(Case(recording.id, std::round(angle * 180.0 / M_PI), "degrees off"));
-    }
+    if (angle > kElsewhere) Add(kWay, recording.id, Degrees(angle), "degrees off");
   }
   LookAtOnset(recording);
   LookAtFacing(recording);
@@ -78,7 +90,7 @@ void PlausibilityCheck::Look(const Recording& recording) {
     const double rod =
         (person.hip[0] - 0.5 * (person.left_ankle[0] + person.right_ankle[0])).norm();
     if (rod >= kShortRod && rod <= kLongRod) continue;
-    rod_.cases.push_back(recording.id + ", " + Case(person.subject_id, rod, "m"));
+    Add(kRod, recording.id + ", " + person.subject_id, rod, "m");
   }
 }
 
@@ -86,9 +98,7 @@ void PlausibilityCheck::LookAtFacing(const Recording& recording) {
   for (const RecordedPerson& person : recording.people) {
     const double facing = std::fabs(FacingAngle(person));
     if (facing <= kFacesElsewhere) continue;
-    facing_.cases.push_back(
-        recording.id + ", " +
-        Case(person.subject_id, std::round(facing * 180.0 / M_PI), "degrees off"));
+    Add(kFacing, recording.id + ", " + person.subject_id, Degrees(facing), "degrees off");
   }
 }
 
@@ -99,7 +109,7 @@ void PlausibilityCheck::LookAtOnset(const Recording& recording) {
                         [](const Push& a, const Push& b) { return a.start_frame < b.start_frame; });
   const std::vector<Eigen::Vector3d>& hip = recording.people[first.person].hip;
   const double way = (hip[first.start_frame] - hip[0]).head<2>().norm();
-  if (way > kMovedBefore) early_.cases.push_back(Case(recording.id, way, "m"));
+  if (way > kMovedBefore) Add(kEarly, recording.id, way, "m");
 }
 
 void PlausibilityCheck::LookAtSpeed(const Recording& recording, const RecordedPerson& person) {
@@ -110,17 +120,25 @@ void PlausibilityCheck::LookAtSpeed(const Recording& recording, const RecordedPe
     if (now > speed) speed = now, fastest = t;
   }
   if (speed <= kFastest) return;
-  jump_.cases.push_back(recording.id + ", frame " + std::to_string(fastest) + ", " +
-                        Case(person.subject_id, speed, "m/s"));
+  Add(kJump, recording.id + ", frame " + std::to_string(fastest) + ", " + person.subject_id, speed,
+      "m/s");
+}
+
+void PlausibilityCheck::Add(Kind kind, const std::string& who, double value, const char* unit) {
+  cases_[kind].push_back(who + ": " +
+                         (value > 100.0 ? std::to_string(std::lround(value)) : Rounded(value, 3)) +
+                         " " + unit);
 }
 
 std::vector<std::string> PlausibilityCheck::Warnings() const {
+  static_assert(std::size(kDoubts) == kNumKinds);
   std::vector<std::string> warnings;
-  for (const Doubt* doubt : {&strong_, &first_, &way_, &early_, &jump_, &facing_, &rod_}) {
-    if (doubt->cases.empty()) continue;
-    warnings.push_back(doubt->what + " in " + std::to_string(doubt->cases.size()) +
-                       (doubt->cases.size() == 1 ? " case (" : " cases (") +
-                       ListOfNames(doubt->cases) + "); " + doubt->advice);
+  for (int kind = 0; kind < kNumKinds; ++kind) {
+    const std::size_t count = cases_[kind].size();
+    if (count == 0) continue;
+    warnings.push_back(kDoubts[kind].what + (" in " + std::to_string(count)) +
+                       (count == 1 ? " case (" : " cases (") + ListOfNames(cases_[kind]) + "); " +
+                       kDoubts[kind].advice);
   }
   return warnings;
 }

@@ -1,6 +1,7 @@
 // datasets: what no recording of a pushed person should have, though every file of it can be read.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace pushid {
 // it where the person is faster at the push's begin than was assumed.
 bool FirstRowStandsOut(const Push& push);
 
-// The kinds of doubt, and which recordings they are of.
+// Doubts about recordings, by kind.
 class PlausibilityCheck {
  public:
   // Pushes above 1 kN, or whose first row stands out; a person who moves before the push, or faster
@@ -28,32 +29,14 @@ class PlausibilityCheck {
   std::vector<std::string> Warnings() const;
 
  private:
+  enum Kind { kStrong, kFirstRow, kWay, kEarly, kJump, kFacing, kRod, kNumKinds };
+
   void LookAtOnset(const Recording& recording);
   void LookAtSpeed(const Recording& recording, const RecordedPerson& person);
+  // who: the recording, or the recording and the person in it.
+  void Add(Kind kind, const std::string& who, double value, const char* unit);
 
-  struct Doubt {
-    std::string what, advice;
-    std::vector<std::string> cases;
-  };
-  Doubt strong_{"the push is above 1 kN",
-                "people rarely push so hard: is its unit N, and is its window right?",
-                {}};
-  Doubt first_{"the push's first row stands out",
-               "the person already moves when the push begins: see pushid-push --initial_velocity",
-               {}};
-  Doubt way_{"the person moves in another direction than the push",
-             "are `up` and `forward` right, and the push's sign?",
-             {}};
-  Doubt early_{"the person moves before being pushed",
-               "is the push's start right, and the sensor's clock?",
-               {}};
-  Doubt jump_{
-      "the hip is implausibly fast", "does a marker jump there, and are unit and fps right?", {}};
-  Doubt facing_{"according to the ankles people do not face forward",
-                "are `up` and `forward` right, and the ankles not exchanged?",
-                {}};
-  Doubt rod_{
-      "the distance between hip and ankles is implausible", "are `joints` and the unit right?", {}};
+  std::array<std::vector<std::string>, kNumKinds> cases_;
 };
 
 }  // namespace pushid

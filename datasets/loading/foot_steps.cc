@@ -157,10 +157,6 @@ class StepFinder {
   int frames_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 std::string StepText(const FootStep& step, double fps) {
   const std::string from = Rounded(step.lift_off / fps, 3);
   return NameOf(step.foot) +
@@ -214,8 +210,6 @@ PersonSteps FindSteps(const RecordedPerson& person, double fps) {
 }
 
 namespace {
-
-using Track = std::vector<Eigen::Vector3d>;
 
 // Mean of both feet, from the first track of each to the second, along `direction` on x.
 std::optional<double> Reach(double direction, const Track& left_ankle, const Track& left,

@@ -48,10 +48,8 @@ struct Source {
   std::vector<std::string> simplified{};
 
   bool is_bvh() const { return skeleton != nullptr; }
-  const char* noun() const { return is_bvh() ? "joint" : "point"; }
-  Error Unknown(const std::string& name) const {
-    return UnknownNameError(path, noun(), names, name);
-  }
+  std::string noun() const { return is_bvh() ? "joint" : "point"; }
+  const char* whole() const { return is_bvh() ? "skeleton" : "file"; }
 };
 
 std::vector<int> AllCalled(const Source& source, const std::string& simplified) {
@@ -62,8 +60,8 @@ std::vector<int> AllCalled(const Source& source, const std::string& simplified) 
   return found;
 }
 
-Error SeveralError(const Source& source, const char* key, const std::vector<int>& found) {
-  return {std::string(key) + " could be " + Quoted(source.names[found[0]]) + " or " +
+Error SeveralError(const Source& source, const std::string& key, const std::vector<int>& found) {
+  return {key + " could be " + Quoted(source.names[found[0]]) + " or " +
               Quoted(source.names[found[1]]) +
               "; name it in full by \"joints\" in the manifest (each subject may have its own)",
           source.path};
@@ -71,7 +69,7 @@ Error SeveralError(const Source& source, const char* key, const std::vector<int>
 
 // The first set of candidates that are all there; an empty list when there is none. Points of
 // several people that answer to the same name are an Error, joints are taken in file order.
-Result<std::vector<int>> FindDefault(const Source& source, const char* key,
+Result<std::vector<int>> FindDefault(const Source& source, const std::string& key,
                                      const std::vector<std::vector<std::string>>& candidates) {
   for (const std::vector<std::string>& set : candidates) {
     std::vector<int> chosen;
@@ -109,7 +107,7 @@ Result<std::vector<int>> DefaultHip(const Source& source) {
   return hip;
 }
 
-Result<std::vector<int>> DefaultAnkle(const Source& source, const char* key,
+Result<std::vector<int>> DefaultAnkle(const Source& source, const std::string& key,
                                       const std::string& side) {
   const std::string letter = side.substr(0, 1);
   std::vector<std::vector<std::string>> candidates;
@@ -167,20 +165,19 @@ std::vector<int> HeelOf(const Source& source, const std::string& side, const Pen
   return OfFoot(source, side, joints, ankle, {"heel", "hee", "cal", "calc"});
 }
 
-Error InJoints(const char* key, Error error) {
-  error.message = std::string("joints: ") + key + ": " + error.message;
+Error InJoints(const std::string& key, Error error) {
+  error.message = "joints: " + key + ": " + error.message;
   return error;
 }
 
 // The joint or point that one name or index means.
-Result<int> Look(const Source& source, const char* key, const JointReference& reference) {
+Result<int> Look(const Source& source, const std::string& key, const JointReference& reference) {
   const int count = static_cast<int>(source.names.size());
   if (reference.name.empty()) {
     if (reference.index >= 0 && reference.index < count) return reference.index;
     const std::string noun = source.noun();
-    return Error{std::string("joints: ") + key + " is " + noun + " " +
-                     std::to_string(reference.index) + ", but the " +
-                     (source.is_bvh() ? "skeleton" : "file") + " has " + noun + "s 0 to " +
+    return Error{"joints: " + key + " is " + noun + " " + std::to_string(reference.index) +
+                     ", but the " + source.whole() + " has " + noun + "s 0 to " +
                      std::to_string(count - 1),
                  source.path, 0};
   }
@@ -197,10 +194,10 @@ Result<int> Look(const Source& source, const char* key, const JointReference& re
   }
   if (found.size() > 1) return InJoints(key, SeveralError(source, key, found));
   if (found.size() == 1) return found[0];
-  return InJoints(key, source.Unknown(reference.name));
+  return InJoints(key, UnknownNameError(source.path, source.noun(), source.names, reference.name));
 }
 
-Result<std::vector<int>> Meant(const Source& source, const char* key,
+Result<std::vector<int>> Meant(const Source& source, const std::string& key,
                                const JointReference& reference) {
   std::vector<int> chosen;
   const std::vector<JointReference> single = {reference};
@@ -212,43 +209,42 @@ Result<std::vector<int>> Meant(const Source& source, const char* key,
   return chosen;
 }
 
-// What `reference` means, or else `fallback`; an Error when there is neither.
-Result<std::vector<int>> Choose(const Source& source, const char* key,
-                                const std::optional<JointReference>& reference,
-                                const Result<std::vector<int>>& fallback) {
-  if (!reference) {
-    if (!fallback.ok() || !fallback.value().empty()) return fallback;
-    const std::string noun = source.noun();
-    return Error{"no " + noun + " could be recognised as " + key +
-                     "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
-                     "\"right_ankle\": ...}; the " +
-                     (source.is_bvh() ? "skeleton" : "file") + " has " +
-                     ListOfNames(source.names, kNamesInErrors, noun + "s"),
-                 source.path};
-  }
-  return Meant(source, key, *reference);
+// What `reference` means, otherwise the role's default, which is only looked for where it is
+// wanted: it may be ambiguous. An Error when there is neither.
+Result<std::vector<int>> Choose(const Source& source, int role,
+                                const std::optional<JointReference>& reference) {
+  const std::string& key = RoleName(role);
+  if (reference) return Meant(source, key, *reference);
+  const Result<std::vector<int>> found =
+      role == kBodyHip ? DefaultHip(source)
+                       : DefaultAnkle(source, key, role == kLeftAnkle ? "left" : "right");
+  if (!found.ok() || !found.value().empty()) return found;
+  const std::string noun = source.noun();
+  return Error{"no " + noun + " could be recognised as " + key +
+                   "; name it in the manifest: \"joints\": {\"hip\": ..., \"left_ankle\": ..., "
+                   "\"right_ankle\": ...}; the " +
+                   source.whole() + " has " + ListOfNames(source.names, kNamesInErrors, noun + "s"),
+               source.path};
 }
 
 Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
   for (const std::string& name : source.names) source.simplified.push_back(SimplifiedName(name));
-  const std::vector<int> unneeded = {0};
-  // A default is only looked for where it is wanted: it may be ambiguous.
-  const Result<std::vector<int>> hip =
-      Choose(source, "hip", mapping.hip, mapping.hip ? unneeded : DefaultHip(source));
-  if (!hip.ok()) return hip.error();
-  const Result<std::vector<int>> left =
-      Choose(source, "left_ankle", mapping.left_ankle,
-             mapping.left_ankle ? unneeded : DefaultAnkle(source, "left_ankle", "left"));
-  if (!left.ok()) return left.error();
-  const Result<std::vector<int>> right =
-      Choose(source, "right_ankle", mapping.right_ankle,
-             mapping.right_ankle ? unneeded : DefaultAnkle(source, "right_ankle", "right"));
-  if (!right.ok()) return right.error();
-  PendulumJoints joints{hip.value(), left.value(), right.value()};
+  const struct {
+    int role;
+    std::vector<int> PendulumJoints::*place;
+  } required[] = {{kBodyHip, &PendulumJoints::hip},
+                  {kLeftAnkle, &PendulumJoints::left_ankle},
+                  {kRightAnkle, &PendulumJoints::right_ankle}};
+  PendulumJoints joints;
+  for (const auto& [role, place] : required) {
+    Result<std::vector<int>> chosen = Choose(source, role, mapping.Of(role));
+    if (!chosen.ok()) return chosen.error();
+    joints.*place = std::move(chosen.value());
+  }
   if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
       joints.left_ankle == joints.right_ankle) {
-    return Error{std::string("hip, left_ankle and right_ankle must be three different ") +
-                     source.noun() + "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
+    return Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
+                     "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
                      Quoted(source.names[joints.left_ankle[0]]) + " and " +
                      Quoted(source.names[joints.right_ankle[0]]) +
                      "; name them by \"joints\" in the manifest",
@@ -261,7 +257,7 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
                 is_left ? joints.left_ankle : joints.right_ankle);
     const std::optional<JointReference> named = mapping.Of(role);
     if (!named) continue;
-    Result<std::vector<int>> meant = Meant(source, RoleName(role).c_str(), *named);
+    Result<std::vector<int>> meant = Meant(source, RoleName(role), *named);
     if (!meant.ok()) return meant.error();
     toe = std::move(meant.value());
   }
@@ -284,7 +280,7 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
 }
 
 Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const char* key,
+                                     const BvhSkeleton* skeleton, const std::string& key,
                                      const JointReference& reference) {
   return Meant({path, names, skeleton}, key, reference);
 }

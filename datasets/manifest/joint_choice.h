@@ -64,7 +64,7 @@ Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
 // The joint or point that one reference means, or all whose mean it is; skeleton: null for points.
 // `key` is what it stands under, for messages.
 Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const char* key,
+                                     const BvhSkeleton* skeleton, const std::string& key,
                                      const JointReference& reference);
 
 // "mixamorig:Left_Foot" without what stands before a colon, in small letters and digits alone:

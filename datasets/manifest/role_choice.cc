@@ -209,8 +209,7 @@ Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::st
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> reference = mapping.Of(role);
     if (!reference) continue;
-    Result<std::vector<int>> meant =
-        JointsMeant(path, names, skeleton, RoleName(role).c_str(), *reference);
+    Result<std::vector<int>> meant = JointsMeant(path, names, skeleton, RoleName(role), *reference);
     if (!meant.ok()) return meant.error();
     given.joints[role] = std::move(meant.value());
   }
