@@ -92,20 +92,6 @@ std::vector<TimedForce> PushesOn(const Recording& recording, int person) {
   return pushes;
 }
 
-// What is known besides the files, for the new manifest.
-ManifestRecording EntryOf(const Recording& recording) {
-  ManifestRecording entry;
-  entry.id = recording.id;
-  entry.labels = recording.labels;
-  entry.fps = recording.fps;
-  entry.frames = recording.num_frames();
-  entry.pushed_person = recording.pushed_person;
-  entry.motion_format = MotionFormat::kBids;
-  entry.push_kind = recording.push_kind;
-  entry.initial_velocity = recording.initial_velocity;
-  return entry;
-}
-
 MaybeError WriteRecording(const std::string& folder, const Recording& recording,
                           ManifestRecording* entry) {
   for (std::size_t n = 0; n < recording.people.size(); ++n) {
@@ -169,6 +155,7 @@ MaybeError WriteBidsDataset(const std::string& folder, const std::vector<Recordi
   manifest.length_unit = LengthUnit::kMetre;
   for (const Recording& recording : recordings) {
     manifest.recordings.push_back(EntryOf(recording));
+    manifest.recordings.back().motion_format = MotionFormat::kBids;
     if (MaybeError failed = WriteRecording(folder, recording, &manifest.recordings.back())) {
       return failed;
     }

@@ -1,4 +1,4 @@
-// datasets: a crowd's frame as a formation.
+// datasets: crowds as formations, hips as crowds.
 #include "datasets/exchange/crowd.h"
 
 #include <algorithm>

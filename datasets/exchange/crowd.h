@@ -1,4 +1,5 @@
-// datasets: where people of a crowd stand in one frame of its trajectories.
+// datasets: crowds, a point a person: where people stand in one frame of a file, and
+// recordings as trajectories for PedPy and JuPedSim.
 #pragma once
 
 #include <Eigen/Core>

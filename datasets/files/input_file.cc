@@ -1,4 +1,4 @@
-// datasets: reading files in pieces.
+// datasets: files read in pieces, and hashed.
 #include "datasets/files/input_file.h"
 
 #include <fcntl.h>

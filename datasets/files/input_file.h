@@ -23,6 +23,9 @@ class ContentHash {
   ContentHash& operator=(const ContentHash&) = delete;
 
   void Add(std::string_view bytes);
+  void Add(const double* numbers, std::size_t count) {
+    Add({reinterpret_cast<const char*>(numbers), count * sizeof(double)});
+  }
   std::string Hex() const;  // 32 lower-case hexadecimal digits, as `xxh128sum` prints them
 
  private:

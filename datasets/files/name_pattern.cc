@@ -1,4 +1,4 @@
-// datasets: naming patterns of recordings.
+// datasets: naming patterns, and the files that fit them.
 #include "datasets/files/name_pattern.h"
 
 #include <algorithm>

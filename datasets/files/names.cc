@@ -1,4 +1,4 @@
-// datasets: names of a file's parts, as messages list them.
+// datasets: names, listed and guessed.
 #include "datasets/files/names.h"
 
 #include <algorithm>

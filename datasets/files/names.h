@@ -1,4 +1,5 @@
-// datasets: names of a file's parts, as messages list them.
+// datasets: names: of a file's parts as messages list them, of choices as flags and files
+// spell them, and what a misspelt one was meant to be.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// datasets: numbers from and to text, independent of the locale.
+// datasets: numbers and cells of text.
 #include "datasets/files/number_text.h"
 
 #include <algorithm>

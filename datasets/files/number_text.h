@@ -1,4 +1,5 @@
-// datasets: numbers from and to text, independent of the locale.
+// datasets: numbers from and to text, independent of the locale; rows of text tables in
+// cells.
 #pragma once
 
 #include <cstdint>

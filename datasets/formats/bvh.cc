@@ -1,4 +1,4 @@
-// datasets: BVH motions as data.
+// datasets: BVH motions as data, and their forward kinematics.
 #include "datasets/formats/bvh.h"
 
 #include <cmath>

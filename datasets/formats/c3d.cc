@@ -1,4 +1,4 @@
-// datasets: C3D files as data; their events and force platforms.
+// datasets: C3D files as data: points, events, force platforms, poses of segments.
 #include "datasets/formats/c3d.h"
 
 #include <Eigen/LU>

@@ -1,4 +1,4 @@
-// datasets: trajectories of named points.
+// datasets: trajectories of named points, and those in tables.
 #include "datasets/formats/point_motion.h"
 
 #include <limits>

@@ -1,4 +1,4 @@
-// datasets: trajectories as text.
+// datasets: trajectories of crowds: rows collected, and files of text.
 #include "datasets/formats/trajectories.h"
 
 #include <algorithm>

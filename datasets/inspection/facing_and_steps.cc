@@ -1,4 +1,4 @@
-// datasets: where a person faces.
+// datasets: where a person of a file faces and steps.
 #include "datasets/inspection/facing_and_steps.h"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// datasets: where a person faces in the file's axes.
+// datasets: where a person faces in the file's axes, and the steps of their feet.
 #pragma once
 
 #include <Eigen/Core>

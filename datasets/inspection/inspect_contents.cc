@@ -1,4 +1,4 @@
-// datasets: forces of files, inspected.
+// datasets: forces, crowds and manifests, inspected.
 #include "datasets/inspection/inspect_contents.h"
 
 #include <algorithm>

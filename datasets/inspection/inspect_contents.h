@@ -1,4 +1,4 @@
-// datasets: the forces in a file, for its inspection.
+// datasets: what a file holds besides one person's motion: forces, a crowd, a manifest.
 #pragma once
 
 #include <string>

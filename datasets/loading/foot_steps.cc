@@ -1,4 +1,4 @@
-// datasets: which foot leaves the ground, when, and how far off it lands.
+// datasets: steps of the feet, and how far their support reaches.
 #include "datasets/loading/foot_steps.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// datasets: what is done to a motion between the file and the fit.
+// datasets: what is done to a motion between the file and the fit, and whether it can be a
+// person at all.
 #pragma once
 
 #include "datasets/files/error.h"

@@ -8,27 +8,23 @@
 namespace pushid {
 namespace {
 
-void AddNumbers(const double* numbers, size_t count, ContentHash* hash) {
-  hash->Add({reinterpret_cast<const char*>(numbers), count * sizeof(double)});
-}
-
 // Of the files and of what the manifest makes of them: masses, units, rate, pushes.
 std::string HashOf(const PendulumRecording& recording, const std::string& files) {
   ContentHash hash;
   hash.Add(files);
-  AddNumbers(&recording.scene.dt, 1, &hash);
+  hash.Add(&recording.scene.dt, 1);
   for (int n = 0; n < recording.num_people(); ++n) {
     const ScenePerson& person = recording.scene.people[n];
     const double body[] = {person.body.mass, person.body.rod_length, person.body.cart_height};
-    AddNumbers(body, 3, &hash);
-    AddNumbers(person.start.qd.data(), 4, &hash);
-    for (const Vector3<double>& hip : recording.hip[n]) AddNumbers(hip.data(), 3, &hash);
+    hash.Add(body, 3);
+    hash.Add(person.start.qd.data(), 4);
+    for (const Vector3<double>& hip : recording.hip[n]) hash.Add(hip.data(), 3);
   }
   for (const ScenePush& push : recording.scene.pushes) {
     const double kind[] = {static_cast<double>(push.person), static_cast<double>(push.start_frame),
                            static_cast<double>(push.kind)};
-    AddNumbers(kind, 3, &hash);
-    for (const Vector4<double>& row : push.force) AddNumbers(row.data(), 4, &hash);
+    hash.Add(kind, 3);
+    for (const Vector4<double>& row : push.force) hash.Add(row.data(), 4);
   }
   return hash.Hex();
 }

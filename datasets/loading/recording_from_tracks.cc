@@ -20,9 +20,7 @@ Error Of(const std::string& id, const std::string& what) {
 
 template <typename Rows>
 void AddRows(const Rows& rows, ContentHash* hash) {
-  for (const auto& row : rows) {
-    hash->Add({reinterpret_cast<const char*>(row.data()), row.size() * sizeof(double)});
-  }
+  for (const auto& row : rows) hash->Add(row.data(), row.size());
 }
 
 Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::string& id) {

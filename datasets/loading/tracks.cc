@@ -1,4 +1,4 @@
-// datasets: gaps in tracks.
+// datasets: gaps, filter and frame rate of tracks.
 #include "datasets/loading/tracks.h"
 
 #include <algorithm>
@@ -61,8 +61,6 @@ GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>
 }
 
 namespace {
-
-using Eigen::Vector3d;
 
 constexpr double kPi = 3.14159265358979323846;
 

@@ -1,4 +1,4 @@
-// datasets: gaps in tracks: frames in which a marker was not seen.
+// datasets: tracks of positions: their gaps, a low-pass filter, another frame rate.
 #pragma once
 
 #include <Eigen/Core>

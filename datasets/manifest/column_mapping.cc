@@ -1,4 +1,4 @@
-// datasets: mapping files.
+// datasets: mapping files, and what they share with manifests.
 #include "datasets/manifest/column_mapping.h"
 
 #include <nlohmann/json.hpp>

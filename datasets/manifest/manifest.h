@@ -108,6 +108,9 @@ struct ManifestRecording {
   KeptJson json{};
 };
 
+// What a recording says of itself; subjects, files and pushes are the caller's.
+ManifestRecording EntryOf(const Recording& recording);
+
 struct Manifest {
   std::string path;  // the file (or files) it was read from, for messages
   // For recordings that do not give their own.

@@ -121,6 +121,18 @@ Json RecordingJson(const ManifestRecording& recording) {
 
 }  // namespace
 
+ManifestRecording EntryOf(const Recording& recording) {
+  ManifestRecording entry;
+  entry.id = recording.id;
+  entry.labels = recording.labels;
+  entry.fps = recording.fps;
+  entry.frames = recording.num_frames();
+  entry.pushed_person = recording.pushed_person;
+  entry.push_kind = recording.push_kind;
+  entry.initial_velocity = recording.initial_velocity;
+  return entry;
+}
+
 MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
   Json json = manifest.json->is_object() ? *manifest.json : Json::object();
   if (manifest.length_unit) {

@@ -1,4 +1,4 @@
-// datasets: which of a manifest's recordings a run uses.
+// datasets: manifests merged, and recordings selected.
 #include "datasets/manifest/select_recordings.h"
 
 #include <algorithm>

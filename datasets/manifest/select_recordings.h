@@ -1,4 +1,4 @@
-// datasets: which of a manifest's recordings a run uses.
+// datasets: which recordings a run uses, of one manifest or of several.
 #pragma once
 
 #include <string>

@@ -23,6 +23,12 @@ Error NoColumn(const SensorChoice& choice, const char* noun,
   return UnknownNameError(choice.file, noun, names, choice.column);
 }
 
+std::vector<std::string> ChannelNames(const C3dFile& file) {
+  std::vector<std::string> names;
+  for (const C3dAnalogChannel& channel : file.analog) names.push_back(channel.name);
+  return names;
+}
+
 // The column of this name, or the three whose common part it is; empty: none.
 std::vector<int> ColumnsCalled(const std::string& name, const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -50,51 +56,39 @@ MaybeError TakeForces(const SensorChoice& choice, const NumericTable& table, std
   return std::nullopt;
 }
 
-// Times and values of a column or three.
-Result<SensorRecord> FromTable(const SensorChoice& choice, TableFormat format) {
+// A column or three of a table, or of the channels of a Motion-BIDS file ("cell" for cell_x,
+// cell_y, cell_z), whose clock starts with the file.
+Result<SensorRecord> FromTable(const SensorChoice& choice, MotionFormat format) {
+  const bool bids = format == MotionFormat::kBids;
   std::vector<int> columns;
   int time = -1;
   TableReadOptions options;
   options.keep_lines = true;
   options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    time = FindTimeColumn(names, "");
-    if (time < 0) return Error{"there is no column called time", choice.file};
+    if (!bids) time = FindTimeColumn(names, "");
+    if (!bids && time < 0) return Error{"there is no column called time", choice.file};
     columns = ColumnsCalled(choice.column, names);
-    if (columns.empty()) return NoColumn(choice, "column", names);
+    if (columns.empty()) return NoColumn(choice, bids ? "channel" : "column", names);
     std::vector<int> wanted = columns;
-    wanted.push_back(time);
+    if (!bids) wanted.push_back(time);
     return wanted;
   };
-  const Result<NumericTable> table = ReadNumericTable(choice.file, format, options);
-  if (!table.ok()) return table.error();
-  SensorRecord record;
-  record.time_s = table.value().data.back();
-  const Result<double> step = EvenTimeStep(table.value(), time);
-  if (!step.ok()) return step.error();
-  if (MaybeError failed = TakeForces(choice, table.value(), columns.size(), &record)) {
-    return *std::move(failed);
-  }
-  return record;
-}
-
-// A channel of a Motion-BIDS file, or three: "cell" for cell_x, cell_y, cell_z. Its clock starts
-// with the file.
-Result<SensorRecord> FromBids(const SensorChoice& choice) {
-  const Result<BidsHeader> header = ReadBidsHeader(choice.file);
+  const Result<BidsHeader> header = bids ? ReadBidsHeader(choice.file) : BidsHeader{};
   if (!header.ok()) return header.error();
-  std::vector<int> columns;
-  TableReadOptions options;
-  options.keep_lines = true;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    columns = ColumnsCalled(choice.column, names);
-    if (columns.empty()) return NoColumn(choice, "channel", names);
-    return columns;
-  };
-  const Result<NumericTable> table = ReadBidsTable(choice.file, header.value(), options);
+  const Result<NumericTable> table =
+      bids
+          ? ReadBidsTable(choice.file, header.value(), options)
+          : ReadNumericTable(choice.file, RowOf(format).table.value_or(TableFormat::kCsv), options);
   if (!table.ok()) return table.error();
   SensorRecord record;
-  for (int row = 0; row < table.value().num_rows(); ++row) {
-    record.time_s.push_back(row / header.value().rate_hz);
+  if (bids) {
+    for (int row = 0; row < table.value().num_rows(); ++row) {
+      record.time_s.push_back(row / header.value().rate_hz);
+    }
+  } else {
+    record.time_s = table.value().data.back();
+    const Result<double> step = EvenTimeStep(table.value(), time);
+    if (!step.ok()) return step.error();
   }
   if (MaybeError failed = TakeForces(choice, table.value(), columns.size(), &record)) {
     return *std::move(failed);
@@ -114,7 +108,7 @@ Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
   } else if (format == MotionFormat::kC3d) {
     const Result<C3dFile> file = ReadC3d(choice.file);
     if (!file.ok()) return file.error();
-    for (const C3dAnalogChannel& channel : file.value().analog) names.push_back(channel.name);
+    names = ChannelNames(file.value());
     for (std::size_t i = 0; i < file.value().platforms.size(); ++i) {
       names.push_back(kPlatform + std::to_string(i + 1));
     }
@@ -166,9 +160,7 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
   } else {
     const int channel = file.FindAnalog(choice.column);
     if (channel < 0) {
-      std::vector<std::string> names;
-      for (const C3dAnalogChannel& one : file.analog) names.push_back(one.name);
-      return NoColumn(choice, "analog channel", names);
+      return NoColumn(choice, "analog channel", ChannelNames(file));
     }
     for (double sample : file.analog[channel].samples) record.force.push_back({sample, 0.0, 0.0});
   }
@@ -203,11 +195,10 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
   if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
     return Error{"the gain of a sensor must be a number of N per unit other than 0"};
   }
-  Result<SensorRecord> record =
-      format == MotionFormat::kC3d    ? FromC3d(choice, rotation.value().row(2).transpose())
-      : format == MotionFormat::kBids ? FromBids(choice)
-      : choice.column.empty()         ? ReadSensorCsv(choice.file)
-                              : FromTable(choice, RowOf(format).table.value_or(TableFormat::kCsv));
+  Result<SensorRecord> record = format == MotionFormat::kC3d
+                                    ? FromC3d(choice, rotation.value().row(2).transpose())
+                                : choice.column.empty() ? ReadSensorCsv(choice.file)
+                                                        : FromTable(choice, format);
   if (!record.ok()) return record;
   record.value().file = choice.file;
   if (choice.zero_n != 0.0 && record.value().is_vector) {

@@ -1,4 +1,4 @@
-// datasets: the record of a force sensor as a CSV file.
+// datasets: records of force sensors as CSV files, and lists of sensors.
 #include "datasets/sensors/sensor_csv.h"
 
 #include <algorithm>

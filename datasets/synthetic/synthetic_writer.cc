@@ -32,18 +32,11 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
                         const std::string& csv) {
   const Recording& recording = made.recording;
   const std::vector<BvhJoint> joints = made.skeletons[0].Bvh(kUnit).joints;
-  ManifestRecording entry;
-  entry.id = recording.id;
-  entry.labels = recording.labels;
-  entry.fps = recording.fps;
+  ManifestRecording entry = EntryOf(recording);
   for (const RecordedPerson& person : recording.people) {
     entry.subjects.push_back({person.subject_id, person.mass_kg});
   }
-  entry.pushed_person = recording.pushed_person;
   entry.motion = bvh;
-  entry.push_kind = recording.push_kind;
-  entry.initial_velocity = recording.initial_velocity;
-  entry.frames = recording.num_frames();
   entry.joints.hip = JointReference{joints[kHipJoint].name};
   entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
   entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};

@@ -101,10 +101,8 @@ MaybeError WriteFormationTrajectories(const std::string& path, const FormationRu
   PointMotion motion;
   motion.rate_hz = 1.0 / run.recording.scene.dt;
   motion.names = run.recording.subject_ids;
-  for (int n = 0; n < run.num_people(); ++n) {
-    motion.chosen.push_back(n);
-    motion.positions.push_back(run.prediction.hip[n]);
-  }
+  motion.positions = run.prediction.hip;
+  ChoosePoints({}, &motion);
   return WriteTrajectories(path, motion);
 }
 
