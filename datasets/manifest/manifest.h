@@ -6,28 +6,11 @@
 //     "bvh": ["bvh/s1_00.bvh"], "push_csv": "push/s1_00.csv",
 //     "push_kind": "external", "magnitude": "weak"}]}
 //
-// Required per recording: id, setting, subjects (id, mass_kg), pushed_person, bvh; all
-// that are missing are told of in one error. fps may be left out where the motion's file says its
-// rate (BVH's frame time, C3D's and TRC's rate, a column of times) or a mapping gives it; a file's
-// rate is read as the whole number that it most likely means (units.h). A given fps wins over
-// the file, with a warning where they differ by more than 0.1 %.
-// Optional: push_csv (none: no push known), push_kind (net, net_without_friction, external; default
-// external), joints {hip, left_ankle, right_ankle and other roles of body_roles.h} by name or
-// index, up and forward (axes of the BVH such as "z", "+x", "-y"; default z and x), length_unit
-// (mm, cm, m) or length_scale (m), pushes [{person, csv, start_frame}] in addition to push_csv,
-// initial_velocity (zero, estimated, free; default zero), magnitude (label of the push's
-// strength), condition (of the protocol; condition_code in older files), frames; any other text is
-// a label, too. At the top: length_unit, units.bvh_length or length_scale
-// for all recordings.
-//
-// Instead of bvh the motion may stand under c3d, trc, csv or sto (which takes .mot too), as a list
-// with one file per subject; the same file may be named for several. A joint may then be a list of
-// markers whose mean it is: "hip": ["LASI", "RASI", "LPSI", "RPSI"]. A subject may have joints of
-// its own; mapping names a file (column_mapping.h) with joints, columns, unit, axes and rate for
-// recordings that share them. first_frame and end_frame (the one behind the last) cut the motion;
-// frames of pushes count from first_frame.
-// Paths are relative to the manifest. Keys not listed here are kept when a manifest is written
-// again.
+// The room's README has the table of its keys: which are required, and what the others default to.
+// All required keys that are missing are told of in one error. A given fps wins over the file, with
+// a warning where they differ by more than 0.1 %; keys that no program knows are kept when a
+// manifest is written again, and count as labels where they are texts. Older manifests give the
+// unit for all recordings as units.bvh_length, and `condition` as condition_code.
 #pragma once
 
 #include <map>
