@@ -21,8 +21,7 @@ constexpr double kWalked = 0.3;    // m; less has no direction
 // The axis nearest to the rod.
 Eigen::Vector3d UpOf(const Eigen::Vector3d& rod) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
-  int axis = 0;
-  rod.cwiseAbs().maxCoeff(&axis);
+  const int axis = LargestAxis(rod);
   up[axis] = rod[axis] < 0.0 ? -1.0 : 1.0;
   return up;
 }

@@ -13,6 +13,19 @@
 
 namespace pushid {
 
+// The axis that a direction is nearest to.
+inline int LargestAxis(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+// "-y": the same with its sign.
+inline std::string AxisName(const Eigen::Vector3d& direction) {
+  const int axis = LargestAxis(direction);
+  return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+}
+
 // Two points of the pelvis, one on each side, as indices; empty where there are none.
 struct PelvisSides {
   std::vector<int> left{}, right{};

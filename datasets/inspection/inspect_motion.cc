@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/inspection/facing_and_steps.h"
@@ -25,10 +26,10 @@ constexpr std::size_t kNamed = 4;       // points named in a warning
 
 std::string Seconds(double s) { return Rounded(s, 3) + " s"; }
 
-std::string AxisName(const Eigen::Vector3d& direction) {
-  int axis = 0;
-  direction.cwiseAbs().maxCoeff(&axis);
-  return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+std::string SomeOf(std::vector<std::string> texts) {
+  const bool more = texts.size() > kNamed;
+  if (more) texts.resize(kNamed);
+  return ListOfNames(texts) + (more ? ", ..." : "");
 }
 
 class MotionInspector {
@@ -82,13 +83,12 @@ class MotionInspector {
     if (hidden.empty()) return;
     std::stable_sort(hidden.begin(), hidden.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
-    std::string text;
-    for (std::size_t i = 0; i < std::min(kNamed, hidden.size()); ++i) {
-      text += (i > 0 ? ", " : "") + hidden[i].second + " " + std::to_string(hidden[i].first);
-    }
+    std::vector<std::string> texts;
+    for (const auto& [missing, name] : hidden)
+      texts.push_back(name + " " + std::to_string(missing));
     found_.Warn("gaps in " + std::to_string(hidden.size()) + " of " +
-                std::to_string(motion_.positions.size()) + " points; frames not seen: " + text +
-                (hidden.size() > kNamed ? ", ..." : ""));
+                std::to_string(motion_.positions.size()) +
+                " points; frames not seen: " + SomeOf(texts));
   }
 
   void Body(const PendulumJoints& joints) {
@@ -134,13 +134,14 @@ class MotionInspector {
       for (int index : chosen) text += (text.empty() ? "" : " + ") + motion_.names[index];
       return text;
     };
+    const auto both = [&](const char* what, const std::vector<int>& left,
+                          const std::vector<int>& right) {
+      if (left.empty() || right.empty()) return;
+      found_.Fact(what, names(left) + " (left), " + names(right) + " (right)");
+    };
     found_.Fact("hip", names(joints.hip));
-    found_.Fact("ankles",
-                names(joints.left_ankle) + " (left), " + names(joints.right_ankle) + " (right)");
-    if (!joints.left_toe.empty() && !joints.right_toe.empty()) {
-      found_.Fact("toes",
-                  names(joints.left_toe) + " (left), " + names(joints.right_toe) + " (right)");
-    }
+    both("ankles", joints.left_ankle, joints.right_ankle);
+    both("toes", joints.left_toe, joints.right_toe);
     for (const std::vector<int>* place : {&joints.hip, &joints.left_ankle, &joints.right_ankle}) {
       for (int index : *place) {
         if (const int longest = LongestHidden(motion_, {index}); longest > 0) {
@@ -237,8 +238,7 @@ class MotionInspector {
 
   // The hip's first 2 cm across the up axis, as the propagation of pushes counts it.
   void Onset(int first, const Eigen::Vector3d& rod) {
-    int axis = 0;
-    rod.cwiseAbs().maxCoeff(&axis);
+    const int axis = LargestAxis(rod);
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
     for (std::size_t t = first; t < found_.hip.size(); ++t) {
       Eigen::Vector3d across = found_.hip[t];
@@ -264,8 +264,7 @@ class MotionInspector {
   // From frame to frame of the same point, where metres are known.
   void Jumps() {
     if (metres_ == 0.0 || !(motion_.rate_hz > 0.0)) return;
-    int points = 0;
-    std::string text;
+    std::vector<std::string> jumps;
     for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
       const Track& track = motion_.positions[i];
       double largest = 0.0;
@@ -275,14 +274,11 @@ class MotionInspector {
         if (way > largest) largest = way, where = t;  // false for NaN
       }
       if (largest * motion_.rate_hz < kJumpSpeed || largest < kSmallestJump) continue;
-      if (++points <= static_cast<int>(kNamed)) {
-        text += (text.empty() ? "" : ", ") + motion_.names[motion_.chosen[i]] + " " +
-                Rounded(largest, 3) + " m at frame " + std::to_string(where);
-      }
+      jumps.push_back(motion_.names[motion_.chosen[i]] + " " + Rounded(largest, 3) +
+                      " m at frame " + std::to_string(where));
     }
-    if (points > 0) {
-      found_.Warn("jumps in " + std::to_string(points) + " points: " + text +
-                  (points > static_cast<int>(kNamed) ? ", ..." : ""));
+    if (!jumps.empty()) {
+      found_.Warn("jumps in " + std::to_string(jumps.size()) + " points: " + SomeOf(jumps));
     }
   }
 
