@@ -72,10 +72,11 @@ MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
     if (!restoration.ok()) return restoration.error();
     loaded->restoration = std::move(restoration.value());
   }
-  std::printf("selected by cross-validation: %s\n",
-              restores
-                  ? "physics and restored bodies"
-                  : ("diffusion, blended " + Rounded(choice->blend, 3) + " with physics").c_str());
+  std::printf(
+      "selected by cross-validation: %s\n",
+      restores ? "physics and restored bodies"
+               : (NameOf(loaded->kind) + ", blended " + Rounded(choice->blend, 3) + " with physics")
+                     .c_str());
   return std::nullopt;
 }
 
@@ -145,7 +146,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   const auto bodies = GenerateWith(loaded, recording, physics, flags.frames);
   if (!bodies.ok()) return bodies.error();
   Animation animation;
-  animation.title = recording.pendulum.id + ", diffusion";
+  animation.title = recording.pendulum.id + ", " + NameOf(loaded.kind);
   animation.dt = recording.pendulum.scene.dt;
   AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
   AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);

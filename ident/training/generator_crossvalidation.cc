@@ -180,12 +180,13 @@ Result<std::vector<ForecastCandidate>> CompareForecasts(
                                         of_generator.folds, progress);
   if (!chain.ok()) return chain.error();
   const BodyEvaluation& scores = generator.value().evaluation;
-  std::vector<ForecastCandidate> candidates = {{"diffusion", {}, scores.at("generator")},
+  const std::string kind = NameOf(options.generator.kind);
+  std::vector<ForecastCandidate> candidates = {{kind, {}, scores.at("generator")},
                                                {"physics, restored bodies",
                                                 {ForecastBy::kRestoration, 0.0},
                                                 chain.value().evaluation.at("restoration")}};
   for (const double blend : of_generator.blends) {
-    candidates.push_back({"diffusion, blended " + Rounded(blend, 3) + " with physics",
+    candidates.push_back({kind + ", blended " + Rounded(blend, 3) + " with physics",
                           {ForecastBy::kGenerator, blend},
                           scores.at(BlendName(blend))});
   }
