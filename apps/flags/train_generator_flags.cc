@@ -140,7 +140,7 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
         OfOtherKinds(kind),
         groups ? MaybeError()
                : refuse({"physics", "blend", "pendulum_input", "samples", "accuracy"},
-                        "--kind=" + GeneratorKindNames(" or ", true)),
+                        "--kind=" + KindsOfGroups()),
         FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
         FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
     if (error) return error;

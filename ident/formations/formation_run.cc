@@ -190,7 +190,7 @@ MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
     return Error{"--" + flag + " names a generator of " + NameOf(loaded->kind) +
                  ", whose people do not interact: only the pushed would move; give one that "
                  "pushid-train-generator --kind=" +
-                 GeneratorKindNames(" or ", true) + " wrote"};
+                 KindsOfGroups() + " wrote"};
   }
   if (!AtRateOf(settings, scene.dt)) {
     return Error{"--" + flag + " names a generator that was trained at " +

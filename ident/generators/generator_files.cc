@@ -19,6 +19,14 @@ constexpr int kMostParticles = 1000;
 
 bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
+std::string KindNames() {
+  std::string names;
+  for (const std::string& name : AllNames<GeneratorKind>()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  return names;
+}
+
 Json LayoutJson(const ParticleLayout& layout) {
   Json particles = Json::array();
   for (int i = 0; i < layout.num_particles(); ++i) {
@@ -110,15 +118,6 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
 
 }  // namespace
 
-std::string GeneratorKindNames(const char* between, bool of_groups) {
-  std::string names;
-  for (const GeneratorKindRow& row : kGeneratorKinds) {
-    if (of_groups && !row.groups) continue;
-    names += (names.empty() ? "" : between) + std::string(row.name);
-  }
-  return names;
-}
-
 int ReadMembers(const Json& json) {
   constexpr int kMostMembers = 100;
   const int members = json.at("members");
@@ -140,7 +139,7 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
 Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
                                       const char* flag) {
   const Result<TensorFolder> read =
-      ReadTensorFolder(GeneratorFolder(flag), folder, GeneratorKindNames(", "), IsKind);
+      ReadTensorFolder(GeneratorFolder(flag), folder, KindNames(), IsKind);
   if (!read.ok()) return read.error();
   const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
   TensorReader reader(read.value().tensors);

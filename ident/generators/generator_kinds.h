@@ -9,7 +9,6 @@
 // table links what stands in it.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <iterator>
 #include <memory>
@@ -70,8 +69,8 @@ using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
 GeneratorReader ReadParticles, ReadDiffusion;
 
 struct GeneratorKindRow {
-  GeneratorKind kind;
   const char* name;
+  GeneratorKind value;
   const char* what;  // for the list of kinds on the command line
   // People of a call see each other: whole groups that are pushed, which physics may blend with.
   // Otherwise it forecasts people one by one, and motion capture too.
@@ -83,11 +82,14 @@ struct GeneratorKindRow {
 };
 
 inline constexpr GeneratorKindRow kGeneratorKinds[] = {
-    {GeneratorKind::kParticles, "particles", "displacements with learned drift and noise", false,
+    {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false,
      false, 20, 3, ReadParticles},
-    {GeneratorKind::kDiffusion, "diffusion", "whole groups of interacting people", true, true, 1, 1,
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, 1, 1,
      ReadDiffusion},
 };
+
+constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
+static_assert(RowsAreInOrder(kGeneratorKinds), "RowOf finds a row by its value");
 
 // run: takes the trainer of every seed, in turn, to its end, with checkpoints of this key.
 using SeedRunner = std::function<MaybeError(Trainer* trainer, const std::string& key)>;
@@ -98,29 +100,12 @@ using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
 GeneratorTrainer TrainParticles, TrainDiffusion;
 inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, TrainDiffusion};
 
-inline constexpr size_t kNumGeneratorKinds = std::size(kGeneratorKinds);
-static_assert(std::size(kGeneratorTrainers) == kNumGeneratorKinds, "a kind has no trainer");
+static_assert(std::size(kGeneratorTrainers) == std::size(kGeneratorKinds), "a kind has no trainer");
 
-constexpr EnumNames<GeneratorKind, kNumGeneratorKinds> Names(GeneratorKind) {
-  EnumNames<GeneratorKind, kNumGeneratorKinds> names = {};
-  for (size_t i = 0; i < kNumGeneratorKinds; ++i) {
-    names[i] = {kGeneratorKinds[i].name, kGeneratorKinds[i].kind};
-  }
-  return names;
+// Of those that forecast whole groups, for messages.
+inline std::string KindsOfGroups() {
+  return AnyName<GeneratorKind>([](const GeneratorKindRow& row) { return row.groups; });
 }
-constexpr bool GeneratorRowsAreInOrder() {
-  for (size_t i = 0; i < kNumGeneratorKinds; ++i) {
-    if (kGeneratorKinds[i].kind != static_cast<GeneratorKind>(i)) return false;
-  }
-  return true;
-}
-static_assert(GeneratorRowsAreInOrder(), "RowOf finds a row by its kind's value");
-constexpr const GeneratorKindRow& RowOf(GeneratorKind kind) {
-  return kGeneratorKinds[static_cast<size_t>(kind)];
-}
-
-// "particles, diffusion"; of_groups: those that forecast whole groups alone.
-std::string GeneratorKindNames(const char* between, bool of_groups = false);
 
 // For readers of settings.
 inline void Demand(bool holds, const std::string& what) {
