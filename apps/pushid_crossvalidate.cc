@@ -5,7 +5,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/fit_setup.h"
@@ -56,8 +56,7 @@ using NamedOptions = std::vector<std::pair<std::string, GivenOptions>>;
 // Those of --compare, with the options that they have over the given ones.
 Result<NamedOptions> CandidatesFrom(const std::string& text) {
   NamedOptions candidates;
-  std::stringstream list(text);
-  for (std::string item; std::getline(list, item, ';');) {
+  for (const std::string& item : SplitList(text, ';')) {
     const std::string trimmed(Trimmed(item));
     if (trimmed.empty()) continue;
     const size_t colon = trimmed.find(':');
@@ -226,31 +225,21 @@ int Run() {
   const RecordedBodies bodies = BodiesOfGroups(recordings.value());
   ProgressLine line;
   for (const auto& predictor : predictors.value()) {
-    const auto show = [&](int done, int total) {
-      line.Show(predictor->name + ": fold " + std::to_string(done) + " of " +
-                std::to_string(total));
-    };
-    validations.push_back(
-        CrossValidate(pendulums, folds.value(), *predictor, NumThreads(), show, bodies));
+    validations.push_back(CrossValidate(pendulums, folds.value(), *predictor, NumThreads(),
+                                        line.OfJobs(predictor->name + ": fold"), bodies));
   }
   std::vector<HeldOutFutures> futures;
   for (const auto& [name, model] : noisy.value()) {
-    futures.push_back(CrossValidateFutures(
-        name, pendulums, folds.value(), model, drawn.value().samples, drawn.value().seed,
-        NumThreads(), [&line, &of = name](int done, int total) {
-          line.Show(of + ", futures: fold " + std::to_string(done) + " of " +
-                    std::to_string(total));
-        }));
+    futures.push_back(CrossValidateFutures(name, pendulums, folds.value(), model,
+                                           drawn.value().samples, drawn.value().seed, NumThreads(),
+                                           line.OfJobs(name + ", futures: fold")));
   }
   std::vector<BandCoverage> bands;
   if (FLAGS_bands) {
     BandOptions asked;
     asked.seed = Seed();
-    bands = CrossValidateBands(
-        pendulums, folds.value(), options.value(), asked, NumThreads(),
-        [&line](int done, int total) {
-          line.Show("bands: fold " + std::to_string(done) + " of " + std::to_string(total));
-        });
+    bands = CrossValidateBands(pendulums, folds.value(), options.value(), asked, NumThreads(),
+                               line.OfJobs("bands: fold"));
   }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());

@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/forecasts/most_probable_path.h"
@@ -47,8 +47,7 @@ Result<Ends> ReadEnds() {
   const Result<PathEnd> from = ParsePathEnd("--from", FLAGS_from, true);
   if (!from.ok()) return from.error();
   ends.from = from.value();
-  std::stringstream list(FLAGS_to);
-  for (std::string text; std::getline(list, text, ';');) {
+  for (const std::string& text : SplitList(FLAGS_to, ';')) {
     const std::string name(Trimmed(text));
     const Result<PathEnd> to = ParsePathEnd("--to", name, false);
     if (!to.ok()) return to.error();

@@ -36,9 +36,7 @@ int WriteWhole(const FittedModel& model) {
   ProgressLine line;
   BuildReportOptions options;
   options.num_threads = FLAGS_num_threads;
-  options.progress = [&line](int done, int total) {
-    line.Show("recording " + std::to_string(done) + " of " + std::to_string(total));
-  };
+  options.progress = line.OfJobs("recording");
   const Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());

@@ -87,11 +87,7 @@ MaybeError AddFlaggedChecks(const std::vector<PendulumRecording>& recordings,
                        "; run the same command to continue");
   }
   ProgressLine line;
-  const auto progress = [&line](const std::string& what) -> JobProgress {
-    return [&line, what](int done, int total) {
-      line.Show(what + " " + std::to_string(done) + " of " + std::to_string(total));
-    };
-  };
+  const auto progress = [&line](const std::string& what) { return line.OfJobs(what); };
   return AddChecks(recordings, checks, progress, model);
 }
 

@@ -10,6 +10,7 @@
 
 #include "apps/flags/command_line.h"
 #include "datasets/exchange/crowd.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 
@@ -44,15 +45,6 @@ namespace {
 constexpr double kMostPersonFrames = 2e6;  // half a gigabyte of forces
 constexpr double kWatchSeconds = 6.0;      // after the last push
 constexpr int kMostPeople = 10000;
-
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) {
-    parts.emplace_back(Trimmed(part));
-  }
-  return parts;
-}
 
 bool FromFile() {
   const std::optional<MotionFormat> format = MotionFormatOfFile(FLAGS_formation);
@@ -109,7 +101,8 @@ Result<Places> FormationPlaces() {
 Result<std::vector<int>> PushedPeople(const Places& places) {
   std::vector<int> people;
   std::set<int> seen;
-  for (const std::string& word : Split(FLAGS_pushed, ',')) {
+  for (const std::string& spaced : SplitList(FLAGS_pushed)) {
+    const std::string word(Trimmed(spaced));
     std::int64_t person = 0;
     if (!ParseInteger(word, &person)) {
       return Error{"--pushed: " + Quoted(word) +
@@ -157,8 +150,8 @@ Result<HipPush> ParsePush(const std::string& word) {
 
 Result<std::vector<HipPush>> Pushes() {
   std::vector<HipPush> pushes;
-  for (const std::string& word : Split(FLAGS_push, ',')) {
-    const Result<HipPush> push = ParsePush(word);
+  for (const std::string& word : SplitList(FLAGS_push)) {
+    const Result<HipPush> push = ParsePush(std::string(Trimmed(word)));
     if (!push.ok()) return push.error();
     pushes.push_back(push.value());
   }

@@ -3,11 +3,10 @@
 
 #include <gflags/gflags.h>
 
-#include <sstream>
-
 DEFINE_string(postprocess, "fade,bones,feet",
               "corrections of restored bodies: fade (start at the first pose), bones (constant "
               "lengths), feet (standing feet do not slide), comma-separated; or none");
+#include "datasets/files/names.h"
 
 namespace pushid {
 
@@ -15,8 +14,7 @@ Result<PostprocessOptions> PostprocessFromCommandLine() {
   PostprocessOptions options;
   options.fade_residual = options.keep_bones = options.lock_feet = false;
   if (FLAGS_postprocess == "none") return options;
-  std::stringstream list(FLAGS_postprocess);
-  for (std::string name; std::getline(list, name, ',');) {
+  for (const std::string& name : SplitList(FLAGS_postprocess)) {
     if (name == "fade") {
       options.fade_residual = true;
     } else if (name == "bones") {

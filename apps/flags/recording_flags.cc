@@ -2,7 +2,6 @@
 #include "apps/flags/recording_flags.h"
 
 #include <set>
-#include <sstream>
 
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
@@ -34,13 +33,6 @@ DEFINE_double(resample_fps, pushid::PreparationOptions{}.resample_fps,
 
 namespace pushid {
 namespace {
-
-std::vector<std::string> SplitList(const std::string& text) {
-  std::vector<std::string> words;
-  std::stringstream list(text);
-  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
-  return words;
-}
 
 Result<LoadOptions> LoadOptionsOfFlags() {
   LoadOptions options;

@@ -15,7 +15,6 @@
 #include "datasets/files/json_file.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/model/model_json.h"
-#include "ident/problem/parallel.h"
 
 namespace pushid {
 namespace {
@@ -81,6 +80,12 @@ void ProgressLine::Show(const std::string& text) {
   std::fprintf(stderr, "\r%s%s", text.c_str(), padding.c_str());
   std::fflush(stderr);
   width_ = text.size();
+}
+
+JobProgress ProgressLine::OfJobs(const std::string& what) {
+  return [this, what](int done, int total) {
+    Show(what + " " + std::to_string(done) + " of " + std::to_string(total));
+  };
 }
 
 void ProgressLine::Finish() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/problem/parallel.h"
 
 namespace pushid {
 
@@ -42,6 +43,9 @@ class ProgressLine {
   ~ProgressLine();
   void Show(const std::string& text);
   void Finish();  // ends the line; also done by the destructor
+
+  // Of many jobs: "recording 3 of 32". The line must outlive it.
+  JobProgress OfJobs(const std::string& what);
 
  private:
   double last_shown_ = -1.0;

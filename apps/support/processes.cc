@@ -14,9 +14,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 
 namespace pushid {
 namespace {
@@ -98,8 +98,8 @@ std::string OwnFolder() {
 
 std::string FindProgram(const std::string& name) {
   const char* const path = std::getenv("PATH");
-  std::istringstream folders(OwnFolder() + ":" + (path == nullptr ? "" : path));
-  for (std::string folder; std::getline(folders, folder, ':');) {
+  for (const std::string& folder :
+       SplitList(OwnFolder() + ":" + (path == nullptr ? "" : path), ':')) {
     const std::string file = folder + "/" + name;
     if (!folder.empty() && access(file.c_str(), X_OK) == 0) return file;
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <numeric>
+#include <sstream>
 
 namespace pushid {
 
@@ -68,6 +69,13 @@ std::string MeantBy(const std::string& word, const std::vector<std::string>& kno
 std::string MeantText(const std::string& word, const std::vector<std::string>& known) {
   const std::string meant = MeantBy(word, known);
   return meant.empty() ? "" : "; is " + meant + " meant?";
+}
+
+std::vector<std::string> SplitList(const std::string& text, char separator) {
+  std::vector<std::string> words;
+  std::istringstream list(text);
+  for (std::string word; std::getline(list, word, separator);) words.push_back(word);
+  return words;
 }
 
 }  // namespace pushid

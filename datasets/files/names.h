@@ -32,6 +32,9 @@ std::string MeantBy(const std::string& word, const std::vector<std::string>& kno
 // "; is hip meant?", or nothing.
 std::string MeantText(const std::string& word, const std::vector<std::string>& known);
 
+// "a,b" as a and b; none of an empty text.
+std::vector<std::string> SplitList(const std::string& text, char separator = ',');
+
 // The end of a name, and what stands in a text.
 
 inline bool EndsWith(std::string_view text, std::string_view end) {

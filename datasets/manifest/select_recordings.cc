@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <unordered_set>
 
 #include "datasets/files/input_file.h"
@@ -164,8 +163,7 @@ std::vector<std::string> ManifestPaths(const std::string& list) {
   std::error_code ignored;
   if (list.find(',') == std::string::npos || fs::exists(list, ignored)) return {list};
   std::vector<std::string> paths;
-  std::stringstream words(list);
-  for (std::string path; std::getline(words, path, ',');) {
+  for (const std::string& path : SplitList(list)) {
     if (!path.empty()) paths.push_back(path);
   }
   return paths;

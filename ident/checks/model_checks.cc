@@ -2,8 +2,8 @@
 #include "ident/checks/model_checks.h"
 
 #include <algorithm>
-#include <sstream>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
@@ -16,14 +16,6 @@
 
 namespace pushid {
 namespace {
-
-std::vector<std::string> ProfileNames(const std::string& profile) {
-  std::vector<std::string> names;
-  if (profile == "all") return names;
-  std::stringstream list(profile);
-  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
-  return names;
-}
 
 bool IsLarge(const FitOptions& options) {
   const auto& learned = options.model.learned;
@@ -134,8 +126,10 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
                      const std::function<JobProgress(const std::string&)>& progress,
                      FittedModel* model) {
   if (!checks.profile.empty()) {
-    if (MaybeError error = AddProfiles(recordings, ProfileNames(checks.profile), checks.num_threads,
-                                       progress("profile"), model)) {
+    std::vector<std::string> names;  // none: all
+    if (checks.profile != "all") names = SplitList(checks.profile);
+    if (MaybeError error =
+            AddProfiles(recordings, names, checks.num_threads, progress("profile"), model)) {
       return Error{"--profile: " + error->ToString()};
     }
   }

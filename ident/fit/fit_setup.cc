@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
@@ -97,8 +98,7 @@ void PoolOnlyFree(FitOptions* options) {
   if (PoolsAllOrNone(options->pool)) return;
   std::string free;
   if (options->ensemble > 1) options->pool.clear();
-  std::stringstream names(options->pool);
-  for (std::string name; std::getline(names, name, ',');) {
+  for (const std::string& name : SplitList(options->pool)) {
     if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;
   }
   options->pool = free.empty() ? "none" : free;
@@ -171,8 +171,7 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {
   std::vector<std::string> warnings;
   const std::string* fixed = Find(given, "fix");
-  std::stringstream list(fixed != nullptr ? *fixed : "");
-  for (std::string item; std::getline(list, item, ',');) {
+  for (const std::string& item : SplitList(fixed != nullptr ? *fixed : "")) {
     const ParameterSpec* spec = options.table.Find(item.substr(0, item.find('=')));
     if (spec == nullptr || Acts(spec->id, options.model)) continue;
     warnings.push_back("--fix=" + item + " does nothing: " + spec->name +

@@ -1,9 +1,10 @@
 // ident: names of interaction terms and of process noise.
 #include "ident/parameters/option_names.h"
 
-#include <sstream>
 #include <utility>
 #include <vector>
+
+#include "datasets/files/names.h"
 
 namespace pushid {
 
@@ -38,8 +39,7 @@ std::string NameOf(const ProcessNoiseTerms& terms) { return ListOf(terms, kProce
 MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms) {
   *terms = {};
   if (text == "none") return std::nullopt;
-  std::stringstream list(text);
-  for (std::string part; std::getline(list, part, ',');) {
+  for (const std::string& part : SplitList(text)) {
     bool known = false;
     for (const auto& [name, member] : kProcessNoiseTerms) {
       if (part != name) continue;
@@ -59,8 +59,7 @@ MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNo
 MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms) {
   *terms = {};
   if (text == "none") return std::nullopt;
-  std::stringstream list(text);
-  for (std::string part; std::getline(list, part, ',');) {
+  for (const std::string& part : SplitList(text)) {
     const std::vector<bool InteractionTerms::*> members = TermsOf(part);
     if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
     if (members.empty()) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -20,8 +19,7 @@ constexpr std::int64_t kLongestHorizon = 1000000;  // frames
 
 MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
   o->horizons.clear();
-  std::stringstream list(text);
-  for (std::string part; std::getline(list, part, ',');) {
+  for (const std::string& part : SplitList(text)) {
     std::int64_t frames = 0;
     if (!ParseInteger(part, &frames) || frames < 2 || frames > kLongestHorizon) {
       return Error{"--horizons: '" + part + "' is not a number of frames of at least 2"};
