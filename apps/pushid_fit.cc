@@ -35,19 +35,6 @@ namespace {
 
 using namespace pushid;
 
-// The recordings of a bootstrap's replica, those drawn several times standing there several times.
-std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
-                                         int replica, ClusterBy by) {
-  if (replica == 0) return recordings;
-  const std::vector<int> counts =
-      DrawRecordings(MakeResamplingUnits(recordings, by), Seed(), replica);
-  std::vector<PendulumRecording> drawn;
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    drawn.insert(drawn.end(), counts[i], recordings[i]);
-  }
-  return drawn;
-}
-
 // --body_weight and --body_restoration go together.
 MaybeError CheckBodyFlags(const FitOptions& options) {
   if (options.body_weight > 0.0 && FLAGS_body_restoration.empty()) {
@@ -86,9 +73,11 @@ int Run() {
       LoadFlaggedRecordings({}, options.value().body_weight > 0.0, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
-  const std::vector<PendulumRecording> pendulums = Resampled(
-      MakePendulumRecordings(recordings.value(), options.value().mapping), FLAGS_resample,
-      checks.bootstrap.by == ClusterBy::kAuto ? options.value().cluster : checks.bootstrap.by);
+  const ClusterBy drawn_by =
+      checks.bootstrap.by == ClusterBy::kAuto ? options.value().cluster : checks.bootstrap.by;
+  const std::vector<PendulumRecording> pendulums =
+      Resampled(MakePendulumRecordings(recordings.value(), options.value().mapping), drawn_by,
+                Seed(), FLAGS_resample);
 
   options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());

@@ -8,7 +8,6 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/push_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/sensor_push.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/push_csv.h"
 #include "datasets/inspection/plausibility.h"
@@ -43,8 +42,11 @@ std::string PathFromManifest(const std::string& file) {
 
 Result<MadePush> FromSensor(const PushFlags& flags, const Recording& recorded,
                             const PendulumRecording& recording) {
-  const Result<SensorPush> made =
-      PushFromSensors(flags.SensorOf(recorded.id), recorded, recording, flags.person);
+  const SensorSetup setup = flags.SensorOf(recorded.id);
+  for (const SensorChoice& sensor : setup.sensors) {
+    if (MaybeError error = OutputFiles().CheckNotRead("--sensors", sensor.file)) return *error;
+  }
+  const Result<SensorPush> made = PushFromSensors(setup, recorded, recording, flags.person);
   if (!made.ok()) return made.error();
   for (const std::string& warning : made.value().warnings) Warn(warning);
   return MadePush{made.value().push, PushKind::kExternal, made.value().how};

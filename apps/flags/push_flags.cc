@@ -64,9 +64,9 @@ DEFINE_double(sensor_start, 0.0,
               "one file, otherwise 0");
 DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
               "force sensor: forces up to this value, N, do not count as a push");
-DEFINE_bool(estimate_offset, pushid::SensorFlags{}.estimate_offset,
+DEFINE_bool(estimate_offset, pushid::SensorSetup{}.estimate_offset,
             "force sensors: estimate the offset of their clocks from the motion's");
-DEFINE_double(max_offset_s, pushid::SensorFlags{}.max_offset_s,
+DEFINE_double(max_offset_s, pushid::SensorSetup{}.max_offset_s,
               "search range of --estimate_offset on either side, s");
 
 namespace pushid {
@@ -101,7 +101,7 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   return std::vector<SensorChoice>{sensor};
 }
 
-MaybeError CheckSensorFlags() {
+MaybeError CheckSensors() {
   for (MaybeError error :
        {CheckExcludes({"sensor"}, "sensors", "give --sensor or --sensors, not both"),
         CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces"),
@@ -121,9 +121,9 @@ MaybeError CheckSensorFlags() {
   return std::nullopt;
 }
 
-Result<SensorFlags> SensorFlagsFromCommandLine() {
-  if (MaybeError error = CheckSensorFlags()) return *error;
-  SensorFlags flags;
+Result<SensorSetup> SensorsFromCommandLine() {
+  if (MaybeError error = CheckSensors()) return *error;
+  SensorSetup flags;
   if (SensorGiven()) {
     Result<std::vector<SensorChoice>> sensors = SensorsFromFlags();
     if (!sensors.ok()) return sensors.error();
@@ -191,8 +191,8 @@ MaybeError CheckRecordings(const PushFlags& flags) {
 
 std::string PushFlags::OutOf(const std::string& id) const { return WithId(out, id); }
 
-SensorFlags PushFlags::SensorOf(const std::string& id) const {
-  SensorFlags of = sensor;
+SensorSetup PushFlags::SensorOf(const std::string& id) const {
+  SensorSetup of = sensor;
   for (SensorChoice& choice : of.sensors) choice.file = WithId(choice.file, id);
   return of;
 }
@@ -208,7 +208,7 @@ Result<PushFlags> PushFlagsFromCommandLine() {
     return Error{
         "a push has a row for each of the recording's own frames; leave --resample_fps out"};
   }
-  const Result<SensorFlags> sensor = SensorFlagsFromCommandLine();
+  const Result<SensorSetup> sensor = SensorsFromCommandLine();
   if (!sensor.ok()) return sensor.error();
   flags.person = FLAGS_person;
   flags.out = FLAGS_out;

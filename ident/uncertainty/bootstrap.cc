@@ -100,6 +100,18 @@ std::vector<int> DrawRecordings(const ResamplingUnits& from, uint64_t seed, int 
   return counts;
 }
 
+std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
+                                         ClusterBy by, uint64_t seed, int replica) {
+  if (replica == 0) return recordings;
+  const std::vector<int> counts =
+      DrawRecordings(MakeResamplingUnits(recordings, by), seed, replica);
+  std::vector<PendulumRecording> drawn;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    drawn.insert(drawn.end(), counts[i], recordings[i]);
+  }
+  return drawn;
+}
+
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return std::nan("");
   std::sort(values.begin(), values.end());

@@ -63,6 +63,11 @@ ResamplingUnits MakeResamplingUnits(const std::vector<PendulumRecording>& record
 // How often each recording is drawn in replica k.
 std::vector<int> DrawRecordings(const ResamplingUnits& from, uint64_t seed, int replica);
 
+// The recordings of replica k, those drawn several times standing there several times; of replica 0
+// as they are.
+std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& recordings,
+                                         ClusterBy by, uint64_t seed, int replica);
+
 // Resamples that differ, whatever the order: (2n - 1 choose n) of n units.
 double DistinctResamples(int units);
 

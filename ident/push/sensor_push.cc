@@ -1,9 +1,8 @@
-// apps: sensors to a push.
-#include "apps/sensor_push.h"
+// ident: sensors to a push.
+#include "ident/push/sensor_push.h"
 
 #include <algorithm>
 
-#include "apps/support/overwrite_check.h"
 #include "datasets/files/number_text.h"
 #include "ident/push/push_from_sensor.h"
 #include "ident/push/sensor_offset.h"
@@ -60,11 +59,9 @@ struct ReadSensors {
   std::vector<SensorRecord> records;
 };
 
-Result<ReadSensors> Read(const SensorFlags& flags, const Recording& recorded) {
+Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded) {
   ReadSensors read;
-  const OutputFiles outputs;
-  for (SensorChoice sensor : flags.sensors) {
-    if (MaybeError error = outputs.CheckNotRead("--sensors", sensor.file)) return *error;
+  for (SensorChoice sensor : setup.sensors) {
     for (const RecordedPerson& person : recorded.people) FillFromMotion(person, &sensor);
     Result<SensorRecord> record = ReadSensor(sensor);
     if (!record.ok()) return record.error();
@@ -74,29 +71,29 @@ Result<ReadSensors> Read(const SensorFlags& flags, const Recording& recorded) {
   return read;
 }
 
-std::string HowRead(const SensorFlags& flags, const ReadSensors& read) {
+std::string HowRead(const SensorSetup& setup, const ReadSensors& read) {
   const std::size_t count = read.records.size();
   std::string how =
       count == 1 ? "from the sensor, averaged over the frames"
                  : "from " + std::to_string(count) + " sensors together, averaged over the frames";
   for (const SensorChoice& sensor : read.choices) {
-    if (!sensor.start_s || flags.start_given) continue;
+    if (!sensor.start_s || setup.start_given) continue;
     how +=
         "; recorded with the motion, its clock at frame 0 is " + Rounded(*sensor.start_s, 4) + " s";
   }
   return how;
 }
 
-// How far the sensors' clocks are off by the motion; zero unless the flags ask for it.
-Result<SensorOffset> Offset(const SensorFlags& flags, const ReadSensors& read,
+// How far the sensors' clocks are off by the motion; zero unless that is asked for.
+Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
                             const PendulumRecording& recording, int person, SensorPush* result) {
-  if (!flags.estimate_offset) return SensorOffset();
+  if (!setup.estimate_offset) return SensorOffset();
   std::vector<TimedRecord> timed;
   for (std::size_t i = 0; i < read.records.size(); ++i) {
     timed.push_back(AsVectors(read.records[i], read.choices[i]));
   }
   const Result<SensorOffset> offset =
-      EstimateSensorOffset(timed, recording, person, flags.max_offset_s);
+      EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
   if (!offset.ok()) return offset;
   const double gain = offset.value().gain;
   if (gain < 1.0 / kOddGain || gain > kOddGain) {
@@ -110,17 +107,17 @@ Result<SensorOffset> Offset(const SensorFlags& flags, const ReadSensors& read,
 
 }  // namespace
 
-Result<SensorPush> PushFromSensors(const SensorFlags& flags, const Recording& recorded,
+Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
                                    const PendulumRecording& recording, int person) {
-  const Result<ReadSensors> read = Read(flags, recorded);
+  const Result<ReadSensors> read = ReadAll(setup, recorded);
   if (!read.ok()) return read.error();
   SensorPush result;
-  result.how = HowRead(flags, read.value());
-  const Result<SensorOffset> offset = Offset(flags, read.value(), recording, person, &result);
+  result.how = HowRead(setup, read.value());
+  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
   if (!offset.ok()) return offset.error();
   SensorPushOptions options;
   options.person = person;
-  if (flags.estimate_offset) {
+  if (setup.estimate_offset) {
     options.clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
   }
   for (std::size_t i = 0; i < read.value().records.size(); ++i) {
