@@ -3,6 +3,8 @@
 
 #include <gflags/gflags.h>
 
+#include <functional>
+
 #include "apps/flags/command_line.h"
 #include "apps/flags/diffusion_flags.h"
 #include "apps/flags/overwrite_flag.h"
@@ -92,12 +94,12 @@ BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
   return scene;
 }
 
-Result<LoadedGenerator> LoadFormationGenerator(const FormationBodyFlags& flags, bool rod_moves,
-                                               const Scene& scene) {
+Result<LoadedGenerator> LoadFormationGenerator(const DiffusionGeneratorOptions& diffusion,
+                                               bool rod_moves, const Scene& scene) {
   if (MaybeError error = CheckRod("generator", rod_moves)) return *error;
   GeneratorChanges changes;
-  changes.diffusion = flags.diffusion;
-  Result<LoadedGenerator> loaded = LoadGenerator(flags.generator, changes, "--generator");
+  changes.diffusion = diffusion;
+  Result<LoadedGenerator> loaded = LoadGenerator(FLAGS_generator, changes, "--generator");
   if (!loaded.ok()) return loaded;
   if (MaybeError error = PrepareForFormation(scene, "generator", &loaded.value())) return *error;
   const std::string other = OtherPushKinds(loaded.value().settings, scene);
@@ -105,40 +107,39 @@ Result<LoadedGenerator> LoadFormationGenerator(const FormationBodyFlags& flags, 
   return loaded;
 }
 
-MaybeError WritePages(const FormationBodyFlags& flags, const Animation& animation) {
-  MaybeError error;
-  if (!flags.html_out.empty()) {
-    error = WriteFileAtomically(flags.html_out, AnimationHtml(animation));
+// A file that a flag names, or does not, and what writes it.
+struct NamedOutput {
+  std::string file;
+  std::function<MaybeError(const std::string& file)> write;
+};
+
+// Up to the first that fails.
+MaybeError WriteNamed(const std::vector<NamedOutput>& outputs) {
+  for (const NamedOutput& output : outputs) {
+    if (output.file.empty()) continue;
+    if (MaybeError error = output.write(output.file)) return error;
   }
-  if (!error && !flags.strip_out.empty()) {
-    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, kPosesOfStrip));
-  }
-  return error;
+  return std::nullopt;
 }
 
 }  // namespace
 
-Result<FormationOutputs> FormationOutputsFromCommandLine(int people) {
+MaybeError CheckOutputFlags(int people) {
   for (MaybeError error :
        {CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave),
         CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces),
         CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out),
         CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
-                          FLAGS_forces_svg_out})}) {
-    if (error) return *error;
+                          FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out, FLAGS_joints_out,
+                          FLAGS_bodies_out}),
+        FLAGS_bvh_out.empty() ? std::nullopt : CheckOutputFolder("bvh_out", FLAGS_bvh_out),
+        CheckNeeds({"forces_own_scale"}, {"forces_svg_out"})}) {
+    if (error) return error;
   }
-  if (!FLAGS_bvh_out.empty()) {
-    if (MaybeError error = CheckOutputFolder("bvh_out", FLAGS_bvh_out)) return *error;
-  }
-  if (MaybeError error = CheckNeeds({"forces_own_scale"}, {"forces_svg_out"})) return *error;
-  return FormationOutputs{FLAGS_csv_out,
-                          FLAGS_trajectories_out,
-                          FLAGS_forces_out,
-                          FLAGS_bvh_out,
-                          FLAGS_svg_out,
-                          FLAGS_forces_svg_out,
-                          FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared};
+  return std::nullopt;
 }
+
+bool DrawsWave() { return !FLAGS_svg_out.empty(); }
 
 Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
   const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
@@ -146,22 +147,16 @@ Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
   if (MaybeError error = CheckWayToBodies()) return *error;
   const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
   if (!diffusion.ok()) return diffusion.error();
-  const FormationBodyFlags flags{restoration.value(), FLAGS_generator, diffusion.value(),
-                                 FLAGS_poses_from,    FLAGS_html_out,  FLAGS_strip_out,
-                                 FLAGS_joints_out,    FLAGS_bodies_out};
-  if (MaybeError error =
-          CheckOutputFiles({flags.html_out, flags.strip_out, flags.joints_out, flags.bodies_out})) {
-    return *error;
-  }
-  return flags;
+  return FormationBodyFlags{restoration.value(), diffusion.value()};
 }
 
 Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
                                                     Scene* scene) {
-  if (!flags.given()) return std::optional<FormationBodyPlan>();
+  const bool generates = !FLAGS_generator.empty();
+  if (!generates && !flags.restoration.given()) return std::optional<FormationBodyPlan>();
   FormationBodyPlan plan;
-  if (flags.generates()) {
-    Result<LoadedGenerator> generator = LoadFormationGenerator(flags, rod_moves, *scene);
+  if (generates) {
+    Result<LoadedGenerator> generator = LoadFormationGenerator(flags.diffusion, rod_moves, *scene);
     if (!generator.ok()) return generator.error();
     plan.generator = std::move(generator.value());
   } else {
@@ -171,33 +166,29 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
     plan.restoration = std::move(restoration.value());
   }
   const Result<std::vector<Pose>> poses =
-      FirstPosesFrom(flags.poses_from, scene->people.front().body.rod_length);
+      FirstPosesFrom(FLAGS_poses_from, scene->people.front().body.rod_length);
   if (!poses.ok()) return poses.error();
   plan.first_poses = TakePoses(poses.value(), scene);
   return std::optional<FormationBodyPlan>(std::move(plan));
 }
 
-MaybeError WriteOutputs(const FormationOutputs& outputs, const FormationRun& run,
-                        const std::vector<OnsetBand>& onsets, const std::string& title) {
-  MaybeError error;
-  if (!outputs.bvh_out.empty()) error = WriteFormationRecording(outputs.bvh_out, run);
-  if (!error && !outputs.csv_out.empty()) {
-    error = WriteTrajectoryCsv(outputs.csv_out, run.recording, run.prediction);
-  }
-  if (!error && !outputs.trajectories_out.empty()) {
-    error = WriteFormationTrajectories(outputs.trajectories_out, run);
-  }
-  if (!error && !outputs.forces_out.empty()) error = WriteForcesCsv(outputs.forces_out, run);
-  if (!error && !outputs.svg_out.empty()) {
-    error = WriteFileAtomically(outputs.svg_out, WaveSvg(run, title, onsets));
-  }
-  if (!error && !outputs.forces_svg_out.empty()) {
-    error = WriteFileAtomically(outputs.forces_svg_out, ForcesSvg(run, title, outputs.force_scale));
-  }
-  return error;
+MaybeError WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
+                        const std::string& title) {
+  using File = const std::string&;
+  const ForceScale scale = FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared;
+  return WriteNamed(
+      {{FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
+       {FLAGS_csv_out,
+        [&](File file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); }},
+       {FLAGS_trajectories_out, [&](File file) { return WriteFormationTrajectories(file, run); }},
+       {FLAGS_forces_out, [&](File file) { return WriteForcesCsv(file, run); }},
+       {FLAGS_svg_out,
+        [&](File file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); }},
+       {FLAGS_forces_svg_out,
+        [&](File file) { return WriteFileAtomically(file, ForcesSvg(run, title, scale)); }}});
 }
 
-MaybeError WriteFormationBodies(const FormationBodyFlags& flags,
+MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
                                 const std::optional<FormationBodyPlan>& plan,
                                 const FormationRun& run, const std::string& title) {
   const bool generates = plan && plan->generator;
@@ -205,8 +196,7 @@ MaybeError WriteFormationBodies(const FormationBodyFlags& flags,
   if (plan) {
     Result<std::vector<BodyMotion>> bodies =
         generates ? GeneratedBodies(run, plan->first_poses, *plan->generator)
-                  : FormationBodies(run, plan->first_poses, *plan->restoration,
-                                    flags.restoration.postprocess);
+                  : FormationBodies(run, plan->first_poses, *plan->restoration, postprocess);
     if (!bodies.ok()) return bodies.error();
     scene.bodies = std::move(bodies.value());
   }
@@ -218,13 +208,19 @@ MaybeError WriteFormationBodies(const FormationBodyFlags& flags,
   AddPrediction(run.recording, run.prediction, generates ? std::vector<BodyMotion>() : scene.bodies,
                 &animation);
   AddPushes(run.recording, &animation);
-  MaybeError error = WritePages(flags, animation);
-  if (!error && !flags.joints_out.empty()) error = WriteJointsCsv(flags.joints_out, scene);
-  if (!error && !flags.bodies_out.empty()) {
-    const auto files = WriteBodyFiles(flags.bodies_out, scene);
-    if (!files.ok()) error = files.error();
-  }
-  return error;
+  using File = const std::string&;
+  return WriteNamed(
+      {{FLAGS_html_out,
+        [&](File file) { return WriteFileAtomically(file, AnimationHtml(animation)); }},
+       {FLAGS_strip_out,
+        [&](File file) {
+          return WriteFileAtomically(file, PoseStripSvg(animation, kPosesOfStrip));
+        }},
+       {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
+       {FLAGS_bodies_out, [&](File file) -> MaybeError {
+          const auto files = WriteBodyFiles(file, scene);
+          return files.ok() ? std::nullopt : MaybeError(files.error());
+        }}});
 }
 
 }  // namespace pushid

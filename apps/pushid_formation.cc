@@ -152,8 +152,7 @@ int Run() {
   if (!flags.ok()) return Fail(flags.error());
   Scene& scene = flags.value().scene;
   const std::string& title = flags.value().title;
-  const Result<FormationOutputs> outputs = FormationOutputsFromCommandLine(scene.num_people());
-  if (!outputs.ok()) return Fail(outputs.error());
+  if (MaybeError error = CheckOutputFlags(scene.num_people())) return Fail(*error);
   const Result<FormationBodyFlags> body_flags = FormationBodyFlagsFromCommandLine();
   if (!body_flags.ok()) return Fail(body_flags.error());
 
@@ -174,11 +173,12 @@ int Run() {
   if (!fitted.ok()) return Fail(fitted.error());
   // What a setting's own parameters leave open is no part of a model.
   const bool as_setting = !flags.value().as_setting.empty();
-  const bool banded = !as_setting && (!outputs.value().svg_out.empty() ||
-                                      scene.num_people() <= kMostPeopleForBands);
+  const bool banded = !as_setting && (DrawsWave() || scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted.value(), named.set, run) : WaveBands();
-  MaybeError error = WriteOutputs(outputs.value(), run, bands.onsets, title);
-  if (!error) error = WriteFormationBodies(body_flags.value(), bodies.value(), run, title);
+  MaybeError error = WriteOutputs(run, bands.onsets, title);
+  if (!error)
+    error = WriteFormationBodies(body_flags.value().restoration.postprocess, bodies.value(), run,
+                                 title);
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.value().names.empty());
