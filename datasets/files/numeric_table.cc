@@ -205,13 +205,6 @@ class TableReader {
 
 }  // namespace
 
-int NumericTable::FindName(std::string_view name) const {
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (EqualsIgnoringCase(names[i], name)) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 const std::vector<double>* NumericTable::Column(int index) const {
   const auto found = std::find(chosen.begin(), chosen.end(), index);
   return found == chosen.end() ? nullptr : &data[found - chosen.begin()];

@@ -33,7 +33,6 @@ struct NumericTable {
   std::string content_hash;
 
   int num_rows() const { return data.empty() ? 0 : static_cast<int>(data[0].size()); }
-  int FindName(std::string_view name) const;  // index into names, whatever the case; -1: none
   // The data of a column by its index in names; null when it was not chosen.
   const std::vector<double>* Column(int index) const;
 };

@@ -24,10 +24,10 @@ Error PlatformError(const C3dFile& file, int index, const std::string& problem) 
 
 Result<C3dPlatform> ReadPlatform(const C3dFile& file, int index, int stride) {
   const auto number = [&file](const char* name, int at, double fallback) {
-    return C3dNumber(file.parameters, kPlatforms, name, at, fallback);
+    return file.parameters.Number(kPlatforms, name, at, fallback);
   };
   C3dPlatform platform;
-  platform.type = C3dWhole(file.parameters, kPlatforms, "TYPE", index, -1000, 1000, 0);
+  platform.type = file.parameters.Whole(kPlatforms, "TYPE", index, -1000, 1000, 0);
   if (platform.type < 1 || platform.type > 4) {
     return PlatformError(
         file, index, "has the type " + std::to_string(platform.type) + "; types 1 to 4 are known");
@@ -80,19 +80,14 @@ int C3dFile::FindAnalog(std::string_view name) const {
   return -1;
 }
 
-const C3dParameter* C3dFile::Find(std::string_view group, std::string_view name) const {
-  return FindC3dParameter(parameters, group, name);
-}
-
-std::vector<C3dEvent> ReadC3dEvents(const std::vector<C3dParameter>& parameters,
-                                    const C3dBytes& bytes) {
+std::vector<C3dEvent> ReadC3dEvents(const C3dParameters& parameters, const C3dBytes& bytes) {
   std::vector<C3dEvent> events;
-  if (FindC3dParameter(parameters, "EVENT", "TIMES") != nullptr) {
-    const std::vector<double> times = C3dNumbers(parameters, "EVENT", "TIMES");
-    const std::vector<std::string> labels = C3dTexts(parameters, "EVENT", "LABELS");
-    const std::vector<std::string> contexts = C3dTexts(parameters, "EVENT", "CONTEXTS");
-    const std::size_t count = std::min<std::size_t>(
-        times.size() / 2, C3dWhole(parameters, "EVENT", "USED", 0, 0, 32767, 0));
+  if (parameters.Find("EVENT", "TIMES") != nullptr) {
+    const std::vector<double> times = parameters.Numbers("EVENT", "TIMES");
+    const std::vector<std::string> labels = parameters.Texts("EVENT", "LABELS");
+    const std::vector<std::string> contexts = parameters.Texts("EVENT", "CONTEXTS");
+    const std::size_t count =
+        std::min<std::size_t>(times.size() / 2, parameters.Whole("EVENT", "USED", 0, 0, 32767, 0));
     for (std::size_t i = 0; i < count; ++i) {
       events.push_back({60.0 * times[2 * i] + times[2 * i + 1], i < labels.size() ? labels[i] : "",
                         i < contexts.size() ? contexts[i] : ""});
@@ -110,11 +105,11 @@ std::vector<C3dEvent> ReadC3dEvents(const std::vector<C3dParameter>& parameters,
 }
 
 MaybeError ReadC3dPlatforms(C3dFile* file) {
-  const int used = C3dWhole(file->parameters, kPlatforms, "USED", 0, 0, kMostPlatforms, 0);
-  const C3dParameter* channels = FindC3dParameter(file->parameters, kPlatforms, "CHANNEL");
+  const int used = file->parameters.Whole(kPlatforms, "USED", 0, 0, kMostPlatforms, 0);
+  const C3dParameter* channels = file->parameters.Find(kPlatforms, "CHANNEL");
   if (used == 0 || channels == nullptr) return std::nullopt;
-  file->platform_zero_first = C3dWhole(file->parameters, kPlatforms, "ZERO", 0, 0, 1 << 30, 0);
-  file->platform_zero_last = C3dWhole(file->parameters, kPlatforms, "ZERO", 1, 0, 1 << 30, 0);
+  file->platform_zero_first = file->parameters.Whole(kPlatforms, "ZERO", 0, 0, 1 << 30, 0);
+  file->platform_zero_last = file->parameters.Whole(kPlatforms, "ZERO", 1, 0, 1 << 30, 0);
   const int stride = channels->dimensions.empty() ? 1 : channels->dimensions[0];
   for (int i = 0; i < used; ++i) {
     Result<C3dPlatform> platform = ReadPlatform(*file, i, stride);
@@ -160,7 +155,7 @@ constexpr int kMostSegments = 32767;
 constexpr double kNoRotation = 0.1;  // of a determinant from 1
 
 int Whole(const C3dFile& file, const char* name, int lowest, int highest, int fallback) {
-  return C3dWhole(file.parameters, kGroup, name, 0, lowest, highest, fallback);
+  return file.parameters.Whole(kGroup, name, 0, lowest, highest, fallback);
 }
 
 // "pelvis_4X4" -> "pelvis".
@@ -193,7 +188,7 @@ MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
   const std::size_t segments = Whole(*file, "USED", 0, kMostSegments, 0);
   if (segments == 0) return std::nullopt;
   // A block beyond 32767 stands in a negative integer.
-  const double block = C3dNumber(file->parameters, kGroup, "DATA_START", 0, 0.0);
+  const double block = file->parameters.Number(kGroup, "DATA_START", 0, 0.0);
   if (block == 0.0) return C3dError(file->path, 0, "ROTATION:DATA_START is missing");
   const std::size_t begin =
       (static_cast<std::size_t>(block < 0.0 ? block + 65536.0 : block) - 1) * kC3dBlock;
@@ -205,7 +200,7 @@ MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
                     "the file ends before the last pose of " + std::to_string(frames) +
                         " frames (group ROTATION): it is truncated; export it again");
   }
-  std::vector<std::string> names = C3dTexts(file->parameters, kGroup, "LABELS");
+  std::vector<std::string> names = file->parameters.Texts(kGroup, "LABELS");
   names.resize(segments);
   for (std::size_t s = 0; s < segments; ++s) {
     file->point_names.push_back(names[s].empty() ? "segment_" + std::to_string(s + 1)

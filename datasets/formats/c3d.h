@@ -45,6 +45,22 @@ struct C3dParameter {
   std::vector<std::string> texts;  // kText: one per string, blanks at the end cut off
 };
 
+// All of them, looked up as GROUP:NAME whatever their case.
+struct C3dParameters {
+  std::vector<C3dParameter> list;
+
+  const C3dParameter* Find(std::string_view group, std::string_view name) const;  // or null
+  // The number at `index`, or `fallback`.
+  double Number(std::string_view group, std::string_view name, std::size_t index,
+                double fallback) const;
+  // Number as a whole one from `lowest` to `highest`; `fallback` for anything else.
+  int Whole(std::string_view group, std::string_view name, std::size_t index, int lowest,
+            int highest, int fallback) const;
+  // Numbers, or texts, and those of NAME2, NAME3, ... which files use beyond 255 entries.
+  std::vector<double> Numbers(std::string_view group, const std::string& name) const;
+  std::vector<std::string> Texts(std::string_view group, const std::string& name) const;
+};
+
 struct C3dEvent {
   double time_s = 0.0;  // on the clock whose frame 1 is at 0
   std::string label;
@@ -82,7 +98,7 @@ struct C3dFile {
   std::vector<C3dEvent> events;
   std::vector<C3dPlatform> platforms;
   int platform_zero_first = 0, platform_zero_last = 0;  // frames from 1 without load; 0: none
-  std::vector<C3dParameter> parameters;                 // everything, as it stands
+  C3dParameters parameters;                             // everything, as it stands
   std::string content_hash;
 
   int num_frames() const {
@@ -91,7 +107,6 @@ struct C3dFile {
   int samples_per_frame() const;
   int FindPoint(std::string_view name) const;   // index, or -1
   int FindAnalog(std::string_view name) const;  // index, or -1
-  const C3dParameter* Find(std::string_view group, std::string_view name) const;
 };
 
 struct C3dReadOptions {

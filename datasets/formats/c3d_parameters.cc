@@ -26,7 +26,7 @@ class ParameterReader {
  public:
   ParameterReader(const std::string& path, const C3dBytes& bytes) : path_(path), bytes_(bytes) {}
 
-  Result<std::vector<C3dParameter>> Read(std::size_t at) {
+  Result<C3dParameters> Read(std::size_t at) {
     while (true) {
       if (!bytes_.Has(at, 2)) return Cut(at);
       const int name_length = std::abs(static_cast<int>(bytes_.Signed(at)));
@@ -58,7 +58,7 @@ class ParameterReader {
       }
       parameters_[i].group = found->second;
     }
-    return std::move(parameters_);
+    return C3dParameters{std::move(parameters_)};
   }
 
  private:
@@ -125,12 +125,12 @@ class ParameterReader {
 
 // The entries of NAME, NAME2, ... up to the first that is not there.
 template <typename Entry>
-std::vector<Entry> Joined(const std::vector<C3dParameter>& parameters, std::string_view group,
+std::vector<Entry> Joined(const C3dParameters& parameters, std::string_view group,
                           const std::string& name, std::vector<Entry> C3dParameter::*entries) {
   std::vector<Entry> joined;
   for (int number = 1;; ++number) {
     const C3dParameter* parameter =
-        FindC3dParameter(parameters, group, number == 1 ? name : name + std::to_string(number));
+        parameters.Find(group, number == 1 ? name : name + std::to_string(number));
     if (parameter == nullptr) return joined;
     const std::vector<Entry>& part = parameter->*entries;
     joined.insert(joined.end(), part.begin(), part.end());
@@ -143,14 +143,13 @@ Error C3dError(const std::string& path, std::size_t at, const std::string& messa
   return {"at byte " + std::to_string(at) + ": " + message, path};
 }
 
-Result<std::vector<C3dParameter>> ReadC3dParameters(const std::string& path, const C3dBytes& bytes,
-                                                    std::size_t begin) {
+Result<C3dParameters> ReadC3dParameters(const std::string& path, const C3dBytes& bytes,
+                                        std::size_t begin) {
   return ParameterReader(path, bytes).Read(begin);
 }
 
-const C3dParameter* FindC3dParameter(const std::vector<C3dParameter>& parameters,
-                                     std::string_view group, std::string_view name) {
-  for (const C3dParameter& parameter : parameters) {
+const C3dParameter* C3dParameters::Find(std::string_view group, std::string_view name) const {
+  for (const C3dParameter& parameter : list) {
     if (EqualsIgnoringCase(parameter.group, group) && EqualsIgnoringCase(parameter.name, name)) {
       return &parameter;
     }
@@ -158,28 +157,27 @@ const C3dParameter* FindC3dParameter(const std::vector<C3dParameter>& parameters
   return nullptr;
 }
 
-double C3dNumber(const std::vector<C3dParameter>& parameters, std::string_view group,
-                 std::string_view name, std::size_t index, double fallback) {
-  const C3dParameter* parameter = FindC3dParameter(parameters, group, name);
+double C3dParameters::Number(std::string_view group, std::string_view name, std::size_t index,
+                             double fallback) const {
+  const C3dParameter* parameter = Find(group, name);
   if (parameter == nullptr || index >= parameter->numbers.size()) return fallback;
   return parameter->numbers[index];
 }
 
-int C3dWhole(const std::vector<C3dParameter>& parameters, std::string_view group,
-             std::string_view name, std::size_t index, int lowest, int highest, int fallback) {
-  const double value = C3dNumber(parameters, group, name, index, fallback);
+int C3dParameters::Whole(std::string_view group, std::string_view name, std::size_t index,
+                         int lowest, int highest, int fallback) const {
+  const double value = Number(group, name, index, fallback);
   // Written so that NaN fails.
   return value >= lowest && value <= highest ? static_cast<int>(value) : fallback;
 }
 
-std::vector<double> C3dNumbers(const std::vector<C3dParameter>& parameters, std::string_view group,
-                               const std::string& name) {
-  return Joined(parameters, group, name, &C3dParameter::numbers);
+std::vector<double> C3dParameters::Numbers(std::string_view group, const std::string& name) const {
+  return Joined(*this, group, name, &C3dParameter::numbers);
 }
 
-std::vector<std::string> C3dTexts(const std::vector<C3dParameter>& parameters,
-                                  std::string_view group, const std::string& name) {
-  return Joined(parameters, group, name, &C3dParameter::texts);
+std::vector<std::string> C3dParameters::Texts(std::string_view group,
+                                              const std::string& name) const {
+  return Joined(*this, group, name, &C3dParameter::texts);
 }
 
 namespace {

@@ -41,7 +41,7 @@ class Reader {
     return C3dError(path_, at, message);
   }
   double Number(const char* group, const char* name, std::size_t index, double fallback) const {
-    return C3dNumber(file_.parameters, group, name, index, fallback);
+    return file_.parameters.Number(group, name, index, fallback);
   }
 
   MaybeError ReadSections() {
@@ -67,7 +67,7 @@ class Reader {
     }
     file_.processor = static_cast<C3dProcessor>(processor);
     bytes_ = C3dBytes(text_, file_.processor);
-    Result<std::vector<C3dParameter>> parameters = ReadC3dParameters(path_, bytes_, begin + 4);
+    Result<C3dParameters> parameters = ReadC3dParameters(path_, bytes_, begin + 4);
     if (!parameters.ok()) return parameters.error();
     file_.parameters = std::move(parameters.value());
     return std::nullopt;
@@ -111,7 +111,7 @@ class Reader {
     const int last = bytes_.Word(8);
     double frames = last - file_.first_frame + 1.0;
     const double announced = Unsigned(Number("POINT", "FRAMES", 0, frames));
-    if (FindC3dParameter(file_.parameters, "TRIAL", "ACTUAL_END_FIELD") != nullptr) {
+    if (file_.parameters.Find("TRIAL", "ACTUAL_END_FIELD") != nullptr) {
       const auto field = [this](const char* name, double fallback) {
         return Unsigned(Number("TRIAL", name, 0, fallback)) +
                65536.0 * Unsigned(Number("TRIAL", name, 1, 0.0));
@@ -129,20 +129,20 @@ class Reader {
   }
 
   void ReadNames() {
-    file_.point_names = C3dTexts(file_.parameters, "POINT", "LABELS");
+    file_.point_names = file_.parameters.Texts("POINT", "LABELS");
     file_.point_names.resize(num_points_);
     for (int i = 0; i < num_points_; ++i) {
       if (file_.point_names[i].empty()) file_.point_names[i] = "point_" + std::to_string(i + 1);
     }
     const auto text = [this](const char* name) {
-      const C3dParameter* parameter = FindC3dParameter(file_.parameters, "POINT", name);
+      const C3dParameter* parameter = file_.parameters.Find("POINT", name);
       return parameter == nullptr || parameter->texts.empty() ? "" : parameter->texts[0];
     };
     file_.point_unit = text("UNITS");
     file_.screen_x = text("X_SCREEN");
     file_.screen_y = text("Y_SCREEN");
-    std::vector<std::string> names = C3dTexts(file_.parameters, "ANALOG", "LABELS");
-    std::vector<std::string> units = C3dTexts(file_.parameters, "ANALOG", "UNITS");
+    std::vector<std::string> names = file_.parameters.Texts("ANALOG", "LABELS");
+    std::vector<std::string> units = file_.parameters.Texts("ANALOG", "UNITS");
     names.resize(num_channels_);
     units.resize(num_channels_);
     for (int i = 0; i < num_channels_; ++i) {
@@ -211,8 +211,8 @@ class Reader {
   // ANALOG:NAME, NAME2, ...: one number for each channel. None at all leaves `neutral`, and a value
   // without dimensions holds for all; a list that is too short does not say what it left out.
   Result<std::vector<double>> PerChannel(const std::string& name, double neutral) const {
-    std::vector<double> numbers = C3dNumbers(file_.parameters, "ANALOG", name);
-    const C3dParameter* parameter = FindC3dParameter(file_.parameters, "ANALOG", name);
+    std::vector<double> numbers = file_.parameters.Numbers("ANALOG", name);
+    const C3dParameter* parameter = file_.parameters.Find("ANALOG", name);
     const std::size_t channels = file_.analog.size();
     if (numbers.empty()) {
       numbers.assign(channels, neutral);
@@ -230,7 +230,7 @@ class Reader {
   }
 
   MaybeError PrepareAnalog() {
-    const C3dParameter* format = FindC3dParameter(file_.parameters, "ANALOG", "FORMAT");
+    const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
     unsigned_ = format != nullptr && !format->texts.empty() &&
                 EqualsIgnoringCase(format->texts[0], "UNSIGNED");
     const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);

@@ -147,9 +147,9 @@ TEST_F(C3dTest, ManyChannelsTakeScale2) {
     const C3dFile read = Reread(file);
     ASSERT_EQ(read.analog.size(), 510u);
     for (int i = 0; i < 510; ++i) EXPECT_NEAR(read.analog[i].samples[9], i + 1.0, 1e-4) << i;
-    ASSERT_NE(read.Find("ANALOG", "OFFSET2"), nullptr);
-    EXPECT_EQ(read.Find("ANALOG", "SCALE2")->numbers.size(), 255u);
-    EXPECT_EQ(read.Find("ANALOG", "SCALE3"), nullptr);
+    ASSERT_NE(read.parameters.Find("ANALOG", "OFFSET2"), nullptr);
+    EXPECT_EQ(read.parameters.Find("ANALOG", "SCALE2")->numbers.size(), 255u);
+    EXPECT_EQ(read.parameters.Find("ANALOG", "SCALE3"), nullptr);
   }
 }
 
