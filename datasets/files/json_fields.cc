@@ -23,11 +23,9 @@ std::vector<ObjectKeys> ByObject(const std::vector<MissingKey>& missing) {
 
 // "a, b and c are missing"
 std::string KeysText(const ObjectKeys& keys) {
-  std::string text;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == keys.size() ? " and " : ", ") + keys[i]->key;
-  }
-  return text + (keys.size() == 1 ? " is missing" : " are missing");
+  std::vector<std::string> names;
+  for (const MissingKey* key : keys) names.push_back(key->key);
+  return Listed(names, "and") + (keys.size() == 1 ? " is missing" : " are missing");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "datasets/formats/motion_formats.h"
 
 #include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh_header.h"
 #include "datasets/formats/units.h"
@@ -19,21 +20,16 @@ std::optional<MotionFormat> MotionFormatOfFile(std::string_view path) {
 }
 
 std::string MotionFileEndings() {
-  std::string list;
+  std::vector<std::string> endings;
   for (const MotionFormatRow& row : kMotionFormats) {
     for (const char* ending : row.endings) {
-      if (ending != nullptr) list += (list.empty() ? "." : ", .") + std::string(ending);
+      if (ending != nullptr) endings.push_back(std::string(".") + ending);
     }
   }
-  return list;
+  return ListOfNames(endings);
 }
 
-std::string MotionKeys() {
-  std::string list;
-  for (const MotionFormatRow& row : kMotionFormats)
-    list += (list.empty() ? "" : ", ") + std::string(row.name);
-  return list;
-}
+std::string MotionKeys() { return ListOfNames(AllNames<MotionFormat>()); }
 
 Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options) {

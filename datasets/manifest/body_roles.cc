@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "datasets/files/names.h"
+
 namespace pushid {
 namespace {
 
@@ -117,9 +119,9 @@ std::vector<int> UnfilledRoles(const BodyRoles& roles) { return Lacking(roles, f
 std::vector<int> FilledRoles(const BodyRoles& roles) { return Lacking(roles, true); }
 
 std::string RoleList(const std::vector<int>& roles) {
-  std::string list;
-  for (int role : roles) list += (list.empty() ? "" : ", ") + RoleName(role);
-  return list;
+  std::vector<std::string> names;
+  for (int role : roles) names.push_back(RoleName(role));
+  return ListOfNames(names);
 }
 
 Pose PoseOf(const BodyRoles& roles, const std::vector<Eigen::Vector3d>& joints) {

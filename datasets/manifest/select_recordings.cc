@@ -19,11 +19,11 @@ std::string SettingsOf(const Manifest& manifest) {
   std::map<std::string, int> counts;
   for (const ManifestRecording& recording : manifest.recordings)
     ++counts[recording.labels.setting()];
-  std::string text;
+  std::vector<std::string> texts;
   for (const auto& [setting, count] : counts) {
-    text += (text.empty() ? "" : ", ") + setting + " (" + std::to_string(count) + ")";
+    texts.push_back(setting + " (" + std::to_string(count) + ")");
   }
-  return text;
+  return ListOfNames(texts);
 }
 
 std::string SomeIdsOf(const Manifest& manifest) {
