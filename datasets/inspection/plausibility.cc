@@ -23,7 +23,7 @@ constexpr double kElsewhere = 60.0 * M_PI / 180.0;       // rad between push and
 
 double Horizontal(const Eigen::Vector4d& row) { return row.head<2>().norm(); }
 
-double Degrees(double radians) { return std::round(radians * 180.0 / M_PI); }
+double WholeDegrees(double radians) { return std::round(radians * 180.0 / M_PI); }
 
 // What is doubted of each kind, and what to ask.
 struct Doubt {
@@ -81,7 +81,7 @@ void PlausibilityCheck::Look(const Recording& recording) {
     if (peak > kStrongPush) Add(kStrong, recording.id, peak, "N");
     if (FirstRowStandsOut(push)) Add(kFirstRow, recording.id, Horizontal(push.force[0]), "N");
     const double angle = AngleToWay(recording, push);
-    if (angle > kElsewhere) Add(kWay, recording.id, Degrees(angle), "degrees off");
+    if (angle > kElsewhere) Add(kWay, recording.id, WholeDegrees(angle), "degrees off");
   }
   LookAtOnset(recording);
   LookAtFacing(recording);
@@ -98,7 +98,7 @@ void PlausibilityCheck::LookAtFacing(const Recording& recording) {
   for (const RecordedPerson& person : recording.people) {
     const double facing = std::fabs(FacingAngle(person));
     if (facing <= kFacesElsewhere) continue;
-    Add(kFacing, recording.id + ", " + person.subject_id, Degrees(facing), "degrees off");
+    Add(kFacing, recording.id + ", " + person.subject_id, WholeDegrees(facing), "degrees off");
   }
 }
 
