@@ -53,7 +53,7 @@ void AddToProvenance(Provenance* from) {
   const std::map<std::string, std::string> now = EffectiveFlags();
   std::vector<std::string>& known = from->changed_flags;
   for (const std::string& name : ChangedFlags()) {
-    if (!MovedCheckFlags().Has(name)) continue;
+    if (!MovedCheckFlags().Has(name) && name != "bootstrap_by") continue;
     from->configuration[name] = now.at(name);
     if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
   }
@@ -85,13 +85,12 @@ int Run() {
   }
   const Result<std::vector<PendulumRecording>> recordings = LoadFitted(&model);
   if (!recordings.ok()) return Fail(recordings.error());
-  for (MaybeError error : {CheckAgainst(checks.value(), model.fit.options,
-                                        static_cast<int>(recordings.value().size())),
-                           ResumeFit(recordings.value(), &model.fit),
-                           AddFlaggedChecks(recordings.value(), checks.value(), &model)}) {
-    if (error) return Fail(*error);
-  }
+  MaybeError error =
+      CheckAgainst(checks.value(), model.fit.options, static_cast<int>(recordings.value().size()));
+  if (!error) error = ResumeFit(recordings.value(), &model.fit);
   AddToProvenance(&model.provenance);
+  if (!error) error = AddFlaggedChecks(recordings.value(), checks.value(), &model);
+  if (error) return Fail(*error);
   const Result<std::string> sections = CheckSections(recordings.value(), checks.value(), model.fit);
   if (!sections.ok()) return Fail(sections.error());
   std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
