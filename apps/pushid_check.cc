@@ -85,12 +85,12 @@ int Run() {
   }
   const Result<std::vector<PendulumRecording>> recordings = LoadFitted(&model);
   if (!recordings.ok()) return Fail(recordings.error());
-  MaybeError error =
+  MaybeError failed =
       CheckAgainst(checks.value(), model.fit.options, static_cast<int>(recordings.value().size()));
-  if (!error) error = ResumeFit(recordings.value(), &model.fit);
+  if (!failed) failed = ResumeFit(recordings.value(), &model.fit);
   AddToProvenance(&model.provenance);
-  if (!error) error = AddFlaggedChecks(recordings.value(), checks.value(), &model);
-  if (error) return Fail(*error);
+  if (!failed) failed = AddFlaggedChecks(recordings.value(), checks.value(), &model);
+  if (failed) return Fail(*failed);
   const Result<std::string> sections = CheckSections(recordings.value(), checks.value(), model.fit);
   if (!sections.ok()) return Fail(sections.error());
   std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
