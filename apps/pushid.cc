@@ -74,7 +74,11 @@ int Run(const std::string& command, const std::vector<std::string>& arguments) {
     found = found || one.name == command;
   }
   if (found) return Fail(RunInstead("pushid-" + command, arguments));
-  const std::string meant = MeantBy(command, known);
+  std::string meant = MeantBy(command, known);
+  for (const std::string& one : known) {  // "fitt" and "sim"
+    const bool begins = command.rfind(one, 0) == 0 || one.rfind(command, 0) == 0;
+    if (meant.empty() && begins && !command.empty()) meant = one;
+  }
   return Fail("there is no command '" + command + "'" +
               (meant.empty() ? "" : "; did you mean '" + meant + "'?") + "; see pushid help");
 }

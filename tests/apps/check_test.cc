@@ -37,7 +37,7 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
       {"--pool=mu", "--pool_by=subject", "--sigmas=fixed", "--seed=3"},
       {"--self_force=linear,mlp:2"},
       {"--stance=threshold"},
-      {"--resample=2"}};
+      {"--resample=2", "--bootstrap_by=recording"}};
   for (const std::vector<std::string>& fit : fits) {
     SCOPED_TRACE(fit.empty() ? "default" : fit[0]);
     std::vector<std::string> all = fit;
@@ -61,8 +61,8 @@ TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
   EXPECT_TRUE(Json(Path("checked.json")).contains("prior_check"));
   const AppRun printed = Check(model, {"--design=mu", "--population"});
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
-  EXPECT_TRUE(Contains(printed.out, "standard error of mu"));
-  EXPECT_TRUE(Contains(printed.out, "on the log of tail_gain"));
+  EXPECT_TRUE(Contains(printed.out, "error of mu"));
+  EXPECT_TRUE(Contains(printed.out, "on tail_gain, b ~ N(0, w^2)"));
   EXPECT_EQ(ReadText(model), before);
   // Checks add up.
   ASSERT_EQ(Check(model, {"--prior_check", "--model_out=" + model}).exit_code, 0);
