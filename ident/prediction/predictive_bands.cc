@@ -114,7 +114,8 @@ Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& resu
                                                            const BandOptions& options) {
   if (options.bootstrap == nullptr) return FromCovariance(result, options);
   if (options.bootstrap->values.empty()) {
-    return Error{"the model's bootstrap has no replicas; fit it with --bootstrap=199"};
+    return Error{
+        "the model's bootstrap has no replicas; repeat it by pushid-check --bootstrap=199"};
   }
   return FromBootstrap(result, *options.bootstrap, options);
 }
