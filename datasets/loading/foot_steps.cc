@@ -59,8 +59,8 @@ double SpeedAt(const Track& track, int frame, double fps) {
 class StepFinder {
  public:
   StepFinder(const FootTracks& tracks, double fps) : fps_(fps) {
+    points_.reserve(3);
     for (const Track* track : {&tracks.ankle, &tracks.toe, &tracks.heel}) {
-      if (track->empty()) continue;
       Track whole = WithoutGaps(*track, tracks.weight);
       if (!whole.empty()) points_.push_back(std::move(whole));
     }
