@@ -84,8 +84,7 @@ class PersonLoader {
   void Warn(const std::string& warning) const {
     if (warnings_ != nullptr) {
       // As the manifest names it: results keep warnings, and not where the data lay.
-      warnings_->push_back("recording " + Quoted(entry_.id) + ": " + entry_.motion[index_] + " " +
-                           warning);
+      warnings_->push_back(RecordingWarning(entry_.id, entry_.motion[index_] + " " + warning));
     }
   }
 

@@ -199,6 +199,10 @@ std::string Text(const Group& group) {
 
 }  // namespace
 
+std::string RecordingWarning(const std::string& id, const std::string& what) {
+  return kRecording + Quoted(id) + ": " + what;
+}
+
 std::vector<std::string> GroupedWarnings(const std::vector<std::string>& warnings) {
   std::vector<Group> groups;
   for (const std::string& warning : warnings) {

@@ -40,14 +40,13 @@ struct LoadOptions {
 };
 
 // Reads and checks the selected recordings of a manifest, or of several ("a.json,b.json"), in their
-// order. Things that look unusual but
-// can be lived with (a BVH frame time that differs from fps by more than 0.1 %) are appended to
-// `warnings`.
+// order. Things that look unusual but can be lived with (a BVH frame time that differs from fps by
+// more than 0.1 %) are appended to `warnings`.
 //
 // Besides what the readers of the single files refuse: no frame rate in manifest, mapping or file,
-// fewer than three frames, a number of frames
-// other than the manifest's `frames`, people with different numbers of frames, a push longer than
-// the motion or starting after it, hip heights that show wrong units, joints not found.
+// fewer than three frames, a number of frames other than the manifest's `frames`, people with
+// different numbers of frames, a push longer than the motion or starting after it, hip heights that
+// show wrong units, joints not found.
 Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
                                               std::vector<std::string>* warnings = nullptr);
@@ -59,7 +58,9 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
                                 const LoadOptions& options = {},
                                 std::vector<std::string>* warnings = nullptr);
 
-// Warnings about many recordings, said once.
+// A warning about one recording, in the form that GroupedWarnings knows: "recording 'a': a.bvh has
+// ...". what: begins with the file it is about, if any.
+std::string RecordingWarning(const std::string& id, const std::string& what);
 
 // Warnings that differ only in the recording, "recording 'a': a.bvh has ...", become one: "in 32
 // recordings (a, b, c, ...): the file has ...". Equal ones become one with how often. In the order

@@ -121,6 +121,20 @@ TEST_F(LoadRecordingsTest, KeysNearToKnownOnesAreWarnedAbout) {
   EXPECT_TRUE(warnings_.empty());
 }
 
+TEST_F(LoadRecordingsTest, WarningsOfSeveralRecordingsAreSaidOnce) {
+  WriteBvhFile("b.bvh", Walker(20));
+  entry().fps = 59.9;
+  ManifestRecording other = entry();
+  other.id = "b c";
+  other.motion = {"b.bvh"};
+  manifest_.recordings.push_back(other);
+  ASSERT_TRUE(Load().ok());
+  ASSERT_EQ(warnings_.size(), 2u);
+  const std::vector<std::string> grouped = GroupedWarnings(warnings_);
+  ASSERT_EQ(grouped.size(), 1u);
+  EXPECT_TRUE(Contains(grouped[0], "in 2 recordings (a, b c): the file has a frame time of"));
+}
+
 TEST_F(LoadRecordingsTest, AxesAreTurned) {
   // A y-up file that faces z: what is (x, y, z) here stands there as (y, z, x).
   BvhMotion motion = Walker(20);
