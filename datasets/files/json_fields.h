@@ -48,7 +48,10 @@ class JsonFields {
     if (!object_.is_object()) Fail("", "must be an object { }, not " + Shown(object_));
   }
 
-  bool Has(const char* key) const { return object_.is_object() && object_.contains(key); }
+  bool Has(const char* key) const {
+    if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.emplace_back(key);
+    return object_.is_object() && object_.contains(key);
+  }
   const nlohmann::ordered_json& At(const char* key) const { return object_.at(key); }
   std::string Pointer(const std::string& key) const {
     return key.empty() ? pointer_ : pointer_ + "/" + key;
@@ -79,12 +82,18 @@ class JsonFields {
     Fail(inner.error_);
   }
 
-  // Other keys than these are mistakes, which would be read over.
-  void Only(const std::vector<std::string>& keys) {
+  // The keys that were asked for, which are those that its reader knows.
+  const std::vector<std::string>& asked() const { return asked_; }
+
+  // After all keys were read: others are mistakes, which would be read over. Told before anything
+  // else that is wrong.
+  void OnlyAsked() {
     if (!object_.is_object()) return;
     for (const auto& [key, value] : object_.items()) {
-      const bool known = std::find(keys.begin(), keys.end(), key) != keys.end();
-      if (!known) Fail(key, "is not known; there may be " + ListOfNames(keys));
+      if (std::find(asked_.begin(), asked_.end(), key) != asked_.end()) continue;
+      error_.reset();
+      Fail(key, "is not known; there may be " + ListOfNames(asked_));
+      return;
     }
   }
 
@@ -159,6 +168,7 @@ class JsonFields {
   const nlohmann::ordered_json& object_;
   std::string pointer_;
   std::string label_;
+  mutable std::vector<std::string> asked_;
   std::vector<MissingKey> missing_;
   MaybeError error_;
 };

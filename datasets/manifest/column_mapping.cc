@@ -39,8 +39,6 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
   JsonFields fields(document.value(), document.value().content, "", "mapping");
   ColumnMapping mapping;
   if (fields.error()) return *fields.error();
-  fields.Only(
-      {"columns", "joints", "time", "frame_rate", "length_unit", "length_scale", "up", "forward"});
   ReadColumns(&fields, &mapping);
   mapping.joints = ReadJointMapping(document.value(), &fields);
   mapping.time_column = fields.OptionalText("time", "");
@@ -60,6 +58,7 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
     const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);
     if (!axes.ok()) fields.Fail("up", "and forward: " + axes.error().message);
   }
+  fields.OnlyAsked();
   if (fields.error()) return *fields.error();
   return mapping;
 }
@@ -133,11 +132,11 @@ JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) 
   if (!fields->Has("joints")) return mapping;
   JsonFields joints(document, fields->At("joints"), fields->Pointer("joints"),
                     fields->label() + ", joints");
-  joints.Only(RoleNames());
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
     if (joint) mapping.Set(role, *joint);
   }
+  joints.OnlyAsked();
   fields->Add(joints);
   return mapping;
 }

@@ -98,24 +98,18 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
 }
 
 // A text under a key that no program knows is a label as well.
-void ReadLabels(const Json& object, JsonFields* fields, RecordingLabels* labels) {
-  labels->Set(kSettingLabel, fields->Text(kSettingLabel, "text, for instance single"));
-  labels->Set(kMagnitudeLabel, fields->OptionalText(kMagnitudeLabel, ""));
-  labels->Set(kConditionLabel,
-              fields->OptionalText(kConditionLabel, fields->OptionalText(kOldConditionKey, "")));
+void AddLabels(const Json& object, const JsonFields& fields, RecordingLabels* labels) {
   if (!object.is_object()) return;
-  const std::vector<std::string>& known = ManifestKeys();
+  const std::vector<std::string>& known = fields.asked();
   for (const auto& [key, value] : object.items()) {
     const bool used = std::find(known.begin(), known.end(), key) != known.end();
     if (!used && value.is_string()) labels->Set(key, value.get<std::string>());
   }
 }
 
-// What is wrong is added to the manifest's fields.
-ManifestRecording ReadRecording(const JsonDocument& document, const Json& object, int index,
-                                JsonFields* manifest) {
-  const std::string pointer = "/recordings/" + std::to_string(index);
-  JsonFields fields(document, object, pointer, "recording " + std::to_string(index));
+// of: the object's.
+ManifestRecording ReadRecording(const JsonDocument& document, const Json& object, JsonFields* of) {
+  JsonFields& fields = *of;
   ManifestRecording recording;
   recording.id = fields.Text("id", "text that names the recording");
   if (!fields.failed() && recording.id.empty()) fields.Fail("id", "is empty");
@@ -124,7 +118,11 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
     fields.Fail("id", "must have no comma: commas separate ids in lists");
   }
 
-  ReadLabels(object, &fields, &recording.labels);
+  recording.labels.Set(kSettingLabel, fields.Text(kSettingLabel, "text, for instance single"));
+  recording.labels.Set(kMagnitudeLabel, fields.OptionalText(kMagnitudeLabel, ""));
+  recording.labels.Set(
+      kConditionLabel,
+      fields.OptionalText(kConditionLabel, fields.OptionalText(kOldConditionKey, "")));
   if (fields.Has("fps")) {
     recording.fps = fields.Number("fps", "the frames per second");
     const std::string problem = FrameRateProblem(recording.fps);
@@ -162,26 +160,22 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
         fields.Whole("end_frame", "the frame after the last one used, after first_frame",
                      recording.first_frame + 1, kAnyFrame);
   }
-  manifest->Add(fields);
+  AddLabels(object, fields, &recording.labels);
   recording.json = object;
   return recording;
 }
 
-std::vector<std::string> KnownKeys() {
-  std::vector<std::string> keys = {
-      "id",          "setting",     "fps",         "subjects",  "pushed_person",
-      "mapping",     "push_csv",    "push_kind",   "magnitude", "joints",
-      "up",          "forward",     "length_unit", "pushes",    "initial_velocity",
-      "frames",      "first_frame", "end_frame",   "condition", kOldConditionKey,
-      "length_scale"};
-  for (const MotionFormatRow& row : kMotionFormats) keys.push_back(row.name);
-  return keys;
-}
-
 }  // namespace
 
+// Those that the reader asks for, here of a recording that has none of them.
 const std::vector<std::string>& ManifestKeys() {
-  static const std::vector<std::string> keys = KnownKeys();
+  static const std::vector<std::string> keys = [] {
+    JsonDocument empty;
+    empty.content = Json::object();
+    JsonFields fields(empty, empty.content, "", "");
+    ReadRecording(empty, empty.content, &fields);
+    return fields.asked();
+  }();
   return keys;
 }
 
@@ -223,7 +217,10 @@ Result<Manifest> ReadManifest(const std::string& path) {
   const std::vector<int> lines = document.ElementLines("/recordings");
   std::unordered_map<std::string, int> line_of_id;
   for (std::size_t i = 0; i < recordings.size(); ++i) {
-    ManifestRecording recording = ReadRecording(document, recordings[i], static_cast<int>(i), &top);
+    JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
+                      "recording " + std::to_string(i));
+    ManifestRecording recording = ReadRecording(document, recordings[i], &fields);
+    top.Add(fields);
     if (top.is_wrong()) return *top.error();
     recording.manifest = path;
     recording.line = lines[i];

@@ -129,8 +129,6 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
   for (std::size_t i = 0; i < content.size(); ++i) {
     JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
                       "sensor " + std::to_string(i));
-    fields.Only({"file", "column", "gain", "up", "forward", "direction", "height", "height_m",
-                 "start", "idle_force", "zero"});
     SensorChoice sensor;
     sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
     sensor.column = fields.OptionalText("column", "");
@@ -149,6 +147,7 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     if (!fields.error() && !(sensor.idle_force >= 0.0)) {
       fields.Fail("idle_force", "must be a force of at least 0 N");
     }
+    fields.OnlyAsked();
     if (fields.error()) return *fields.error();
     sensors.push_back(sensor);
   }
