@@ -153,19 +153,7 @@
     m.interaction.lean || m.interaction.ldp_discrete, m.interaction.lean, \
     "torque against leaning on others, x", \
     "to compare with LDP") \
-  /* after being pushed by others; and the rod */ \
-  X(kDriveGain, "drive_gain", "g", "1", 0.5, -20, 20, 0.5, kIdentity, \
-    m.interaction.drive, m.interaction.drive, \
-    "ratio of cart force to recent contact force", \
-    "where people step on after others have let go") \
-  X(kDriveTorque, "drive_torque", "r", "1", 0.2, -20, 20, 0.2, kIdentity, \
-    m.interaction.drive, m.interaction.drive, \
-    "ratio of torque to recent contact force", \
-    "where people step on after others have let go") \
-  X(kDriveTime, "drive_time", "tau", "s", 0.3, 0.01, 5, 0.3, kLog, \
-    m.interaction.drive, m.interaction.drive, \
-    "decay time of the response to contact", \
-    "where people step on after others have let go") \
+  /* the rod */ \
   X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
     RodMoves(m), RodMoves(m), \
     "rise of the cart over the rod's shortening", \

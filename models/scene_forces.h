@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "models/drive.h"
 #include "models/interaction.h"
 #include "models/learned_terms.h"
 #include "models/neighbours.h"
@@ -61,11 +60,10 @@ struct NetForce {
 // none.
 std::vector<ForcePart> ReportedParts(const ModelOptions& options);
 
-// What a person gets from others: now, by part, and lately (drive.h).
+// What a person gets from others, by part.
 template <typename T>
 struct Received {
   std::array<Vector4<T>, kNumPairParts> part;
-  Vector4<T> lately = Vector4<T>::Zero();
 
   Received() { part.fill(Vector4<T>::Zero()); }
   Vector4<T> Now() const {
@@ -142,7 +140,6 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   for (int i = 0; i < kNumPairParts; ++i) {
     force.parts[static_cast<int>(kFirstPairPart) + i] = received.part[i];
   }
-  if (options.interaction.drive) force[ForcePart::kDrive] = DriveForce(p, received.lately);
   force[ForcePart::kNetwork] = network;
   return force;
 }
@@ -172,13 +169,6 @@ class SceneForces {
 
   // states: of everybody at the next frame, the first one at the first call.
   void Update(const PendulumState<T>* states) {
-    if (options_->interaction.drive && started_) {
-      for (size_t n = 0; n < received_.size(); ++n) {
-        received_[n].lately = NextReceived(Parameters(static_cast<int>(n)), received_[n].lately,
-                                           received_[n].Now(), scene_->dt);
-      }
-    }
-    started_ = true;
     states_.assign(states, states + scene_->people.size());
     finder_.Update(Parameters(0), states_);
   }
@@ -286,7 +276,7 @@ class SceneForces {
     const PendulumState<T>& state = states_[person];
     const SelfForce& self = self_[person];
     SetNetworkInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd,
-                        state.rod, &networks_[person].state);
+                        &networks_[person].state);
     networks_[person].force = StepNetwork(options_->learned->shape, network_weights_,
                                           self.body.mass, &networks_[person].state);
   }
@@ -330,7 +320,6 @@ class SceneForces {
   const T* network_weights_ = nullptr;
   std::vector<PosedPendulum<T>> states_;
   std::vector<std::pair<int, int>> acting_;
-  bool started_ = false;
 };
 
 }  // namespace pushid

@@ -1,7 +1,7 @@
 // models: a small network as a part of the self force: what a person does beyond balance and
 // friction, learned. An MLP, a GRU or an LSTM of any size, from the person's own state alone.
 //
-//   u = [e_theta/0.15, e_phi/0.15, xd/0.8, yd/0.8, thd/0.6, phd/0.6 (, (l - l_0)/0.05)]
+//   u = [e_theta/0.15, e_phi/0.15, xd/0.8, yd/0.8, thd/0.6, phd/0.6]
 //   k = [(M - 85 kg)/20 kg, 1]            what does not change during a rollout
 //   x = u, or tanh(E u) with an embedding
 //
@@ -48,19 +48,17 @@ constexpr EnumNames<NetworkKind, 4> Names(NetworkKind) {
 struct NetworkShape {
   NetworkKind kind = NetworkKind::kNone;
   int hidden = 0;
-  int embedding = 0;       // 0: none; of a GRU or an LSTM
-  bool rod_input = false;  // whether it sees the rod's deviation
+  int embedding = 0;  // 0: none; of a GRU or an LSTM
 
   bool any() const { return kind != NetworkKind::kNone; }
   bool recurrent() const { return kind == NetworkKind::kGru || kind == NetworkKind::kLstm; }
-  int num_inputs() const { return kMotionInputs + (rod_input ? 1 : 0); }
-  int num_features() const { return embedding > 0 ? embedding : num_inputs(); }
+  int num_features() const { return embedding > 0 ? embedding : kMotionInputs; }
   int gate_rows() const;
   int candidate_rows() const { return recurrent() ? hidden : 0; }
   int candidate_width() const { return num_features() + (recurrent() ? hidden : 0); }
   int gate_width() const { return candidate_width() + 2; }
   // Where each matrix starts in the flat array.
-  int gates_at() const { return embedding * num_inputs(); }
+  int gates_at() const { return embedding * kMotionInputs; }
   int candidates_at() const { return gates_at() + gate_rows() * gate_width(); }
   int output_at() const { return candidates_at() + candidate_rows() * candidate_width(); }
   int num_weights() const { return any() ? output_at() + 4 * hidden : 0; }
@@ -75,7 +73,7 @@ struct NetworkWeights {
   ConstRows<T> embed, gates, context, candidates, output;
 
   NetworkWeights(const NetworkShape& s, const T* w)
-      : embed(w, s.embedding, s.num_inputs(), Stride(s.num_inputs())),
+      : embed(w, s.embedding, kMotionInputs, Stride(kMotionInputs)),
         gates(w + s.gates_at(), s.gate_rows(), s.candidate_width(), Stride(s.gate_width())),
         context(w + s.gates_at() + s.candidate_width(), s.gate_rows(), 2, Stride(s.gate_width())),
         candidates(w + s.candidates_at(), s.candidate_rows(), s.candidate_width(),
@@ -98,20 +96,18 @@ struct NetworkState {
   Eigen::Vector2d context = Eigen::Vector2d::Zero();  // k
 
   NetworkState(const NetworkShape& shape, const Body& body)
-      : inputs(VectorX<T>::Zero(shape.num_inputs())),
+      : inputs(VectorX<T>::Zero(kMotionInputs)),
         hidden(VectorX<T>::Zero(shape.hidden)),
         context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {
     if (shape.kind == NetworkKind::kLstm) cell = VectorX<T>::Zero(shape.hidden);
   }
 };
 
-// e: (theta, phi) less the posture; rod: l - l_0, m.
+// e: (theta, phi) less the posture.
 template <typename T>
-void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, const T& rod,
+void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd,
                       NetworkState<T>* state) {
-  VectorX<T>& u = state->inputs;
-  SetMotionInputs(e_theta, e_phi, qd, &u);
-  if (u.size() > kMotionInputs) u[kMotionInputs] = rod / kNetworkRod;
+  SetMotionInputs(e_theta, e_phi, qd, &state->inputs);
 }
 
 // One step of the network, its inputs set: the memory goes on, and the force is what it answers.

@@ -16,7 +16,6 @@ struct InteractionTerms {
   bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
   bool network = false;       // a learned force, given (network_interaction.h)
   bool learned = false;       // a learned force beside contact, fitted (learned_pair.h)
-  bool drive = false;         // a person pushed by others steps on for a while (drive.h)
 
   // Those that ask how far the points of contact are apart.
   bool Contact() const { return spring || damping || learned; }
@@ -41,8 +40,7 @@ inline constexpr InteractionTermName kInteractionTerms[] = {
     {"potential", &InteractionTerms::potential},
     {"lean", &InteractionTerms::lean},
     {"ldp_discrete", &InteractionTerms::ldp_discrete},
-    {"network", &InteractionTerms::network},
-    {"drive", &InteractionTerms::drive}};
+    {"network", &InteractionTerms::network}};
 
 // White forces that act on everybody beside all others (process_noise.h).
 struct ProcessNoiseTerms {
@@ -74,7 +72,6 @@ inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
   X(kPush, "push")               /* as recorded */        \
   X(kTail, "tail")               /* of a net push */      \
   X(kInteraction, "interaction") /* with others */        \
-  X(kDrive, "drive")             /* after being pushed */ \
   X(kNetwork, "network")         /* learned self force */ \
   X(kNoise, "noise")             /* drawn */              \
   X(kOwn, "own")                 /* laws of the user's */
@@ -94,7 +91,7 @@ inline constexpr int kNumForceParts = sizeof(kForcePartNames) / sizeof(kForcePar
 
 inline constexpr ForcePart kFirstPairPart = ForcePart::kInteraction;
 inline constexpr int kNumPairParts =
-    static_cast<int>(ForcePart::kDrive) - static_cast<int>(kFirstPairPart);
+    static_cast<int>(ForcePart::kNetwork) - static_cast<int>(kFirstPairPart);
 
 // For loops over the parts.
 inline constexpr auto kForceParts = [] {

@@ -14,8 +14,7 @@
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/few_clusters.h"
 #include "models/cart_damping.h"
-#include "residuals/cost_functions/contact_takeover.h"
-#include "residuals/cost_functions/network_takeover.h"
+#include "residuals/takeover.h"
 
 namespace pushid {
 namespace {
@@ -274,13 +273,12 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.cost = best.cost;
   result.message = best.message;
   result.parameters = problem.Parameters(best.to, "");
-  if (const auto network = problem.ModelAt(best.to).learned; network && network->shape.any()) {
-    result.takeover = TakeoverResidual(recordings, options.model, 0.0).Of(network->weights);
+  const ModelOptions fitted = problem.ModelAt(best.to);
+  if (fitted.learned && fitted.learned->shape.any()) {
+    result.takeover = TakeoverOf(recordings, fitted);
   }
-  if (options.model.interaction.LearnedBesideContact()) {
-    result.contact_takeover =
-        ContactTakeoverResidual(recordings, options.model, result.parameters, 0.0)
-            .Of(problem.ModelAt(best.to).learned->weights);
+  if (fitted.interaction.LearnedBesideContact()) {
+    result.contact_takeover = ContactTakeoverOf(recordings, fitted, result.parameters);
   }
   if (options.ensemble > 1) result.others = FitOtherSeeds(recordings, options);
   result.uncertainty = ComputeUncertainty(problem, best.to, solved.free ? &*solved.free : nullptr);

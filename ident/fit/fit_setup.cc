@@ -62,19 +62,14 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   const auto& network = options.model.learned;
-  for (const char* name : {"network_prior", "early_stopping", "takeover_weight", "ensemble"}) {
+  for (const char* name : {"network_prior", "early_stopping", "ensemble"}) {
     if (network != nullptr || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +
                  " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
   }
-  if (network != nullptr && Find(given, "takeover_weight") != nullptr &&
-      !MayTakeOver(options.model)) {
-    return Error{NothingToTakeOver()};
-  }
-  for (const char* name :
-       {"horizons", "recording_weight", "effective_weight", "sigma_hip", "sigma_velocity",
-        "sigma_angle", "sigma_rate", "sigmas", "marker_noise", "robust", "loss", "settling_weight",
-        "mode_weight", "stability_weight", "body_weight"}) {
+  for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
+                           "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
+                           "robust", "loss", "settling_weight", "mode_weight", "body_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
                  NameOf(options.likelihood) + " fits single steps and does not use it"};

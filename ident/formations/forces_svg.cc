@@ -26,7 +26,6 @@ std::string PartColour(ForcePart part) {
       {ForcePart::kBalance, "#56b4e9"},
       {ForcePart::kLinear, "#009e73"},
       {ForcePart::kInteraction, "#9333ea"},
-      {ForcePart::kDrive, "#b45309;stroke-dasharray:4 2"},
       {ForcePart::kNetwork, "#6b7280;stroke-dasharray:7 2"}};
   const auto found = colours.find(part);
   return found == colours.end() ? "#999999;stroke-dasharray:2 2" : found->second;

@@ -17,7 +17,7 @@
 #include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/refit_table.h"
 #include "ident/uncertainty/uncertainty.h"
-#include "residuals/cost_functions/takeover.h"
+#include "residuals/takeover.h"
 
 namespace pushid {
 

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "residuals/cost_functions/takeover.h"
+#include "residuals/takeover.h"
 
 namespace pushid {
 

@@ -11,21 +11,12 @@ namespace {
 // What options of networks ask for that there is not; empty: nothing.
 std::string MissingNetwork(const FitOptions& o) {
   const auto& network = o.model.learned;
-  const char* asks = o.ensemble > 1            ? "--ensemble"
-                     : o.takeover_weight > 0.0 ? "--takeover_weight"
-                     : o.early_stopping > 0.0  ? "--early_stopping"
-                                               : nullptr;
+  const char* asks = o.ensemble > 1           ? "--ensemble"
+                     : o.early_stopping > 0.0 ? "--early_stopping"
+                                              : nullptr;
   if (network == nullptr && asks != nullptr) {
     return std::string(asks) +
            " acts on networks, but there is none; add one, as in --self_force=mlp:4";
-  }
-  if (network != nullptr && o.takeover_weight > 0.0 && !MayTakeOver(o.model)) {
-    return NothingToTakeOver();
-  }
-  if (network != nullptr && network->shape.rod_input &&
-      !(network->shape.any() && network->rod.moves())) {
-    return "--rod_input is for a network beside a rod that moves, as in --self_force=mlp:4 "
-           "--rod=linear";
   }
   const bool pair = network != nullptr && network->pair.any();
   if (o.model.interaction.learned != pair) {
@@ -44,16 +35,8 @@ std::string NetworkViolation(const FitOptions& o) {
   const auto& network = o.model.learned;
   if (network == nullptr) return "";
   const bool large = NeedsGradientTraining(o), pooled = AnyPooled(o.table);
-  if (large && o.takeover_weight > 0.0) {
-    return "--takeover_weight is for small networks; this one is trained by its gradient";
-  }
   if (o.ensemble > 1 && large) {
     return "--ensemble is for small networks; this one is trained by its gradient";
-  }
-  if (large && o.model.interaction.drive) {
-    return LearnedName(*network) +
-           " is trained by its gradient, which does not support --interaction=drive; choose a "
-           "smaller network, or leave drive out";
   }
   if (o.ensemble > 1 && pooled) {
     return "--ensemble does not go together with --pool: its members share all parameters";
@@ -122,17 +105,6 @@ bool FitOptions::IsValid(std::string* error) const {
     *error = "every parameter is fixed: nothing is left to fit";
   }
   return error->empty();
-}
-
-bool MayTakeOver(const ModelOptions& model) {
-  return model.learned != nullptr &&
-         (model.learned->shape.any() || model.interaction.LearnedBesideContact());
-}
-
-std::string NothingToTakeOver() {
-  return "--takeover_weight acts on a learned force beside gains or contact, but there is none; "
-         "add "
-         "one, as in --self_force=mlp:4 or --interaction=spring,damping,network:4";
 }
 
 bool NeedsGradientTraining(const FitOptions& options) {

@@ -97,8 +97,6 @@ struct FitOptions {
   // for models with no term that could feed a mode.
   double mode_weight = 0.0;
   double mode_margin = 0.2;
-  // Weight of the rollouts continued 40 frames past the data, with the push and 1.4 times the push.
-  double stability_weight = 0.0;
   // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
   // or "none".
   std::string pool = "none";
@@ -118,9 +116,6 @@ struct FitOptions {
   // Share of the recordings held out to stop a network's training before it learns the rest by
   // heart; 0: none, the prior alone holds it.
   double early_stopping = 0.0;
-  // Weight of what the network takes over from friction and balance
-  // (residuals/cost_functions/network_takeover.h).
-  double takeover_weight = 0.0;
   bool hold_network = false;  // its weights are taken as they are
   int ensemble = 1;           // networks from so many seeds; predictions are their median
 
@@ -150,12 +145,6 @@ struct FitOptions {
   // Whether a fit could use them; `error` says which option has which value and what it must be.
   bool IsValid(std::string* error) const;
 };
-
-// Whether what is learned could do what gains or contact do (network_takeover.h,
-// contact_takeover.h).
-bool MayTakeOver(const ModelOptions& model);
-// What --takeover_weight is told where it could not.
-std::string NothingToTakeOver();
 
 // More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
 // recordings would hold 20,000 rows of them.

@@ -1,7 +1,10 @@
 // ident: options and parameter tables to and from JSON.
 #include "ident/parameters/fit_options_json.h"
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/own_laws.h"
@@ -9,7 +12,14 @@
 namespace pushid {
 
 namespace {
+
 using Json = nlohmann::ordered_json;
+
+// Of earlier versions. A model that did without them is as good as ever.
+constexpr const char* kRetiredWeights[] = {"stability_weight", "takeover_weight"};
+// The parameters of the interaction term `drive`, which `interaction` would name.
+constexpr const char* kRetiredParameters[] = {"drive_gain", "drive_torque", "drive_time"};
+
 }  // namespace
 
 Json TableJson(const ParameterTable& table) {
@@ -49,10 +59,12 @@ Json SettingsJson(const FitOptions& options) {
 ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
   ParameterTable table = known;
   for (const Json& row : json) {
-    ParameterSpec* spec = table.Find(row.at("name").get<std::string>());
-    if (spec == nullptr) {
-      throw std::runtime_error("unknown parameter '" + row.at("name").get<std::string>() + "'");
+    const std::string name = row.at("name");
+    if (std::count(std::begin(kRetiredParameters), std::end(kRetiredParameters), name) > 0) {
+      continue;
     }
+    ParameterSpec* spec = table.Find(name);
+    if (spec == nullptr) throw std::runtime_error("unknown parameter '" + name + "'");
     spec->unit = row.at("unit");
     spec->nominal = row.at("nominal");
     spec->lower = row.at("bounds").at(0);
@@ -73,6 +85,12 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
 
 FitOptions OptionsFrom(const Json& json) {
   FitOptions options;
+  for (const char* retired : kRetiredWeights) {
+    if (json.value(retired, 0.0) == 0.0) continue;
+    throw std::runtime_error(std::string(retired) +
+                             " was an option of earlier versions; models fitted with it cannot be "
+                             "read any more");
+  }
   for (const FitOptionRow& row : FitOptionRows()) {
     if (row.json.empty()) continue;
     const Json::json_pointer place(row.json);

@@ -155,7 +155,7 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   const auto fill = [&](int first, int last, int fan_in) {
     for (int i = first; i < last; ++i) weights[i] = random.Normal() / std::sqrt(fan_in);
   };
-  fill(0, shape.gates_at(), shape.num_inputs());
+  fill(0, shape.gates_at(), kMotionInputs);
   fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
   fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
   if (shape.kind == NetworkKind::kLstm) {
@@ -237,7 +237,6 @@ Json ToJson(const LearnedTerms& network) {
   Json json = {{"kind", NameOf(s.kind)},
                {"hidden", s.hidden},
                {"embedding", s.embedding},
-               {"rod_input", s.rod_input},
                {"rod", {{"kind", NameOf(network.rod.kind)}, {"hidden", network.rod.hidden}}},
                {"weights", network.weights}};
   if (network.pair.any()) json["interaction"] = {{"hidden", network.pair.hidden}};
@@ -263,9 +262,8 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   }
   s.hidden = json.at("hidden");
   s.embedding = json.at("embedding");
-  s.rod_input = json.at("rod_input");
-  if (s.rod_input && !(s.any() && network.rod.moves())) {
-    throw std::runtime_error("network: rod_input is for a network beside a rod that moves");
+  if (json.value("rod_input", false)) {
+    throw std::runtime_error("network: rod_input, an option of earlier versions, is gone");
   }
   if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < 0 ||
       s.embedding > kLargestSize) {

@@ -5,7 +5,7 @@
 //   lstm:256:32                     with an embedding of 32 before it
 //   constant, linear, mlp:4, mlp:256-128-256                     a law of the rod
 //   network:4, network:8-8, among the terms of an interaction    hidden sizes
-// JSON: {"kind": "gru", "hidden": 8, "embedding": 0, "rod_input": false,
+// JSON: {"kind": "gru", "hidden": 8, "embedding": 0,
 //        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4]},
 //        "weights": [...]}
 // weights: the flat array of models/learned_terms.h, without loss. Kind none, and no interaction,

@@ -36,8 +36,7 @@ LearnedTerms Learned(const FitOptions& o) {
   return o.model.learned != nullptr ? *o.model.learned : LearnedTerms{};
 }
 void SetLearned(const LearnedTerms& network, FitOptions* o) {
-  const bool any = network.any() || network.shape.rod_input;
-  o->model.learned = any ? std::make_shared<const LearnedTerms>(network) : nullptr;
+  o->model.learned = network.any() ? std::make_shared<const LearnedTerms>(network) : nullptr;
 }
 
 Row StanceRow() {
@@ -113,17 +112,6 @@ Row RodRow() {
   return row;
 }
 
-Row RodInputRow() {
-  return BoolRow(
-      "rod_input", "use the displacement of the rod as an input of the self force's network",
-      [](const FitOptions& o) { return Learned(o).shape.rod_input; },
-      [](bool value, FitOptions* o) {
-        LearnedTerms network = Learned(*o);
-        network.shape.rod_input = value;
-        SetLearned(network, o);
-      });
-}
-
 Row PresetPriorsRow() {
   return BoolRow(
       "preset_priors", "keep the preset's weak priors",
@@ -138,7 +126,7 @@ Row InteractionRow() {
                "(smooth and mutual: spring,damping), spring, damping, ldp (smoothed: "
                "potential,lean), potential, lean, ldp_discrete (LDP's exact form, for evaluation "
                "only), network:4 (learned beside contact, by hidden sizes), network (given by "
-               "--interaction_network), drive (people pushed by others keep stepping)",
+               "--interaction_network)",
                [](const std::string& text, FitOptions* o) -> MaybeError {
                  const Result<InteractionChoice> choice = ParseInteraction("--interaction", text);
                  if (!choice.ok()) return choice.error();
@@ -189,7 +177,6 @@ std::vector<Row> ModelOptionRows() {
           "with ankle torques up to the weight times these)")),
       SelfForceRow(),
       RodRow(),
-      RodInputRow(),
       NameRow<SkeletonMapping>(
           "mapping", "/mapping", [](O & o) -> auto& { return o.mapping; },
           "skeleton to pendulum: exact, or ldp for comparison"),

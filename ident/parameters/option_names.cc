@@ -75,9 +75,6 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
       terms->*member = true;
     }
   }
-  if (terms->drive && !terms->Any()) {
-    return Error{flag + ": drive acts on what people receive from others; add contact or ldp"};
-  }
   return std::nullopt;
 }
 

@@ -206,11 +206,6 @@ std::vector<Row> WeightRows() {
       NumberRow(
           "mode_margin", "/mode_margin_per_s", [](O & o) -> auto& { return o.mode_margin; },
           kNumber, "slowest decay the hinge allows, 1/s"),
-      NumberRow(
-          "stability_weight", "/stability_weight",
-          [](O & o) -> auto& { return o.stability_weight; }, kNotNegative,
-          "weight of the rollouts continued past the end of the data, with the push and with 1.4 "
-          "times the push"),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
       MayBeAbsent(NumberRow(
@@ -221,10 +216,6 @@ std::vector<Row> WeightRows() {
           "early_stopping", "/early_stopping", [](O & o) -> auto& { return o.early_stopping; },
           {0.0, 0.5, false, "must lie between 0 and 0.5"},
           "share of the recordings held out for early stopping of a network's training; 0: none")),
-      MayBeAbsent(NumberRow(
-          "takeover_weight", "/takeover_weight", [](O & o) -> auto& { return o.takeover_weight; },
-          kNotNegative,
-          "weight of the penalty on what a network takes over from friction and balance")),
       MayBeAbsent(NumberRow(
           "body_weight", "/body_weight", [](O & o) -> auto& { return o.body_weight; }, kNotNegative,
           "weight of the restored bodies of --body_restoration against the recorded ones; 0: "

@@ -165,7 +165,6 @@ std::string MemoryOf(const ModelOptions& model) {
   if (model.stance != Stance::kSlide) return "--stance=" + NameOf(model.stance);
   if (model.learned != nullptr) return "a network";
   if (model.cart_derivative != CartDerivative::kNone) return "--cart_derivative";
-  if (model.interaction.drive) return "--interaction=drive";
   return "";
 }
 
@@ -183,7 +182,7 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   if (likelihood == Likelihood::kTrajectory) return;
   ProcessNoiseTerms& noise = options->model.process_noise;
   if (!noise.Any()) noise.diagonal = true;
-  options->settling_weight = options->mode_weight = options->stability_weight = 0.0;
+  options->settling_weight = options->mode_weight = 0.0;
 }
 
 std::vector<std::string> PresetNames() {

@@ -7,7 +7,6 @@
 
 #include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
-#include "residuals/cost_functions/rest_residual.h"
 
 namespace pushid {
 namespace {
@@ -201,6 +200,14 @@ RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecor
   const Prediction prediction = PredictReanchored(model, recording, observed);
   return ScoreOf(model, recording, prediction, observed);
 }
+
+namespace {
+
+// How much harder and longer people are pushed and watched than they were.
+constexpr double kStrongerPush = 1.4;
+constexpr int kFramesPastTheEnd = 40;
+
+}  // namespace
 
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording) {
   PendulumRecording harder = recording;

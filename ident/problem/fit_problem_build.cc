@@ -5,10 +5,7 @@
 #include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/body_residual.h"
 #include "residuals/cost_functions/condensed_rollout.h"
-#include "residuals/cost_functions/contact_takeover.h"
 #include "residuals/cost_functions/equation_error_residual.h"
-#include "residuals/cost_functions/modal_stability_residual.h"
-#include "residuals/cost_functions/network_takeover.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
 
@@ -80,17 +77,6 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
     built->Add(std::make_unique<RidgeResidual>(map_.num_weights, options_.network_prior),
                {point->weights.data()}, kNetworkCluster);
   }
-  if (map_.num_weights == 0 || options_.takeover_weight <= 0.0) return;
-  if (options_.model.learned->shape.any()) {
-    built->Add(
-        std::make_unique<TakeoverResidual>(recordings_, options_.model, options_.takeover_weight),
-        {point->weights.data()}, kPriorCluster);
-  }
-  if (options_.model.interaction.LearnedBesideContact()) {
-    built->Add(std::make_unique<ContactTakeoverResidual>(
-                   recordings_, options_.model, options_.table.Values(), options_.takeover_weight),
-               {point->weights.data()}, kPriorCluster);
-  }
 }
 
 // A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
@@ -125,9 +111,9 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
     std::vector<double*> rollout_blocks = blocks;
     if (map_.num_weights > 0) rollout_blocks.push_back(point->weights.data());
     const auto settle = [&](double mass, double impulse, int people) {
-      add(std::make_unique<SettlingResidual>(SettlingProblem(SettlingScene(mass, impulse, people),
-                                                             options_.model, map_, options_.sigmas,
-                                                             options_.settling_weight, unit)),
+      add(std::make_unique<SettlingResidual>(
+              MakeSettlingProblem(SettlingScene(mass, impulse, people), options_.model, map_,
+                                  options_.settling_weight, unit)),
           rollout_blocks);
     };
     if (options_.settling_weight > 0.0) {
@@ -142,18 +128,6 @@ void FitProblem::AddRest(FitPoint* point, Built* built) const {
           std::make_unique<ModalStabilityResidual>(options_.model, body, map_, options_.mode_margin,
                                                    options_.mode_weight, !unit.empty()),
           blocks, kSettlingCluster);
-    }
-  }
-  if (options_.stability_weight > 0.0) {
-    for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
-      if (Count(i) == 0) continue;
-      const double weight = options_.stability_weight * std::sqrt(static_cast<double>(Count(i)));
-      for (double factor : {1.0, kStrongerPush}) {
-        add(std::make_unique<StabilityResidual>(StabilityProblem(recordings_[i], factor,
-                                                                 kFramesPastTheEnd, options_.model,
-                                                                 map_, options_.sigmas, weight)),
-            RecordingBlocks(point, i));
-      }
     }
   }
 }

@@ -42,7 +42,6 @@ std::string TrainingText(const FitOptions& o) {
   if (o.early_stopping > 0.0) {
     text += ", early stopping on " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
   }
-  if (o.takeover_weight > 0.0) text += ", takeover weight " + Rounded(o.takeover_weight, 4);
   if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
     text += ", fixed while the errors above were computed";
   }

@@ -79,7 +79,7 @@ Eigen::MatrixXd CandidateJacobian(const FitProblem& problem, const FitPoint& est
                                   const PendulumRecording& candidate) {
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = options.stability_weight = options.mode_weight = 0.0;
+  options.settling_weight = options.mode_weight = 0.0;
   const std::vector<PendulumRecording> one = {candidate};
   const FitProblem alone(one, options);
   FitPoint point = alone.NominalPoint();

@@ -101,16 +101,14 @@ void AdjointGradient::Batch::SetForces(int step) {
   const int people = columns_.active(step);
   forces_.setZero(4, people);
   if (!network_) return;
-  const NetworkShape& shape = options_.learned->shape;
-  VectorX<double> u(shape.num_inputs());
-  inputs_.setZero(shape.num_inputs(), people);
+  VectorX<double> u(kMotionInputs);
+  inputs_.setZero(kMotionInputs, people);
   for (int column = 0; column < people; ++column) {
     const Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
     const PendulumState<double>& state = walker.path[step];
     SetMotionInputs<double>(state.q[2] - walker.self.posture[0],
                             state.q[3] - walker.self.posture[1], state.qd, &u);
-    if (shape.rod_input) u[kMotionInputs] = state.rod / kNetworkRod;
     inputs_.col(column) = u;
   }
   network_->Forward(step, inputs_, &forces_);

@@ -114,9 +114,8 @@ void AdjointGradient::Batch::ForcesBack(int step, std::vector<Adjoint>* adjoints
   if (network_) {
     network_->Backward(step, forces_, &inputs_);
     for (int column = 0; column < columns_.active(step); ++column) {
-      const auto u = inputs_.col(column);
-      (*adjoints)[column].state.tail<6>() += u.head<6>().cwiseProduct(MotionInputScales());
-      if (u.size() > kMotionInputs) (*adjoints)[column].rod += u[kMotionInputs] / kNetworkRod;
+      (*adjoints)[column].state.tail<6>() +=
+          inputs_.col(column).head<6>().cwiseProduct(MotionInputScales());
     }
   }
   if (!others_) return;

@@ -16,11 +16,6 @@ constexpr int kPeopleTogether = 64;
 MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
                             const ModelOptions& options, const ParameterMap& map) {
   if (options.learned == nullptr) return Error{"the adjoint gradient needs a network"};
-  if (options.interaction.drive) {
-    return Error{
-        "the adjoint gradient does not support --interaction=drive, which has internal memory; "
-        "leave drive out, or use a network small enough for Gauss-Newton"};
-  }
   if (options.stance != Stance::kSlide) {
     return Error{
         "the adjoint gradient is for feet that slide; leave --stance=threshold out, or use a "

@@ -50,7 +50,7 @@ struct AdjointCost {
 
 class AdjointGradient {
  public:
-  // Fails, in words, on drive, feet that stand and step, deviations, free initial velocities, and
+  // Fails, in words, on feet that stand and step, deviations, free initial velocities, and
   // where options have no network. map.num_weights: that of the network's.
   static Result<AdjointGradient> Create(const std::vector<AdjointRecording>& recordings,
                                         const ModelOptions& options, const ParameterMap& map,

@@ -31,7 +31,7 @@ NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels&
     scale_[n] = kNetworkAcceleration * masses[n];
     context_.col(n) = NetworkState<double>(shape, Body{masses[n]}).context;
   }
-  inputs_.resize(shape.num_inputs(), total);
+  inputs_.resize(kMotionInputs, total);
   z_.setZero(shape.gate_width(), total);
   activations_.resize(rows_, total);
   hidden_.resize(shape.hidden, total);
@@ -246,7 +246,7 @@ void NetworkLockstep::AddWeightGradient(double* gradient) {
     candidates.leftCols(nf) += stacked.block(2 * h, 0, h, nf);
     candidates.rightCols(h) += stacked.block(3 * h, nf, h, h);
   }
-  Eigen::Map<RowMajor>(gradient, shape_.embedding, shape_.num_inputs()) +=
+  Eigen::Map<RowMajor>(gradient, shape_.embedding, kMotionInputs) +=
       embedded_ * inputs_.transpose();
   Eigen::Map<RowMajor>(gradient + shape_.output_at(), 4, h) += outputs_ * hidden_.transpose();
 }

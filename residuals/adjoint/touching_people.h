@@ -29,7 +29,6 @@ struct PeopleNow {
 class TouchingPeople {
  public:
   // options and scenes must outlive the object; scenes: of the recordings, in the columns' order.
-  // No drive (models/drive.h).
   TouchingPeople(const ModelOptions& options, const std::vector<const Scene*>& scenes,
                  const VectorKernels& kernels);
 

@@ -1,8 +1,11 @@
-// residuals: settling and stability by forward sensitivities.
+// residuals: settling by forward sensitivities, and the hinge on the free modes.
 #include "residuals/cost_functions/rest_residual.h"
+
+#include <ceres/jet.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "residuals/cost_functions/rollout_residual.h"
 
@@ -11,6 +14,9 @@ namespace {
 
 constexpr double kWatched = 1.0;  // s, of settled people
 constexpr double kMet = 0.9;      // of what counts as settled: where the hinge begins
+constexpr int kRows = 3;          // for each frame and person
+
+using SettlingRows = Eigen::Matrix<double, kRows, 8>;  // residuals by [q, qd]
 
 // max(0, |v| / limit - 1) and its derivative by v.
 template <int kSize>
@@ -21,16 +27,32 @@ double Hinge(const Eigen::Matrix<double, kSize, 1>& v, double limit,
   return std::max(0.0, x);
 }
 
-}  // namespace
-
-double RestProblem::Scale() const {
-  return weight / std::sqrt((last_frame - first_frame) * scene.num_people());
+// The residuals of one frame and person, unweighted, and (where by_state is given) their
+// derivatives by [q, qd].
+void SettlingOf(const PendulumState<double>& state, const SelfForce& self, double* residuals,
+                SettlingRows* by_state) {
+  Eigen::Matrix<double, 1, 2> by_velocity;
+  Eigen::Matrix<double, 1, 1> by_angle[2];
+  residuals[0] = Hinge<2>(state.qd.head<2>(), kMet * kSettledSpeed, &by_velocity);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Matrix<double, 1, 1> lean(state.q[2 + axis] - self.posture[axis]);
+    residuals[1 + axis] = Hinge<1>(lean, kMet * kSettledLean, &by_angle[axis]);
+  }
+  if (by_state == nullptr) return;
+  by_state->setZero();
+  by_state->block<1, 2>(0, 4) = by_velocity;
+  for (int axis = 0; axis < 2; ++axis) (*by_state)(1 + axis, 2 + axis) = by_angle[axis](0);
 }
 
-RestProblem SettlingProblem(const Scene& scene, const ModelOptions& options,
-                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
-                            const std::string& unit) {
-  RestProblem problem;
+constexpr double kRate = 3.0;    // 1/s, sqrt(g / l): the modes' natural scale
+constexpr double kHinge = 0.01;  // eps
+
+}  // namespace
+
+SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& options,
+                                    const ParameterMap& map, double weight,
+                                    const std::string& unit) {
+  SettlingProblem problem;
   problem.scene = scene;
   problem.options = options;
   problem.map = map;
@@ -38,39 +60,21 @@ RestProblem SettlingProblem(const Scene& scene, const ModelOptions& options,
   if (unit.empty()) problem.map.num_deviations = 0;
   const std::vector<std::string> units(scene.people.size(), unit);
   problem.layout = BlockLayout(problem.map, units, false);
-  problem.sigmas = sigmas;
   problem.weight = weight;
   problem.first_frame = scene.SettledFrame();
   problem.last_frame = problem.first_frame + static_cast<int>(std::lround(kWatched / scene.dt));
   return problem;
 }
 
-RestProblem StabilityProblem(const PendulumRecording& recording, double factor, int extra_frames,
-                             const ModelOptions& options, const ParameterMap& map,
-                             const ResidualSigmas& sigmas, double weight) {
-  RestProblem problem;
-  problem.scene = ScalePushes(recording.scene, factor);
-  problem.options = options;
-  problem.map = map;
-  problem.layout = BlockLayout(map, PoolingUnits(recording, map.pool_by),
-                               recording.initial_velocity == InitialVelocity::kFree);
-  problem.sigmas = sigmas;
-  problem.weight = weight;
-  problem.first_frame = recording.num_frames();
-  problem.last_frame = recording.num_frames() + extra_frames;
-  return problem;
-}
-
-RestResidual::RestResidual(RestProblem problem, int rows)
-    : problem_(std::move(problem)), rows_(rows) {
+SettlingResidual::SettlingResidual(SettlingProblem problem) : problem_(std::move(problem)) {
   for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
   set_num_residuals((problem_.last_frame - problem_.first_frame) * problem_.scene.num_people() *
-                    rows_);
+                    kRows);
 }
 
-bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
-                            double** jacobians) const {
-  const RestProblem& p = problem_;
+bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
+                                double** jacobians) const {
+  const SettlingProblem& p = problem_;
   const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
   RolloutPath<double> path;
   if (!Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity, p.last_frame,
@@ -79,18 +83,19 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
     return false;
   }
   const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
-  const double scale = p.Scale();
+  const double scale = p.weight / std::sqrt((p.last_frame - p.first_frame) * p.scene.num_people());
   struct Slope {
     int frame, person, row;
-    RestRows by_state;
+    SettlingRows by_state;
   };
   std::vector<Slope> slopes;  // where there are any
-  RestRows by_state(rows_, 8);
+  SettlingRows by_state;
   int row = 0;
   for (int t = p.first_frame; t < p.last_frame; ++t) {
-    for (int n = 0; n < p.scene.num_people(); ++n, row += rows_) {
-      OfState(path.At(t, n), self[n], residuals + row, jacobians != nullptr ? &by_state : nullptr);
-      for (int k = 0; k < rows_; ++k) residuals[row + k] *= scale;
+    for (int n = 0; n < p.scene.num_people(); ++n, row += kRows) {
+      SettlingOf(path.At(t, n), self[n], residuals + row,
+                 jacobians != nullptr ? &by_state : nullptr);
+      for (int k = 0; k < kRows; ++k) residuals[row + k] *= scale;
       if (jacobians == nullptr || by_state.isZero(0.0)) continue;
       slopes.push_back({t, n, row, by_state});
     }
@@ -116,32 +121,73 @@ bool RestResidual::Evaluate(double const* const* blocks, double* residuals,
   return true;
 }
 
-void SettlingResidual::OfState(const PendulumState<double>& state, const SelfForce& self,
-                               double* residuals, RestRows* by_state) const {
-  Eigen::Matrix<double, 1, 2> by_velocity;
-  Eigen::Matrix<double, 1, 1> by_angle[2];
-  residuals[0] = Hinge<2>(state.qd.head<2>(), kMet * kSettledSpeed, &by_velocity);
-  for (int axis = 0; axis < 2; ++axis) {
-    const Eigen::Matrix<double, 1, 1> lean(state.q[2 + axis] - self.posture[axis]);
-    residuals[1 + axis] = Hinge<1>(lean, kMet * kSettledLean, &by_angle[axis]);
-  }
-  if (by_state == nullptr) return;
-  by_state->setZero();
-  by_state->block<1, 2>(0, 4) = by_velocity;
-  for (int axis = 0; axis < 2; ++axis) (*by_state)(1 + axis, 2 + axis) = by_angle[axis](0);
+ModalStabilityResidual::ModalStabilityResidual(const ModelOptions& options, const Body& body,
+                                               const ParameterMap& map, double margin,
+                                               double weight, bool of_unit)
+    : options_(options), body_(body), map_(map), margin_(margin), weight_(weight) {
+  mutable_parameter_block_sizes()->push_back(map.num_shared());
+  if (of_unit) mutable_parameter_block_sizes()->push_back(map.num_deviations);
+  set_num_residuals(kResiduals);
 }
 
-void StabilityResidual::OfState(const PendulumState<double>& state, const SelfForce& self,
-                                double* residuals, RestRows* by_state) const {
-  const ResidualSigmas& sigmas = problem_.sigmas;
-  if (by_state != nullptr) by_state->setZero();
-  for (int axis = 0; axis < 2; ++axis) {
-    residuals[axis] = (state.q[2 + axis] - self.posture[axis]) / sigmas.angle;
-    residuals[2 + axis] = state.qd[2 + axis] / sigmas.rate;
-    if (by_state == nullptr) continue;
-    (*by_state)(axis, 2 + axis) = 1.0 / sigmas.angle;
-    (*by_state)(2 + axis, 6 + axis) = 1.0 / sigmas.rate;
+template <typename T>
+Eigen::Matrix<T, ModalStabilityResidual::kResiduals, 1> ModalStabilityResidual::Hinges(
+    const ParameterSet<T>& p) const {
+  using std::sqrt;
+  constexpr double kScale[] = {kRate, kRate * kRate * kRate, kRate * kRate * kRate};
+  const UprightRest<T> rest(options_, body_, p);
+  Eigen::Matrix<T, kResiduals, 1> hinges;
+  for (int plane = 0; plane < 2; ++plane) {
+    const std::array<T, 3> conditions = FreeModes(rest, plane).Shifted(margin_).Conditions();
+    for (int i = 0; i < 3; ++i) {
+      const T x = -conditions[i] / kScale[i];
+      hinges[3 * plane + i] = 0.5 * weight_ * (x + sqrt(x * x + kHinge * kHinge));
+    }
   }
+  return hinges;
+}
+
+Eigen::Matrix<double, ModalStabilityResidual::kResiduals, kNumParameters>
+ModalStabilityResidual::ByFitted(const ParameterSet<double>& p) const {
+  // A few at a time: duals of jets of all parameters are a hundred times as long.
+  constexpr int kAtATime = 8;
+  using Jet = ceres::Jet<double, kAtATime>;
+  Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter;
+  by_parameter.setZero();
+  const int fitted = static_cast<int>(map_.fitted.size());
+  for (int first = 0; first < fitted; first += kAtATime) {
+    const int count = std::min(kAtATime, fitted - first);
+    ParameterSet<Jet> jets;
+    for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
+    for (int k = 0; k < count; ++k) jets[map_.fitted[first + k].parameter].v[k] = 1.0;
+    const Eigen::Matrix<Jet, kResiduals, 1> hinges = Hinges(jets);
+    for (int k = 0; k < count; ++k) {
+      for (int row = 0; row < kResiduals; ++row) {
+        by_parameter(row, map_.fitted[first + k].parameter) = hinges[row].v[k];
+      }
+    }
+  }
+  return by_parameter;
+}
+
+bool ModalStabilityResidual::Evaluate(double const* const* blocks, double* residuals,
+                                      double** jacobians) const {
+  const bool of_unit = parameter_block_sizes().size() > 1;
+  const ParameterSet<double> p = map_.Apply<double>(blocks[0], of_unit ? blocks[1] : nullptr);
+  Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
+  values = Hinges(p);
+  if (jacobians == nullptr) return true;
+  const Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter = ByFitted(p);
+  const int shared = map_.num_shared();
+  RowMajorMatrix by_column =
+      RowMajorMatrix::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
+  for (const ColumnEntry& entry : map_.Entries(p, of_unit ? shared : -1)) {
+    for (int row = 0; row < kResiduals; ++row) {
+      by_column(row, entry.column) += entry.derivative * by_parameter(row, entry.parameter);
+    }
+  }
+  ScatterJacobian(by_column, parameter_block_sizes(), 0, kResiduals, jacobians);
+  return true;
 }
 
 }  // namespace pushid

@@ -1,91 +1,76 @@
-// residuals: a pushed person shall have settled in time, and shall not fall soon after the
-// recording ends (stability). With n = frames times people, for frames first .. last - 1:
+// residuals: people shall come to rest: pushed people in time, and small deviations at all.
 //
-//   settling   r = weight / sqrt(n) [ hinge(speed / a_v - 1)            1
-//                                     hinge(|angles - rest| / a_q - 1)  2 ]
-//   stability  r = weight / sqrt(n) [ (angles - rest) / s_angle         2
-//                                     angular rates / s_rate            2 ]
-// hinge(x) = max(0, x); `rest` is the upright or initial posture the balance aims at; s: the sigmas
-// of frame_residual.h.
-// Settling is a demand, no pull: the people of the settling simulations (models/scene.h), from two
-// seconds after the push for a second. a_v and a_q are nine tenths of what counts as settled, so
-// that a demand of finite weight is met: whoever settles so is not moved at all, and needs no
-// derivatives, which are rolled out only up to the last frame that has any. Stability: a
-// recording's rollout continued beyond the data, with its push times a factor; it is non-zero at
-// the truth of synthetic data, so it biases a fit.
+// Settling, for the people of the settling simulations (models/scene.h), from two seconds after the
+// push for a second, n = frames times people:
+//   r = weight / sqrt(n) [ hinge(speed / a_v - 1)             1
+//                          hinge(|angles - rest| / a_q - 1)   2 ]     hinge(x) = max(0, x)
+// `rest` is the upright or initial posture that the balance aims at. a_v and a_q are nine tenths of
+// what counts as settled, so that a finite weight suffices: people who settle are not moved at all,
+// and need no derivatives, which are rolled out only up to the last frame that has any.
+//
+// Modal stability: the free modes of a person at rest shall decay, by a hinge on the three
+// Routh-Hurwitz conditions (models/modal_stability.h) of each plane, of the polynomial shifted by
+// `margin`: zero (to eps^2) where every mode decays faster than `margin` 1/s.
+//   r = weight * hinge(-condition / scale),   hinge(x) = (x + sqrt(x^2 + eps^2)) / 2
+//   residuals: 6; blocks: the shared parameters and, of_unit, the deviations of a unit.
+// Settling alone leaves an unstable mode that the simulations do not excite, such as one to the
+// side. Rejected: a hinge on the eigenvalues themselves, whose derivatives are infinite where two
+// of them meet, which is where a person stops swinging; and recordings rolled out past their end
+// (`--stability_weight`), which are non-zero at the truth of synthetic data and bias a fit.
 #pragma once
 
 #include <ceres/cost_function.h>
 
-#include "datasets/loading/pendulum_recording.h"
-#include "residuals/frame_residual.h"
+#include <string>
+
+#include "models/modal_stability.h"
 #include "residuals/parameter_map.h"
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {
 
-// How much longer and harder than its recording a stability rollout is.
-inline constexpr int kFramesPastTheEnd = 40;
-inline constexpr double kStrongerPush = 1.4;
-
-using RestRows = Eigen::Matrix<double, Eigen::Dynamic, 8>;  // residuals by [q, qd]
-
-struct RestProblem {
+struct SettlingProblem {
   Scene scene;
   ModelOptions options;
   ParameterMap map;
   BlockLayout layout;
-  ResidualSigmas sigmas;
-  double weight = 1.0;
+  double weight = 1.0;  // of a mean square
   int first_frame = 0, last_frame = 0;
-
-  // Of every residual: what makes `weight` that of a mean square.
-  double Scale() const;
 };
 
-// A settling simulation (models/scene.h) of people with the shared parameters, or with those of
-// `unit` (whose deviations are then the second block).
-RestProblem SettlingProblem(const Scene& scene, const ModelOptions& options,
-                            const ParameterMap& map, const ResidualSigmas& sigmas, double weight,
-                            const std::string& unit = "");
+// A settling simulation of people with the shared parameters, or with those of `unit` (whose
+// deviations are then the second block).
+SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& options,
+                                    const ParameterMap& map, double weight,
+                                    const std::string& unit = "");
 
-// The recording rolled out `extra_frames` past its end, its push multiplied by `factor`.
-RestProblem StabilityProblem(const PendulumRecording& recording, double factor, int extra_frames,
-                             const ModelOptions& options, const ParameterMap& map,
-                             const ResidualSigmas& sigmas, double weight);
-
-// What the two have in common: a rollout of `problem`, `rows` residuals for each frame and person.
-class RestResidual : public ceres::CostFunction {
+class SettlingResidual : public ceres::CostFunction {
  public:
-  RestResidual(RestProblem problem, int rows);
+  explicit SettlingResidual(SettlingProblem problem);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
- protected:
-  // The residuals of one frame and person, unweighted, and (where by_state is given) their
-  // derivatives by [q, qd].
-  virtual void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
-                       RestRows* by_state) const = 0;
-
-  const RestProblem problem_;
-  const int rows_;
+ private:
+  const SettlingProblem problem_;
 };
 
-class SettlingResidual : public RestResidual {
+class ModalStabilityResidual : public ceres::CostFunction {
  public:
-  explicit SettlingResidual(RestProblem problem) : RestResidual(std::move(problem), 3) {}
+  static constexpr int kResiduals = 6;
 
- protected:
-  void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
-               RestRows* by_state) const override;
-};
+  ModalStabilityResidual(const ModelOptions& options, const Body& body, const ParameterMap& map,
+                         double margin, double weight, bool of_unit = false);
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
-class StabilityResidual : public RestResidual {
- public:
-  explicit StabilityResidual(RestProblem problem) : RestResidual(std::move(problem), 4) {}
+ private:
+  template <typename T>
+  Eigen::Matrix<T, kResiduals, 1> Hinges(const ParameterSet<T>& p) const;
+  // Derivatives of the hinges by what is fitted; zero by all else.
+  Eigen::Matrix<double, kResiduals, kNumParameters> ByFitted(const ParameterSet<double>& p) const;
 
- protected:
-  void OfState(const PendulumState<double>& state, const SelfForce& self, double* residuals,
-               RestRows* by_state) const override;
+  ModelOptions options_;
+  Body body_;
+  ParameterMap map_;
+  double margin_, weight_;
 };
 
 }  // namespace pushid

@@ -48,37 +48,30 @@ void NetworkSensitivities::AddOwnGates(const NetworkState<double>& state, int bl
   AddOwn(first, width, shape_.candidate_width(), gain, state.context, rows);
 }
 
-void NetworkSensitivities::AdvanceEmbedding(const NetworkState<double>& state, const Heard& heard) {
+void NetworkSensitivities::AdvanceEmbedding(const NetworkState<double>& state,
+                                            const States& by_state) {
   const VectorXd slope = TanhSlope(state.features);
-  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(kMotionInputs) *
-                        MotionInputScales().asDiagonal();
-  SetNarrowProduct(embed, heard.by_state.middleRows<kMotionInputs>(2), embedding_);
-  if (shape_.rod_input && heard.rod.size() > 0) {
-    const VectorXd by_rod = slope.cwiseProduct(weights_.embed.col(kMotionInputs)) / kNetworkRod;
-    embedding_.noalias() += by_rod * heard.rod;
-  }
-  AddOwn(0, shape_.num_inputs(), 0, slope, state.inputs, embedding_.topRows(shape_.embedding));
+  const Columns embed = slope.asDiagonal() * weights_.embed * MotionInputScales().asDiagonal();
+  SetNarrowProduct(embed, by_state.middleRows<kMotionInputs>(2), embedding_);
+  AddOwn(0, kMotionInputs, 0, slope, state.inputs, embedding_.topRows(shape_.embedding));
 }
 
-void NetworkSensitivities::Carry(const Columns& step, const Heard& heard, bool add,
+void NetworkSensitivities::Carry(const Columns& step, const States& by_state, bool add,
                                  Columns* rows) const {
   if (shape_.embedding > 0) {
     NarrowProduct(step.leftCols(shape_.embedding), embedding_, add, *rows);
   } else {
     const Columns motion = step.leftCols(kMotionInputs) * MotionInputScales().asDiagonal();
-    NarrowProduct(motion, heard.by_state.middleRows<kMotionInputs>(2), add, *rows);
-    if (shape_.rod_input && heard.rod.size() > 0) {
-      rows->noalias() += (step.col(kMotionInputs) / kNetworkRod) * heard.rod;
-    }
+    NarrowProduct(motion, by_state.middleRows<kMotionInputs>(2), add, *rows);
   }
   if (shape_.recurrent()) AddNarrowProduct(step.rightCols(shape_.hidden), now_, *rows);
 }
 
-void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state, const Heard& heard) {
+void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state, const States& by_state) {
   const VectorXd slope = TanhSlope(state.gates);
   const int nf = shape_.num_features();
   const Columns step = slope.asDiagonal() * weights_.gates;
-  Carry(step, heard, false, &next_);
+  Carry(step, by_state, false, &next_);
   auto rows = next_.topRows(shape_.hidden);
   const int first = shape_.gates_at(), width = shape_.gate_width();
   AddOwn(first, width, 0, slope, state.features, rows);
@@ -87,7 +80,7 @@ void NetworkSensitivities::AdvanceMlp(const NetworkState<double>& state, const H
          rows);
 }
 
-void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const Heard& heard) {
+void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const States& by_state) {
   const int nf = shape_.num_features(), h = shape_.hidden;
   const VectorXd slope = LogisticSlope(state.gates);
   const VectorXd keep = state.gates.head(h), recall = state.gates.tail(h);
@@ -100,7 +93,7 @@ void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const H
   step.leftCols(nf) += by_n.asDiagonal() * weights_.candidates.leftCols(nf);
   step.rightCols(h) += by_n.cwiseProduct(recall).asDiagonal() * weights_.candidates.rightCols(h);
   step.rightCols(h).diagonal() += keep;
-  Carry(step, heard, false, &next_);
+  Carry(step, by_state, false, &next_);
   AddOwnGates(state, 0, by_z, next_.topRows(h));
   AddOwnGates(state, 1, by_r, next_.topRows(h));
   const int first = shape_.candidates_at(), width = shape_.candidate_width();
@@ -108,7 +101,7 @@ void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const H
   AddOwn(first, width, nf, by_n.cwiseProduct(recall), state.hidden_before, next_.topRows(h));
 }
 
-void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const Heard& heard) {
+void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const States& by_state) {
   const int nf = shape_.num_features(), h = shape_.hidden;
   const VectorXd slope = LogisticSlope(state.gates);
   const VectorXd input = state.gates.head(h), output = state.gates.tail(h);
@@ -121,7 +114,7 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const 
   step += by_f.asDiagonal() * weights_.gates.middleRows(h, h);
   step += by_g.asDiagonal() * weights_.candidates;
   cell_ = state.gates.segment(h, h).asDiagonal() * cell_;
-  Carry(step, heard, true, &cell_);
+  Carry(step, by_state, true, &cell_);
   AddOwnGates(state, 0, by_i, cell_.topRows(h));
   AddOwnGates(state, 1, by_f, cell_.topRows(h));
   const int first = shape_.candidates_at(), width = shape_.candidate_width();
@@ -129,27 +122,25 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const 
   AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
 
   step = by_o.asDiagonal() * weights_.gates.bottomRows(h);
-  Carry(step, heard, false, &next_);
+  Carry(step, by_state, false, &next_);
   next_ += output.cwiseProduct(TanhSlope(state.cell_tanh)).asDiagonal() * cell_;
   AddOwnGates(state, 2, by_o, next_.topRows(h));
 }
 
-void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state,
-                                   const Row& rod) {
-  const Heard heard{by_state, rod};
-  if (shape_.embedding > 0) AdvanceEmbedding(state, heard);
+void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state) {
+  if (shape_.embedding > 0) AdvanceEmbedding(state, by_state);
   now_.swap(next_);
   switch (shape_.kind) {
     case NetworkKind::kNone:
       return;
     case NetworkKind::kMlp:
-      AdvanceMlp(state, heard);
+      AdvanceMlp(state, by_state);
       break;
     case NetworkKind::kGru:
-      AdvanceGru(state, heard);
+      AdvanceGru(state, by_state);
       break;
     case NetworkKind::kLstm:
-      AdvanceLstm(state, heard);
+      AdvanceLstm(state, by_state);
       break;
   }
   hidden_ = state.hidden;

@@ -20,16 +20,13 @@ class NetworkSensitivities {
   using ForceColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
   using StateColumns = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
   using States = Eigen::Ref<const StateColumns>;
-  using Row = Eigen::Ref<const Eigen::RowVectorXd>;
 
   // weight_column: of the first weight; negative when the weights are not fitted.
   NetworkSensitivities(const NetworkShape& shape, const double* weights, double mass,
                        int num_columns, int weight_column);
 
-  // state: after the step; by_state: d[q, qd]/d(columns) of the person at the step's frame; rod:
-  // d(l)/d(columns) there, empty where the rod is constant.
-  void Advance(const NetworkState<double>& state, const States& by_state,
-               const Row& rod = Eigen::RowVectorXd());
+  // state: after the step; by_state: d[q, qd]/d(columns) of the person at the step's frame.
+  void Advance(const NetworkState<double>& state, const States& by_state);
 
   // Adds d(force)/d(columns) of the last step.
   void AddTo(ForceColumns* by_column) const;
@@ -37,14 +34,9 @@ class NetworkSensitivities {
   void AddTo(const Eigen::RowVector4d& by_force, Eigen::RowVectorXd* by_column) const;
 
  private:
-  // What a step hears of one moment: d[q, qd]/d(columns), d(rod)/d(columns).
-  struct Heard {
-    const States& by_state;
-    const Row& rod;
-  };
-  void AdvanceEmbedding(const NetworkState<double>& state, const Heard& heard);
+  void AdvanceEmbedding(const NetworkState<double>& state, const States& by_state);
   // rows = step [features; hidden], or the same added: the linearized step meets the columns.
-  void Carry(const Columns& step, const Heard& heard, bool add, Columns* rows) const;
+  void Carry(const Columns& step, const States& by_state, bool add, Columns* rows) const;
   // Rows of weights, `width` apart from `first` on, whose sums move their rows by `gain`: adds gain
   // times what each weight multiplies, from the row's weight `offset` on.
   template <typename Rows>
@@ -54,9 +46,9 @@ class NetworkSensitivities {
   template <typename Rows>
   void AddOwnGates(const NetworkState<double>& state, int block, const Eigen::VectorXd& gain,
                    Rows rows) const;
-  void AdvanceMlp(const NetworkState<double>& state, const Heard& heard);
-  void AdvanceGru(const NetworkState<double>& state, const Heard& heard);
-  void AdvanceLstm(const NetworkState<double>& state, const Heard& heard);
+  void AdvanceMlp(const NetworkState<double>& state, const States& by_state);
+  void AdvanceGru(const NetworkState<double>& state, const States& by_state);
+  void AdvanceLstm(const NetworkState<double>& state, const States& by_state);
 
   NetworkShape shape_;
   NetworkWeights<double> weights_;

@@ -31,7 +31,7 @@ struct RodStep {
 class RodSensitivities {
  public:
   using States = NetworkSensitivities::States;
-  using Row = NetworkSensitivities::Row;
+  using Row = Eigen::Ref<const Eigen::RowVectorXd>;
 
   // weights: of the whole network; weight_column: of the first of them, negative when not fitted.
   RodSensitivities(const LearnedTerms& network, const double* weights, int num_columns,

@@ -1,8 +1,6 @@
 // residuals: the chained forward sensitivities.
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <optional>
 
@@ -57,17 +55,15 @@ const double* Weights(const ModelOptions& options, const SensitivityInputs& inpu
                                            : options.learned->weights.data();
 }
 
-// Derivatives of what everybody gets from others, now and lately.
+// Derivatives of what everybody gets from others.
 class ReceivedSensitivities {
  public:
   ReceivedSensitivities(const Scene& scene, const ModelOptions& options,
                         const SensitivityInputs& inputs)
-      : scene_(scene),
-        options_(options),
+      : options_(options),
         inputs_(inputs),
         weights_(options.interaction.learned ? Weights(options, inputs) : nullptr),
-        now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)),
-        lately_(options.interaction.drive ? now_ : std::vector<Columns>()) {
+        now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)) {
     for (const ColumnEntry& entry : inputs.entries[0]) {
       if (IsPairParameter(entry.parameter)) pair_entries_.push_back(entry);
     }
@@ -103,30 +99,8 @@ class ReceivedSensitivities {
   }
 
   // Adds what person n feels of it.
-  void AddTo(int n, const SceneForces<double>& forces, Columns* by_column) const {
+  void AddTo(int n, Columns* by_column) const {
     if (options_.interaction.Any()) *by_column += now_[n];
-    if (!options_.interaction.drive) return;
-    using Jet = ceres::Jet<double, 4 + kDriveParameters>;  // by w, then the drive's parameters
-    const Vector4<Jet> force = DriveForce(DriveJets<Jet>(forces.Parameters(n), 4),
-                                          VectorJets<Jet>(forces.received(n).lately, 0));
-    const Matrix4<double> by_lately = Derivatives<4>(force, 0);
-    *by_column += by_lately * lately_[n];
-    AddByParameter(n, Derivatives<kDriveParameters>(force, 4), by_column);
-  }
-
-  // On to the next frame; forces: still at this one.
-  void Advance(const SceneForces<double>& forces) {
-    if (!options_.interaction.drive) return;
-    using Jet = ceres::Jet<double, 8 + kDriveParameters>;  // by w, F, then the drive's parameters
-    for (int n = 0; n < scene_.num_people(); ++n) {
-      const Received<double>& received = forces.received(n);
-      const Vector4<Jet> next =
-          NextReceived(DriveJets<Jet>(forces.Parameters(n), 8), VectorJets<Jet>(received.lately, 0),
-                       VectorJets<Jet>(Vector4<double>(received.Now()), 4), scene_.dt);
-      const Matrix4<double> by_lately = Derivatives<4>(next, 0), by_now = Derivatives<4>(next, 4);
-      lately_[n] = (by_lately * lately_[n] + by_now * now_[n]).eval();
-      AddByParameter(n, Derivatives<kDriveParameters>(next, 8), &lately_[n]);
-    }
   }
 
  private:
@@ -147,47 +121,13 @@ class ReceivedSensitivities {
     return jacobian;
   }
 
-  static constexpr int kDriveParameters = kDriveTime - kDriveGain + 1;
-
-  template <typename Jet>
-  static ParameterSet<Jet> DriveJets(const ParameterSet<double>& p, int first) {
-    ParameterSet<Jet> jets;
-    for (int i = 0; i < kDriveParameters; ++i) {
-      jets[kDriveGain + i] = Jet(p[kDriveGain + i], first + i);
-    }
-    return jets;
-  }
-  template <typename Jet>
-  static Vector4<Jet> VectorJets(const Vector4<double>& v, int first) {
-    Vector4<Jet> jets;
-    for (int i = 0; i < 4; ++i) jets[i] = Jet(v[i], first + i);
-    return jets;
-  }
-  template <int kCount, typename Jet>
-  static Eigen::Matrix<double, 4, kCount> Derivatives(const Vector4<Jet>& jets, int first) {
-    Eigen::Matrix<double, 4, kCount> derivatives;
-    for (int row = 0; row < 4; ++row) {
-      derivatives.row(row) = jets[row].v.template segment<kCount>(first).transpose();
-    }
-    return derivatives;
-  }
-  void AddByParameter(int n, const Eigen::Matrix<double, 4, kDriveParameters>& by_parameter,
-                      Columns* columns) const {
-    for (const ColumnEntry& entry : inputs_.entries[n]) {
-      const int at = entry.parameter - kDriveGain;
-      if (at < 0 || at >= kDriveParameters) continue;
-      columns->col(entry.column) += entry.derivative * by_parameter.col(at);
-    }
-  }
-
-  const Scene& scene_;
   const ModelOptions& options_;
   const SensitivityInputs& inputs_;
   std::vector<ColumnEntry> pair_entries_;
   const double* weights_;  // of what is learned; null where no interaction is
   PairByWeight by_weight_;
   std::optional<HeldPairs> held_;  // where weights are, and are not fitted
-  std::vector<Columns> now_, lately_;
+  std::vector<Columns> now_;
 };
 
 // Without what a person alone does not have.
@@ -307,9 +247,9 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       }
       const auto rod_now = sensitivities->Rod(t, n);
       if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, a) * rod_now;
-      if (!networks.empty()) networks[n].Advance(forces.network(n), now, rod_now);
+      if (!networks.empty()) networks[n].Advance(forces.network(n), now);
       if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
-        received.AddTo(n, forces, &by_column);
+        received.AddTo(n, &by_column);
         if (!networks.empty()) networks[n].AddTo(&by_column);
       }
       auto next = sensitivities->At(t + 1, n);
@@ -325,7 +265,6 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       sensitivities->Rod(t + 1, n) =
           rod_now + scene.dt * rod->Velocity(step, now, sensitivities->At(before, n), rod_now);
     }
-    received.Advance(forces);
   }
   for (int n = 0; n < people; ++n) {
     sensitivities->AnglesAt(num_frames - 1, n) = Angles<double>(path->At(num_frames - 1, n).q);

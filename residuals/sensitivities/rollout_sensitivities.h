@@ -5,10 +5,9 @@
 //   S_qd <- S_qd + dt da,   S_q <- S_q + dt S_qd
 // Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
-// columns (measured in tests/benchmarks). What was received lately (models/drive.h) is a state too
-// (so is a network's memory: network_sensitivities.h, and a rod that moves: rod_sensitivities.h):
-//   dw <- a dw + (1 - a) dF_interaction + (w - F_interaction) da,
-// and the step state of feet that stand and step (stance_sensitivities.h).
+// columns (measured in tests/benchmarks). States beside s are carried in the same way: a network's
+// memory (network_sensitivities.h), a rod that moves (rod_sensitivities.h), and the step state of
+// feet that stand and step (stance_sensitivities.h).
 #pragma once
 
 #include <Eigen/Core>

@@ -26,9 +26,9 @@ TEST_F(NetworkAppTest, EveryProgramTakesAnEnsemble) {
 
 TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
   const std::string model =
-      FitModel("model.json", {"--self_force=mlp:2", "--rod=linear", "--rod_input", "--ensemble=2"});
+      FitModel("model.json", {"--self_force=mlp:2", "--rod=linear", "--ensemble=2"});
   EXPECT_EQ(Json(model).at("self_network").at("rod").at("kind"), "linear");
-  EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 26u + 11u);
+  EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 24u + 11u);
   for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
            {"pushid-report", {Recordings(), "--html_out=" + Path("report.html")}},
            {"pushid-evaluate", {Recordings()}},
@@ -50,12 +50,7 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
   for (const auto& [flags, complaint] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--rod=gru:4"}, "--rod is 'gru:4'"},
-           {{"--rod_input", "--rod=linear"}, "--rod_input is for a network beside a rod"},
-           {{"--rod_input", "--self_force=mlp:2"}, "--rod_input is for a network beside a rod"},
-           {{"--rod=linear", "--takeover_weight=1"},
-            "a learned force beside gains or contact, but there is none"},
            {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"},
-           {{"--self_force=lstm:64", "--takeover_weight=1"}, "--takeover_weight is for small"},
            {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},
             "--profile and --bootstrap need the minimum of the cost"},
            {{"--self_from=" + FitModel("gru.json", {"--self_force=gru:2"})},

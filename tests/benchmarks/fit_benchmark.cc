@@ -82,17 +82,16 @@ void UncertaintyAlone(benchmark::State& state, const char* preset) {
 BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
 
-FitOptions GroupOptions(SelfForceKind self_force, bool drive) {
+FitOptions GroupOptions(SelfForceKind self_force) {
   FitOptions options = MakePreset("group").value();
   options.pool = "none";
   SetSelfForce(self_force, &options);
-  options.model.interaction.drive = drive;
   FreeTerms(&options);
   return options;
 }
 
 FitOptions PooledOptions() {
-  FitOptions options = GroupOptions(SelfForceKind::kLinear, false);
+  FitOptions options = GroupOptions(SelfForceKind::kLinear);
   options.pool_by = kSettingLabel;
   options.pooling_sigma = 0.3;
   for (ParameterSpec& spec : options.table.specs) spec.pooled = spec.free;
@@ -140,11 +139,9 @@ void GroupJacobian(benchmark::State& state, const FitOptions& options) {
                  std::to_string(Groups().recordings.size()) + " " + Groups().origin +
                  " recordings");
 }
-BENCHMARK_CAPTURE(GroupJacobian, contact, GroupOptions(SelfForceKind::kNone, false))
+BENCHMARK_CAPTURE(GroupJacobian, contact, GroupOptions(SelfForceKind::kNone))
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, GroupOptions(SelfForceKind::kLinear, false))
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(GroupJacobian, linear_contact_drive, GroupOptions(SelfForceKind::kLinear, true))
+BENCHMARK_CAPTURE(GroupJacobian, linear_and_contact, GroupOptions(SelfForceKind::kLinear))
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(GroupJacobian, pooled, PooledOptions())->Unit(benchmark::kMillisecond);
 
@@ -161,9 +158,9 @@ void GroupSolve(benchmark::State& state, const FitOptions& options) {
   state.counters["cost"] = solution.Best().cost;
   state.counters["iterations"] = solution.Best().iterations;
 }
-BENCHMARK_CAPTURE(GroupSolve, contact, GroupOptions(SelfForceKind::kNone, false))
+BENCHMARK_CAPTURE(GroupSolve, contact, GroupOptions(SelfForceKind::kNone))
     ->Unit(benchmark::kSecond);
-BENCHMARK_CAPTURE(GroupSolve, linear_and_contact, GroupOptions(SelfForceKind::kLinear, false))
+BENCHMARK_CAPTURE(GroupSolve, linear_and_contact, GroupOptions(SelfForceKind::kLinear))
     ->Unit(benchmark::kSecond);
 
 BENCHMARK_CAPTURE(GroupSolve, group_preset, PooledOptions())->Unit(benchmark::kSecond);

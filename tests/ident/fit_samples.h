@@ -79,7 +79,7 @@ inline FitOptions DefaultFit(const SyntheticOptions& study) {
 inline FitOptions UnbiasedFit(const SyntheticOptions& study) {
   FitOptions options = DefaultFit(study);
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.settling_weight = options.stability_weight = 0.0;
+  options.settling_weight = 0.0;
   options.sigmas.robust = 0.0;
   options.sigma_source = SigmaSource::kFixed;
   options.recording_weight = RecordingWeight::kRecording;

@@ -14,7 +14,6 @@ ParameterSet<double> BlockParameters() {
   p[kTailGain] = 1.0, p[kTailTime] = 0.2, p[kTailExponent] = 1.0;
   p[kContactStiffness] = 2500.0, p[kContactDistance] = 0.42, p[kContactKappa] = 0.5;
   p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
-  p[kDriveGain] = 0.3, p[kDriveTorque] = 0.1, p[kDriveTime] = 0.3;
   p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.08, p[kAnkleReach] = 1.5;
   p[kStepGain] = p[kStaticFriction] = 1.0, p[kStepOnset] = 0.1, p[kStepRelease] = 0.3;
   return p;
@@ -39,7 +38,7 @@ Scene Block(int rows, int columns) {
 
 ModelOptions Options() {
   ModelOptions options;
-  options.interaction.spring = options.interaction.damping = options.interaction.drive = true;
+  options.interaction.spring = options.interaction.damping = true;
   return options;
 }
 

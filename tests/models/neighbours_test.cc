@@ -60,7 +60,6 @@ ParameterSet<double> CrowdParameters() {
   p[kContactDamping] = 150.0, p[kContactHeight] = 0.5;
   p[kPotentialStrength] = 50.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.5;
   p[kLeanTheta] = 20.0, p[kLeanPhi] = 20.0;
-  p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.3;
   return p;
 }
 
@@ -82,7 +81,7 @@ Scene RandomCrowd(int people, Random* random) {
 TEST(NeighbourGrid, OrderOfPeopleNeverChangesTheRollout) {
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = true;
-  options.interaction.potential = options.interaction.lean = options.interaction.drive = true;
+  options.interaction.potential = options.interaction.lean = true;
   Random random(2);
   for (int people : {4, 20}) {
     const Scene scene = RandomCrowd(people, &random);

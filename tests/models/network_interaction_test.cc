@@ -101,7 +101,7 @@ TEST(NetworkInteraction, LdpsSizeRunsInARollout) {
   options.interaction_network = network;
   ParameterSet<double> p = NetworkParameters();
   p[kMu] = 40.0, p[kKpTheta] = p[kKpPhi] = 1800.0, p[kKdTheta] = p[kKdPhi] = 80.0;
-  p[kTailTime] = p[kDriveTime] = 0.2;
+  p[kTailTime] = 0.2;
   RolloutPath<double> path;
   ForceTrace trace;
   ASSERT_TRUE(Rollout<double>(scene, options, {p}, InitialVelocities(scene), 20, &path, &trace).ok);

@@ -77,8 +77,6 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
             (Names{"potential_strength", "potential_length", "neighbour_range", "lean_theta",
                    "lean_phi"}));
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.network = true; }), Names{"neighbour_range"});
-  EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.drive = true; }),
-            (Names{"drive_gain", "drive_torque", "drive_time"}));
   EXPECT_EQ(adds([](ModelOptions* m) {
               LearnedTerms network;
               network.rod.kind = RodKind::kLinear;

@@ -156,7 +156,7 @@ TEST(OwnLaw, BentLawsBendTheFreeModes) {
   }
 }
 
-// Sensitivities against Jets through the whole rollout; contact, drive and a learned rod beside it.
+// Sensitivities against Jets through the whole rollout; contact and a learned rod beside it.
 TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
   Random random(7);
   for (const bool learned : {false, true}) {
@@ -164,7 +164,7 @@ TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
     if (learned) {
       options = WithNetwork({NetworkKind::kMlp, 3}, 0.1, &random, {RodKind::kLinear, {}});
     } else {
-      options.interaction.spring = options.interaction.damping = options.interaction.drive = true;
+      options.interaction.spring = options.interaction.damping = true;
     }
     options.own_laws = {FrictionLaw(), BentLaw()};
     Scene scene = SceneOfPeople(2, 0.05, &random);

@@ -29,7 +29,6 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
   p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
-  p[kDriveGain] = 0.4, p[kDriveTorque] = 0.2, p[kDriveTime] = 0.25;
   p[kRodLift] = 0.8;
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09, p[kAnkleReach] = 1.3;
   p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
@@ -197,10 +196,10 @@ inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* 
 inline std::vector<InteractionTerms> SomeInteractions() {
   std::vector<InteractionTerms> some(6);
   some[1].spring = some[1].damping = true;
-  some[2].spring = some[2].drive = true;
+  some[2].spring = true;
   some[3].damping = some[3].potential = true;
-  some[4].lean = some[4].drive = true;
-  some[5].spring = some[5].damping = some[5].potential = some[5].lean = some[5].drive = true;
+  some[4].lean = true;
+  some[5].spring = some[5].damping = some[5].potential = some[5].lean = true;
   return some;
 }
 
@@ -224,7 +223,7 @@ inline std::vector<ModelOptions> EveryModelOptions() {
 
 inline std::string DescribeTerms(const InteractionTerms& t) {
   std::string text;
-  for (bool on : {t.spring, t.damping, t.potential, t.lean, t.ldp_discrete, t.drive}) {
+  for (bool on : {t.spring, t.damping, t.potential, t.lean, t.ldp_discrete}) {
     text += on ? "1" : "0";
   }
   return text;

@@ -22,7 +22,6 @@ CANDIDATES = [
     ("nothing pooled, free to move on", "--pool=none --settling_weight=0 --mode_weight=0"),
     ("distance and stiffness pooled", "--pool=contact_distance,contact_stiffness"),
     ("mu by setting as well", "--pool=all"),
-    ("with drive", "--interaction=contact,drive"),
 ]
 PRESET = "--preset=group"
 

@@ -44,9 +44,9 @@ TEST(FitSetup, OptionsOverThePreset) {
 TEST(FitSetup, PoolingFollowsTheTerms) {
   const FitOptions group = MakeFitOptions({{"preset", "group"}}).value();
   EXPECT_TRUE(group.table[kContactDistance].pooled);
-  const FitOptions drive =
-      MakeFitOptions({{"preset", "group"}, {"interaction", "contact,drive"}}).value();
-  EXPECT_TRUE(drive.table[kDriveGain].pooled);
+  const FitOptions repelled =
+      MakeFitOptions({{"preset", "group"}, {"interaction", "contact,potential"}}).value();
+  EXPECT_TRUE(repelled.table[kPotentialStrength].pooled);
   const FitOptions none = MakeFitOptions({{"preset", "group"}, {"pool", "none"}}).value();
   EXPECT_FALSE(AnyPooled(none.table));
 }
@@ -73,9 +73,6 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
     EXPECT_TRUE(NeedsGradientTraining(made.value()));
     EXPECT_TRUE(AnyPooled(made.value().table)) << preset;
   }
-  EXPECT_TRUE(Contains(
-      Complaint({{"preset", "group"}, {"interaction", "spring,damping,drive,network:64-64"}}),
-      "does not support --interaction=drive"));
   EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
 }
 
@@ -196,7 +193,6 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"horizons", "8,x"}}, "--horizons: 'x'"},
       {{{"seed", "-1"}}, "--seed is '-1'"},
       {{{"fix", "nu"}}, "--fix names 'nu'"},
-      {{{"rod_input", "true"}}, "--rod_input is for a network"},
       {{{"interaction", "network"}}, "--interaction_network must name"},
       {{{"interaction_network", "n.json"}}, "--interaction does not name network"},
       {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
@@ -208,8 +204,6 @@ TEST(FitSetup, BadOptionsAreNamed) {
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
       {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
        "--pooling_sigma applies to pooled parameters"},
-      {{{"rod", "linear"}, {"takeover_weight", "1"}},
-       "a learned force beside gains or contact, but there is none"},
       {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
       {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
        "--ensemble does not go together with --pool"},
@@ -256,10 +250,10 @@ TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
 // The way of the library and that of the flags are one.
 TEST(FitSetup, TermsChangedByHandAreTheSameProblem) {
   FitOptions by_hand = MakePreset("group").value();
-  by_hand.model.interaction.drive = true;
+  by_hand.model.interaction.potential = true;
   FreeTerms(&by_hand);
   const FitOptions by_flags =
-      MakeFitOptions({{"preset", "group"}, {"interaction", "spring,damping,drive"}}).value();
+      MakeFitOptions({{"preset", "group"}, {"interaction", "spring,damping,potential"}}).value();
   EXPECT_EQ(SettingsJson(by_hand).dump(), SettingsJson(by_flags).dump());
   by_hand.pool = "none";
   FreeTerms(&by_hand);

@@ -34,8 +34,6 @@ SyntheticOptions RowStudy(const InteractionTerms& terms) {
   study.parameters[kContactDistance] = 0.42;
   study.parameters[kContactDamping] = 260.0;
   study.parameters[kContactKappa] = 0.45;
-  study.parameters[kDriveGain] = 0.3;
-  study.parameters[kDriveTorque] = 0.1;
   return study;
 }
 
@@ -76,11 +74,9 @@ InteractionTerms Terms(std::initializer_list<bool InteractionTerms::*> members) 
 
 INSTANTIATE_TEST_SUITE_P(
     Terms, GroupRecovery,
-    ::testing::Values(
-        TermsCase{"Contact", Terms({&InteractionTerms::spring, &InteractionTerms::damping})},
-        TermsCase{"ContactAndDrive", Terms({&InteractionTerms::spring, &InteractionTerms::damping,
-                                            &InteractionTerms::drive})},
-        TermsCase{"Potential", Terms({&InteractionTerms::potential})}),
+    ::testing::Values(TermsCase{"Contact",
+                                Terms({&InteractionTerms::spring, &InteractionTerms::damping})},
+                      TermsCase{"Potential", Terms({&InteractionTerms::potential})}),
     [](const ::testing::TestParamInfo<TermsCase>& one) { return std::string(one.param.name); });
 
 // 95 % intervals of the contact's parameters, clustered by recording, joints noisy by 2 mm.

@@ -123,20 +123,6 @@ TEST(LearnedInteraction, LargeOnesLearnWithoutContact) {
   EXPECT_NE(learned.parameters[kContactDistance], options.table[kContactDistance].nominal);
 }
 
-TEST(LearnedInteraction, ThePenaltyGivesContactItsMeaningBack) {
-  Rows rows;
-  rows.options.max_iterations = 30;
-  const FitResult free = rows.Fitted({{2}});
-  rows.options.takeover_weight = 30.0;
-  const FitResult held = rows.Fitted({{2}});
-  const auto taken = [](const FitResult& r) {
-    return std::abs(r.contact_takeover->stiffness) / 2000.0 +
-           std::abs(r.contact_takeover->damping) / 100.0;
-  };
-  EXPECT_GT(taken(free), 0.05);
-  EXPECT_LT(taken(held), 0.2 * taken(free));
-}
-
 TEST(LearnedInteraction, OrderOfPeopleDoesNotMatter) {
   Rows rows, mixed;
   for (PendulumRecording& r : mixed.training) {

@@ -169,7 +169,6 @@ TEST(Likelihoods, ModelsWithAMemoryAreRefused) {
   };
   refused({{"stance", "threshold"}}, "--stance=threshold");
   refused({{"self_force", "mlp:4"}}, "a network");
-  refused({{"interaction", "contact,drive"}}, "--interaction=drive");
   recordings[1].initial_velocity = InitialVelocity::kFree;
   refused({}, recordings[1].id);
 }

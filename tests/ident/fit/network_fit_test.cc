@@ -47,19 +47,6 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
               0.1 * synthetic.parameters[kKpTheta]);
 }
 
-TEST(NetworkFit, ThePenaltyGivesTheGainsTheirMeaningBack) {
-  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 3}), 0.0);
-  const FitResult free = FitWith(study, {NetworkKind::kMlp, 3});
-  study.options.takeover_weight = 30.0;
-  const FitResult held = FitWith(study, {NetworkKind::kMlp, 3});
-  const auto taken = [](const FitResult& r) {
-    return std::abs(r.takeover->mu) / 40.0 + std::abs(r.takeover->kp_theta) / 1400.0 +
-           std::abs(r.takeover->kd_theta) / 70.0;
-  };
-  EXPECT_GT(taken(free), 0.05);
-  EXPECT_LT(taken(held), 0.2 * taken(free));
-}
-
 TEST(NetworkFit, ThreadsDoNotMatter) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   study.options.network_prior = 1.0;

@@ -201,6 +201,29 @@ TEST(ResultJson, DamageIsNamed) {
   }
 }
 
+// Models of earlier versions name options and parameters that are gone.
+TEST(ResultJson, WhatIsGoneMustHaveBeenOff) {
+  const Json now = ToJson(SampleModel(), kRun);
+  Json before = now;
+  before["model"]["stability_weight"] = before["model"]["takeover_weight"] = 0.0;
+  before["table"].push_back({{"name", "drive_gain"}, {"nominal", 0.5}});
+  before["values"]["drive_gain"] = 0.5;
+  const Result<FittedModel> read = FittedModelFromJson(before, "some.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  EXPECT_EQ(ToJson(read.value(), kRun)["table"], now["table"]);
+  for (const char* option : {"stability_weight", "takeover_weight"}) {
+    Json used = before;
+    used["model"][option] = 1.0;
+    const Result<FittedModel> refused = FittedModelFromJson(used, "some.json");
+    ASSERT_FALSE(refused.ok());
+    EXPECT_TRUE(Contains(refused.error().ToString(), option));
+  }
+  before["model"]["interaction"] = "spring,damping,drive";
+  const Result<FittedModel> driven = FittedModelFromJson(before, "some.json");
+  ASSERT_FALSE(driven.ok());
+  EXPECT_TRUE(Contains(driven.error().ToString(), "drive"));
+}
+
 using ResultFile = TempDirTest;
 
 TEST_F(ResultFile, ReadsWhatWasWritten) {

@@ -40,17 +40,14 @@ Behaviour Of(const ParameterSet<double>& parameters) {
   return ComputeBehaviour(Anisotropic(), parameters);
 }
 
-// Five who touch, and step on when they were pushed: it takes them longer than one.
+// Five who touch: it takes them longer than one.
 TEST(SettlingSeconds, TheSlowestOfAllWhoAreHeldToIt) {
   ModelOptions alone, together;
   together.interaction.spring = together.interaction.damping = true;
-  together.interaction.drive = true;
   ParameterSet<double> parameters = FirmParameters();
   parameters[kContactStiffness] = 2000.0;
   parameters[kContactDistance] = 0.4;
   parameters[kContactDamping] = 100.0;
-  parameters[kDriveGain] = 0.5;
-  parameters[kDriveTime] = 1.0;
   const double one = SettlingSeconds(alone, parameters);
   EXPECT_GT(one, 0.2);
   EXPECT_LT(one, 2.0);

@@ -215,9 +215,6 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
   fit.map.fitted = {{kMu, Transform::kLog}};
   EXPECT_NE(complaint().find("each of 1 shared"), std::string::npos);
   fit.map.fitted.clear();
-  fit.model.interaction.drive = true;
-  EXPECT_NE(complaint().find("--interaction=drive"), std::string::npos);
-  fit.model.interaction.drive = false;
   fit.model.learned =
       std::make_shared<const LearnedTerms>(LearnedTerms{kShape, std::vector<double>(3)});
   EXPECT_NE(complaint().find("but 3 are given"), std::string::npos);

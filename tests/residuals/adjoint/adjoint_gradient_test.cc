@@ -24,8 +24,8 @@ std::vector<Learned> EveryLearned() {
                               {{}, mlp},
                               {{}, deep},
                               {{NetworkKind::kGru, 2}, mlp},
-                              {{NetworkKind::kMlp, 3, 0, true}, linear},
-                              {{NetworkKind::kLstm, 3, 2, true}, deep}};
+                              {{NetworkKind::kMlp, 3}, linear},
+                              {{NetworkKind::kLstm, 3, 2}, deep}};
   for (const NetworkShape& shape : std::vector<NetworkShape>{{NetworkKind::kMlp, 4},
                                                              {NetworkKind::kMlp, 13},
                                                              {NetworkKind::kMlp, 3, 5},
@@ -33,9 +33,7 @@ std::vector<Learned> EveryLearned() {
                                                              {NetworkKind::kGru, 5, 4},
                                                              {NetworkKind::kLstm, 3},
                                                              {NetworkKind::kLstm, 6, 4},
-                                                             {NetworkKind::kLstm, 17, 9},
-                                                             {NetworkKind::kMlp, 3, 0, true},
-                                                             {NetworkKind::kGru, 2, 0, true}}) {
+                                                             {NetworkKind::kLstm, 17, 9}}) {
     all.push_back({shape});
   }
   return all;
@@ -254,9 +252,6 @@ TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
   };
   EXPECT_EQ(complaint(options, map), "");
   EXPECT_NE(complaint({}, map).find("needs a network"), std::string::npos);
-  ModelOptions driven = options;
-  driven.interaction.spring = driven.interaction.drive = true;
-  EXPECT_NE(complaint(driven, map).find("--interaction=drive"), std::string::npos);
   ModelOptions standing = options;
   standing.stance = Stance::kThreshold;
   EXPECT_NE(complaint(standing, map).find("feet that slide"), std::string::npos);

@@ -1,6 +1,5 @@
 // The hinge on the free modes: silent where they decay, growing where they do not, differentiable.
-#include "residuals/cost_functions/modal_stability_residual.h"
-
+#include "residuals/cost_functions/rest_residual.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
@@ -11,7 +10,7 @@ const Body kBody{80.0, 0.95, 0.0};
 ParameterSet<double> Steady() {
   ParameterSet<double> p{};
   p[kMu] = p[kMuY] = 40.0, p[kKpTheta] = p[kKpPhi] = 1800.0, p[kKdTheta] = p[kKdPhi] = 80.0;
-  p[kAx] = -5.0, p[kTailTime] = p[kDriveTime] = 0.2;
+  p[kAx] = -5.0, p[kTailTime] = 0.2;
   return p;
 }
 

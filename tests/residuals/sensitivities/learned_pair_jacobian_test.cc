@@ -84,7 +84,7 @@ std::vector<ModelOptions> SomeModels(double weight, Random* random) {
       WithNetwork({}, weight, random, {}, {{4}}), WithNetwork({}, weight, random, {}, {{3, 2}}),
       WithNetwork({NetworkKind::kGru, 2}, weight, random, {RodKind::kLinear, {}}, {{2}})};
   for (ModelOptions& options : models) {
-    options.interaction.damping = options.interaction.drive = true;
+    options.interaction.damping = true;
   }
   models[0].interaction = {};
   models[0].interaction.learned = true;

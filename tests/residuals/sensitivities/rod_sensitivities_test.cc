@@ -1,5 +1,5 @@
-// Rollouts with a rod that moves: derivatives by hand against Jets, for every law, with and without
-// a self force that sees the rod, in three regimes.
+// Rollouts with a rod that moves: derivatives by hand against Jets, for every law, alone and
+// beside a learned self force, in three regimes.
 #include "residuals/sensitivities/rod_sensitivities.h"
 
 #include "residuals/cost_functions/rest_residual.h"
@@ -19,14 +19,12 @@ std::vector<Learned> EveryLearned() {
           {mlp, {}},
           {deep, {}},
           {linear, {NetworkKind::kMlp, 2}},
-          {linear, {NetworkKind::kMlp, 3, 0, true}},
-          {mlp, {NetworkKind::kGru, 2, 0, true}},
-          {mlp, {NetworkKind::kLstm, 2, 3, true}}};
+          {mlp, {NetworkKind::kGru, 2}},
+          {mlp, {NetworkKind::kLstm, 2, 3}}};
 }
 
 std::string LawName(const Learned& learned) {
-  return "rod " + RodName(learned.rod) + ", self force " + NetworkName(learned.self) +
-         (learned.self.rod_input ? " that sees it" : "");
+  return "rod " + RodName(learned.rod) + ", self force " + NetworkName(learned.self);
 }
 
 ModelOptions With(const Learned& learned, double size, Random* random) {
@@ -98,7 +96,7 @@ TEST(RodSensitivities, FixedWeightsAreTheModels) {
   }
 }
 
-// Settling and stability take the rod along.
+// Settling takes the rod along.
 TEST(RodSensitivities, RestResiduals) {
   Random random(84);
   for (const Learned& learned : EveryLearned()) {
@@ -106,12 +104,11 @@ TEST(RodSensitivities, RestResiduals) {
     const ModelOptions options = With(learned, 0.4, &random);
     ParameterMap map = EveryParameterMap({});
     map.num_weights = options.learned->num_weights();
-    RestProblem problem = SettlingProblem(SettlingScene(80.0, 25.0), options, map, {}, 3.0);
+    SettlingProblem problem = MakeSettlingProblem(SettlingScene(80.0, 25.0), options, map, 3.0);
     problem.first_frame = 40, problem.last_frame = 44;
     const ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
                                     options.learned->weights};
     ExpectCorrectJacobian(SettlingResidual(problem), blocks);
-    ExpectCorrectJacobian(StabilityResidual(problem), blocks);
   }
 }
 

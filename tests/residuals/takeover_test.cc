@@ -1,6 +1,6 @@
-// What a learned interaction takes over from contact: the regression by other means; its
-// derivatives.
-#include "residuals/cost_functions/contact_takeover.h"
+// What learned forces take over: known where a network is a gain in disguise; for contact, the
+// regression by other means.
+#include "residuals/takeover.h"
 
 #include <Eigen/Dense>
 
@@ -9,6 +9,63 @@
 
 namespace pushid {
 namespace {
+
+PendulumRecording BothPushed(const ModelOptions& options, Random* random) {
+  Scene scene = SceneOfPeople(2, 0.05, random);
+  scene.pushes = {RandomPush(0, 0, 6, PushKind::kExternal, 150.0, random),
+                  RandomPush(1, 4, 6, PushKind::kExternal, 120.0, random)};
+  return RecordRollout(scene, options, std::vector(2, RecoveringParameters()), 60);
+}
+
+// An MLP of one unit so small that it is linear: output `row` answers to input `column` alone.
+std::shared_ptr<const LearnedTerms> OneGain(int row, int column, double size) {
+  constexpr double kSmall = 1e-5;
+  LearnedTerms network{{NetworkKind::kMlp, 1}, {}};
+  network.weights.assign(network.shape.num_weights(), 0.0);
+  network.weights[column] = kSmall;
+  network.weights[network.shape.output_at() + row] = size / kSmall;
+  return std::make_shared<const LearnedTerms>(network);
+}
+
+struct Disguise {
+  std::string name;
+  int row, column;
+  Eigen::Vector3d taken;  // mu, Kp, Kd by a size of 1, for the scales of the header
+};
+
+// Two people, and a network of the mass alone: without scaling of the gains by body, one person's
+// M would not be the other's, so that the mass is all that counts here.
+TEST(NetworkTakeover, NamesTheGainThatANetworkPlays) {
+  Random random(61);
+  ModelOptions options;
+  options.gain_scaling = GainScaling::kMass;
+  const double f = kNetworkAcceleration * kReferenceMass;
+  for (const Disguise& d : {Disguise{"stiffness", 2, 0, {0.0, -f / kNetworkAngle, 0.0}},
+                            Disguise{"damping", 2, 4, {0.0, 0.0, -f / kNetworkRate}}}) {
+    SCOPED_TRACE(d.name);
+    options.learned = OneGain(d.row, d.column, -0.3);
+    const std::vector<PendulumRecording> recordings = {BothPushed(options, &random)};
+    const Takeover t = TakeoverOf(recordings, options);
+    const Eigen::Vector3d taken(t.mu, t.kp_theta, t.kd_theta);
+    EXPECT_LT((taken + 0.3 * d.taken).norm(), 1e-3 * d.taken.norm()) << taken.transpose();
+    EXPECT_EQ(t.rms_force, 0.0);
+  }
+}
+
+TEST(NetworkTakeover, FrictionInOneDirection) {
+  Random random(62);
+  ModelOptions options;
+  options.gain_scaling = GainScaling::kMass;
+  options.learned = OneGain(0, 2, -0.2);
+  PendulumRecording recording = BothPushed(options, &random);
+  for (auto& states : recording.states) {
+    for (PendulumState<double>& state : states) state.qd[1] = 0.0;  // no person moves sideways
+  }
+  const Takeover t = TakeoverOf({recording}, options);
+  const double mu = 0.2 * kNetworkAcceleration * kReferenceMass / kNetworkSpeed;
+  EXPECT_NEAR(t.mu, mu, 1e-3 * mu);
+  EXPECT_GT(t.rms_force, 0.0);
+}
 
 ModelOptions Learned(double size, Random* random) {
   ModelOptions options = WithNetwork({}, size, random, {}, {{3}});
@@ -50,8 +107,7 @@ TEST(ContactTakeover, IsTheRegressionOnUnitContact) {
   const Eigen::Map<const Rows> matrix(rows.data(), static_cast<Eigen::Index>(forces.size()), 2);
   const Eigen::Map<const Eigen::VectorXd> right(forces.data(), matrix.rows());
   const Eigen::Vector2d expected = matrix.colPivHouseholderQr().solve(right);
-  const ContactTakeover taken =
-      ContactTakeoverResidual({recording}, options, p, 1.0).Of(options.learned->weights);
+  const ContactTakeover taken = ContactTakeoverOf({recording}, options, p);
   EXPECT_GT(expected.norm(), 1.0);
   EXPECT_NEAR(taken.stiffness, expected[0], 1e-9 * expected.norm());
   EXPECT_NEAR(taken.damping, expected[1], 1e-9 * expected.norm());
@@ -64,10 +120,7 @@ TEST(ContactTakeover, WeightsAreOfFramesNotOfForces) {
   Random random(83);
   const ModelOptions options = Learned(0.5, &random);
   PendulumRecording recording = PushedTogether(options, &random);
-  const auto of = [&] {
-    return ContactTakeoverResidual({recording}, options, RecoveringParameters(), 1.0)
-        .Of(options.learned->weights);
-  };
+  const auto of = [&] { return ContactTakeoverOf({recording}, options, RecoveringParameters()); };
   const ContactTakeover whole = of();
   recording.weight.assign(2, std::vector<double>(60, 0.5));
   EXPECT_NEAR(of().stiffness, whole.stiffness, 1e-9 * std::abs(whole.stiffness));
@@ -75,35 +128,6 @@ TEST(ContactTakeover, WeightsAreOfFramesNotOfForces) {
   recording.weight.assign(2, std::vector<double>(60, 0.0));
   EXPECT_EQ(of().stiffness, 0.0);
   EXPECT_EQ(of().rms_force, 0.0);
-}
-
-TEST(ContactTakeover, JacobianAgainstNumericDifferentiation) {
-  Random random(82);
-  for (double size : {0.0, 1e-6, 0.8}) {
-    const ModelOptions options = Learned(size, &random);
-    const PendulumRecording recording = PushedTogether(options, &random);
-    const ContactTakeoverResidual residual({recording}, options, RecoveringParameters(), 2.0);
-    std::vector<double> weights = options.learned->weights;
-    const int count = static_cast<int>(weights.size());
-    const auto evaluate = [&](Eigen::Vector2d* r, double* jacobian) {
-      const double* blocks[] = {weights.data()};
-      double* jacobians[] = {jacobian};
-      ASSERT_TRUE(residual.Evaluate(blocks, r->data(), jacobian != nullptr ? jacobians : nullptr));
-    };
-    Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor> jacobian(2, count);
-    Eigen::Vector2d at, up, down;
-    evaluate(&at, jacobian.data());
-    const double scale = std::max(1e-3, jacobian.cwiseAbs().maxCoeff());
-    for (int i = 0; i < count; ++i) {
-      const double kept = weights[i];
-      weights[i] = kept + 1e-6;
-      evaluate(&up, nullptr);
-      weights[i] = kept - 1e-6;
-      evaluate(&down, nullptr);
-      weights[i] = kept;
-      EXPECT_LT(((up - down) / 2e-6 - jacobian.col(i)).norm(), 1e-6 * scale) << size << ", " << i;
-    }
-  }
 }
 
 }  // namespace
