@@ -1,7 +1,7 @@
 // models: the convention by which mu is told from Kp.
 //
 // Friction and the balance gain act on the same velocity, so the data know only their sum,
-//   c_x = mu + Kp_x,   c_y = mu_y + Kp_y   (mu_y = mu where the friction is isotropic), N s/m.
+//   c_x = mu + Kp_x,   c_y = mu_y + Kp_y   (mu_y: the row's along_y, model_rows.h), N s/m.
 // A fit holds Kp_x and Kp_y, fits c by way of mu, and says so: mu = c - Kp. Kp free as well leaves
 // the two unidentifiable, which the fit then reports.
 #pragma once
@@ -27,7 +27,12 @@ struct CartDamping {
 
 // Which parameter is the friction along y.
 constexpr Parameter FrictionAlongY(FrictionKind kind) {
-  return kind == FrictionKind::kIsotropic ? kMu : kMuY;
+  constexpr Parameter kAlongY[] = {
+#define PUSHID_FRICTION(id, name, along_y, ...) along_y,
+      PUSHID_FRICTION_LAWS(PUSHID_FRICTION)
+#undef PUSHID_FRICTION
+  };
+  return kAlongY[static_cast<int>(kind)];
 }
 
 // Along x, and along y.

@@ -13,6 +13,23 @@
 
 namespace pushid {
 
+// The parts of contact, which ForEachTerm joins.
+struct ContactPart {};
+
+// Calls visit with the term that a row names.
+template <typename Term>
+struct TermOfRow {};
+template <typename Term, typename Visit>
+void VisitRow(TermOfRow<Term>, const InteractionNetwork*, const Visit& visit) {
+  visit(Term{});
+}
+template <typename Visit>
+void VisitRow(TermOfRow<NetworkTerm>, const InteractionNetwork* network, const Visit& visit) {
+  if (network != nullptr) visit(NetworkTerm{network});
+}
+template <typename Visit>
+void VisitRow(TermOfRow<ContactPart>, const InteractionNetwork*, const Visit&) {}
+
 // Calls visit(term) for every term of the model that acts between two people.
 template <typename Visit>
 void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* network, Visit&& visit) {
@@ -23,10 +40,10 @@ void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* networ
   } else if (terms.damping) {
     visit(ContactTerm<false, true>{});
   }
-  if (terms.potential) visit(PotentialTerm{});
-  if (terms.lean) visit(LeanTerm{});
-  if (terms.ldp_discrete) visit(LdpDiscreteTerm{});
-  if (terms.network && network != nullptr) visit(NetworkTerm{network});
+#define PUSHID_TERM(member, near, Term, ...) \
+  if (terms.member) VisitRow(TermOfRow<Term>{}, network, visit);
+  PUSHID_INTERACTION_TERMS(PUSHID_TERM)
+#undef PUSHID_TERM
 }
 
 // The place of a term's force among the parts that pairs make.

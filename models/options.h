@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "models/enum_names.h"
+#include "models/model_rows.h"
 #include "models/terms.h"
 
 namespace pushid {
@@ -30,9 +31,15 @@ constexpr EnumNames<GainScaling, 3> Names(GainScaling) {
       {{"none", GainScaling::kNone}, {"mass", GainScaling::kMass}, {"body", GainScaling::kBody}}};
 }
 
-enum class FrictionKind { kIsotropic, kAnisotropic };
-constexpr EnumNames<FrictionKind, 2> Names(FrictionKind) {
-  return {{{"isotropic", FrictionKind::kIsotropic}, {"anisotropic", FrictionKind::kAnisotropic}}};
+#define PUSHID_FRICTION(id, ...) id,
+enum class FrictionKind { PUSHID_FRICTION_LAWS(PUSHID_FRICTION) };
+#undef PUSHID_FRICTION
+#define PUSHID_FRICTION(...) +1
+constexpr EnumNames<FrictionKind, 0 PUSHID_FRICTION_LAWS(PUSHID_FRICTION)> Names(FrictionKind) {
+#undef PUSHID_FRICTION
+#define PUSHID_FRICTION(id, name, ...) {name, FrictionKind::id},
+  return {{PUSHID_FRICTION_LAWS(PUSHID_FRICTION)}};
+#undef PUSHID_FRICTION
 }
 
 // What happens to the other forces while a push lasts.

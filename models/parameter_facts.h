@@ -1,4 +1,4 @@
-// models: what is known of a parameter before any fit (parameter_rows.h).
+// models: what is known of a parameter before any fit (model_rows.h).
 #pragma once
 
 #include <array>

@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-#include "models/parameter_rows.h"
+#include "models/model_rows.h"
 
 namespace pushid {
 
@@ -23,7 +23,7 @@ enum Parameter : int {
 
 // What two people share: the parameters of the terms between them.
 inline constexpr int kFirstPairParameter = kContactStiffness;
-inline constexpr int kNumPairParameters = kLeanPhi - kContactStiffness + 1;
+inline constexpr int kNumPairParameters = kRodLift - kContactStiffness;
 constexpr bool IsPairParameter(Parameter id) {
   return id >= kFirstPairParameter && id < kFirstPairParameter + kNumPairParameters;
 }

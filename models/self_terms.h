@@ -67,6 +67,15 @@ struct SelfJacobian {
   }
 };
 
+// Laws of friction (PUSHID_FRICTION_LAWS), without branches, since a scalar may hold several
+// people. scale: of forces; p: the parameters from kMu up to kKpX.
+struct LinearDrag {
+  template <typename T, typename L, typename Set>
+  static Vector4<T> Force(const L& scale, const Set& p, Parameter along_y, const Vector4<T>& qd) {
+    return {-scale * p[kMu] * qd[0], -scale * p[along_y] * qd[1], T(0.0), T(0.0)};
+  }
+};
+
 // One person's terms, with everything constant over a rollout computed once.
 template <typename L>
 struct SelfTerms {
@@ -81,8 +90,14 @@ struct SelfTerms {
   // p: by Parameter, of friction's own at least.
   template <typename T, typename Set>
   Vector4<T> Friction(const Set& p, const Vector4<T>& qd) const {
-    return {-scale.force * p[kMu] * qd[0], -scale.force * p[FrictionAlongY(friction)] * qd[1],
-            T(0.0), T(0.0)};
+    switch (friction) {
+#define PUSHID_FRICTION(id, name, along_y, Law) \
+  case FrictionKind::id:                        \
+    return Law::Force<T>(scale.force, p, along_y, qd);
+      PUSHID_FRICTION_LAWS(PUSHID_FRICTION)
+#undef PUSHID_FRICTION
+    }
+    return {T(0.0), T(0.0), T(0.0), T(0.0)};  // no such law
   }
 
   // qd_previous: the velocity one frame earlier, for the backward difference of the cart's

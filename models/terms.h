@@ -1,46 +1,54 @@
 // models: what people may do to each other, and the parts that the net force is made of. Every list
-// of them - flags, CSV headers, pictures, totals - is made from the two tables here.
+// of them - flags, CSV headers, pictures, totals - is made from tables: the rows of model_rows.h
+// and those here.
 #pragma once
 
 #include <array>
 #include <string_view>
 
+#include "models/model_rows.h"
+
 namespace pushid {
 
-// What people do to each other: terms that add up (interaction.h).
+// What people do to each other: terms that add up (interaction.h), a switch for each row, and one
+// for a learned force (learned_pair.h), which has a size besides its name
+// (ident/parameters/learned_terms_io.h).
 struct InteractionTerms {
-  bool spring = false;        // the elastic part of a smooth reciprocal contact
-  bool damping = false;       // its damping
-  bool potential = false;     // LDP's repulsive potential, smoothed
-  bool lean = false;          // LDP's torques against leaning on each other, smoothed
-  bool ldp_discrete = false;  // both in LDP's exact form, with switches; to evaluate, not to fit
-  bool network = false;       // a learned force, given (network_interaction.h)
-  bool learned = false;       // a learned force beside contact, fitted (learned_pair.h)
+#define PUSHID_SWITCH(member, ...) bool member = false;
+  PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+  bool learned = false;
 
-  // Those that ask how far the points of contact are apart.
-  bool Contact() const { return spring || damping || learned; }
+  // Those that ask how far the points of contact are apart, and those that ask it of the carts.
+  bool Contact() const { return learned || AnyWhere(Near::kPoints); }
+  bool AtCarts() const { return AnyWhere(Near::kCarts); }
   bool Any() const { return Contact() || AtCarts(); }
   // A learned force that may do what stiffness and damping of contact should.
   bool LearnedBesideContact() const { return learned && (spring || damping); }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
-  // Those that ask how far the carts are apart.
-  bool AtCarts() const { return potential || lean || ldp_discrete || network; }
+
+ private:
+  enum class Near { kPoints, kCarts };
+  bool AnyWhere(Near asked) const {
+    bool any = false;
+#define PUSHID_SWITCH(member, near, ...) any |= member && Near::near == asked;
+    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+    return any;
+  }
 };
 
 struct InteractionTermName {
   std::string_view name;
   bool InteractionTerms::*member;
+  std::string_view note;
 };
-// Those that a name alone describes: a learned one has a size
-// (ident/parameters/learned_terms_io.h).
 inline constexpr InteractionTermName kInteractionTerms[] = {
-    {"spring", &InteractionTerms::spring},
-    {"damping", &InteractionTerms::damping},
-    {"potential", &InteractionTerms::potential},
-    {"lean", &InteractionTerms::lean},
-    {"ldp_discrete", &InteractionTerms::ldp_discrete},
-    {"network", &InteractionTerms::network}};
+#define PUSHID_SWITCH(member, near, Term, note) {#member, &InteractionTerms::member, note},
+    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+};
 
 // White forces that act on everybody beside all others (process_noise.h).
 struct ProcessNoiseTerms {

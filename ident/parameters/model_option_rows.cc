@@ -119,23 +119,38 @@ Row PresetPriorsRow() {
       [](bool value, FitOptions* o) { o->preset_priors = value; });
 }
 
+std::string FrictionHelp() {
+  std::string text;
+  for (const auto& law : Names(FrictionKind{}))
+    text += (text.empty() ? "" : " or ") + std::string(law.name);
+  return text;
+}
+
+std::string InteractionHelp() {
+  std::string text =
+      "interaction between people: none, or some of these, comma-separated: contact (smooth and "
+      "mutual: spring,damping), ldp (smoothed: potential,lean), network:4 (learned beside contact, "
+      "by hidden sizes)";
+  for (const InteractionTermName& term : kInteractionTerms) {
+    text += ", " + std::string(term.name);
+    if (!term.note.empty()) text += " (" + std::string(term.note) + ")";
+  }
+  return text;
+}
+
 Row InteractionRow() {
-  Row row = Decided(
-      WordsRow("interaction", OptionStage::kModel,
-               "interaction between people: none, or some of these, comma-separated: contact "
-               "(smooth and mutual: spring,damping), spring, damping, ldp (smoothed: "
-               "potential,lean), potential, lean, ldp_discrete (LDP's exact form, for evaluation "
-               "only), network:4 (learned beside contact, by hidden sizes), network (given by "
-               "--interaction_network)",
-               [](const std::string& text, FitOptions* o) -> MaybeError {
-                 const Result<InteractionChoice> choice = ParseInteraction("--interaction", text);
-                 if (!choice.ok()) return choice.error();
-                 o->model.interaction = choice.value().terms;
-                 LearnedTerms learned = Learned(*o);
-                 learned.pair = choice.value().pair;
-                 SetLearned(learned, o);
-                 return std::nullopt;
-               }));
+  const std::string help = InteractionHelp();
+  Row row = Decided(WordsRow("interaction", OptionStage::kModel, help.c_str(),
+                             [](const std::string& text, FitOptions* o) -> MaybeError {
+                               const Result<InteractionChoice> choice =
+                                   ParseInteraction("--interaction", text);
+                               if (!choice.ok()) return choice.error();
+                               o->model.interaction = choice.value().terms;
+                               LearnedTerms learned = Learned(*o);
+                               learned.pair = choice.value().pair;
+                               SetLearned(learned, o);
+                               return std::nullopt;
+                             }));
   row.json = "/interaction";
   row.text = [](const FitOptions& o) { return InteractionText(o.model); };
   row.write = [](const FitOptions& o) { return Json(InteractionText(o.model)); };
@@ -188,7 +203,7 @@ std::vector<Row> ModelOptionRows() {
           "gains of other bodies: none, mass, or body (mass and rod length)")),
       Decided(NameRow<FrictionKind>(
           "friction", "/friction", [](O & o) -> auto& { return o.model.friction; },
-          "isotropic or anisotropic")),
+          FrictionHelp().c_str())),
       Decided(NameRow<PushUse>(
           "push", "/push", [](O & o) -> auto& { return o.model.push; },
           "as_recorded (honour push_kind) or added")),

@@ -14,8 +14,8 @@ namespace {
 std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
   if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
   if (name == "ldp") return {&InteractionTerms::potential, &InteractionTerms::lean};
-  for (const auto& [known, member] : kInteractionTerms) {
-    if (name == known) return {member};
+  for (const InteractionTermName& term : kInteractionTerms) {
+    if (name == term.name) return {term.member};
   }
   return {};
 }
@@ -24,8 +24,8 @@ std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
 template <typename Terms, typename Names>
 std::string ListOf(const Terms& terms, const Names& names) {
   std::string text;
-  for (const auto& [name, member] : names) {
-    if (terms.*member) text += (text.empty() ? "" : ",") + std::string(name);
+  for (const auto& row : names) {
+    if (terms.*row.member) text += (text.empty() ? "" : ",") + std::string(row.name);
   }
   return text.empty() ? "none" : text;
 }

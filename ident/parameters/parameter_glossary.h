@@ -1,4 +1,4 @@
-// ident: every parameter in words, from its row (models/parameter_rows.h).
+// ident: every parameter in words, from its row (models/model_rows.h).
 #pragma once
 
 #include <string>

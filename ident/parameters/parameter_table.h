@@ -1,4 +1,4 @@
-// ident: the one table of parameters in a fit: what is known of each (models/parameter_rows.h) and
+// ident: the one table of parameters in a fit: what is known of each (models/model_rows.h) and
 // what the fit does with it: start, free or fixed, pooled, prior. Flags edit it; the solver, the
 // report and the result JSON read it.
 #pragma once

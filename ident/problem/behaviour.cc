@@ -90,7 +90,7 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
       NetworkState<double> memory(shape, self.body);
       if (hidden > 0) memory.hidden = from.segment(kMemoryAt, hidden);
       if (cells > 0) memory.cell = from.tail(cells);
-      SetNetworkInputs<double>(from[0], from[1], qd, from[kRodAt], &memory);
+      SetNetworkInputs<double>(from[0], from[1], qd, &memory);
       to.head<4>() = StepNetwork(shape, network.weights.data(), self.body.mass, &memory);
       if (hidden > 0) to.segment(5, hidden) = memory.hidden;
       if (cells > 0) to.tail(cells) = memory.cell;

@@ -1,8 +1,31 @@
-// models: one row for each parameter, from which its identifier, name, defaults, bounds, the
-// glossary and what it acts on are made (parameters.h, parameter_facts.h). A new parameter is a new
-// row, and nothing else but the formula that uses it.
-//
-// X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when)
+// models: what a model may be made of, one row for each: laws of friction, terms between people,
+// and parameters. Names, flags, defaults, bounds, the glossary and what acts where are made from
+// the rows (options.h, terms.h, interaction.h, parameters.h, parameter_facts.h).
+#pragma once
+
+// X(id, name, along_y, Law): a law of friction.
+//   name     of --friction
+//   along_y  the parameter that is the drag along y as mu is along x (cart_damping.h)
+//   Law      its formula (self_terms.h)
+#define PUSHID_FRICTION_LAWS(X)               \
+  X(kIsotropic, "isotropic", kMu, LinearDrag) \
+  X(kAnisotropic, "anisotropic", kMuY, LinearDrag)
+
+// X(member, near, Term, note): a term between two people.
+//   member  its switch (InteractionTerms), by whose name flags call it
+//   near    what must be near for it to act: kPoints (of contact) or kCarts
+//   Term    its formula (pair.h)
+//   note    for the help of --interaction; empty: none
+#define PUSHID_INTERACTION_TERMS(X)                                                 \
+  X(spring, kPoints, ContactPart, "")                                               \
+  X(damping, kPoints, ContactPart, "")                                              \
+  X(potential, kCarts, PotentialTerm, "")                                           \
+  X(lean, kCarts, LeanTerm, "")                                                     \
+  X(ldp_discrete, kCarts, LdpDiscreteTerm, "LDP's exact form, for evaluation only") \
+  X(network, kCarts, NetworkTerm, "given by --interaction_network")
+
+// X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when): a
+// parameter.
 //   name       on the command line and in files
 //   symbol     in the equation that heads the file of its term
 //   nominal    start of a fit, value when fixed: where its term vanishes, or LDP's
@@ -16,8 +39,7 @@
 //
 // Gains are quoted for the reference person (85 kg, rod 0.95 m); see GainScaleOf in self_terms.h.
 // Parameters of one term stand together: friction from kMu up to kKpX, contact from
-// kContactStiffness to kContactHeight, all that two people share from there to kLeanPhi.
-#pragma once
+// kContactStiffness to kContactHeight, all that two people share from there up to kRodLift.
 
 // clang-format off
 #define PUSHID_PARAMETERS(X) \
