@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "models/learned_terms.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 

@@ -3,7 +3,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/model/identified_model.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 namespace {

@@ -125,11 +125,10 @@ double FitProblem::DataCost(const FitPoint& point) const {
   double cost = 0.0;
   for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
     if (Count(i) == 0) continue;
-    const RolloutResidual residual(
-        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0));
-    Eigen::VectorXd values(residual.num_residuals());
-    const std::vector<double*> blocks = RecordingBlocks(&copy, i);
-    if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) {
+    const auto rollout =
+        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0);
+    Eigen::VectorXd values(rollout->num_residuals());
+    if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, i).data(), values.data())) {
       return std::numeric_limits<double>::infinity();
     }
     cost += 0.5 * values.squaredNorm();
@@ -174,11 +173,12 @@ std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recordin
   FitPoint copy = point;
   ResidualSigmas plain = options_.sigmas;
   plain.robust = 0.0;
-  const RolloutResidual residual(
-      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0));
-  std::vector<double> values(residual.num_residuals());
-  const std::vector<double*> blocks = RecordingBlocks(&copy, recording);
-  if (!residual.Evaluate(blocks.data(), values.data(), nullptr)) values.clear();
+  const auto rollout =
+      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0);
+  std::vector<double> values(rollout->num_residuals());
+  if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, recording).data(), values.data())) {
+    values.clear();
+  }
   return values;
 }
 

@@ -16,7 +16,7 @@
 #include "ident/problem/fit_point.h"
 #include "ident/problem/parallel_evaluation.h"
 #include "residuals/cost_functions/likelihood_residual.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 

@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/kernels/vector_kernels.h"
 
 namespace pushid {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "models/restoration/window_tangent.h"
-#include "residuals/cost_functions/condensed_rows.h"
+#include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
 

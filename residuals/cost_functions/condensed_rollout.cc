@@ -1,14 +1,22 @@
 // residuals: the rows of a rollout, by sensitivities or by the oracle.
 #include "residuals/cost_functions/condensed_rollout.h"
 
-#include "residuals/cost_functions/rollout_autodiff.h"
+#include <ceres/dynamic_autodiff_cost_function.h>
+
+#include <cmath>
 
 namespace pushid {
 
 CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem,
                                    JacobianMethod method)
     : CondensedRows(problem), method_(method) {
-  if (method == JacobianMethod::kAutodiff) oracle_ = MakeRolloutCost(std::move(problem), method);
+  if (method != JacobianMethod::kAutodiff) return;
+  constexpr int kStride = 8;  // columns per sweep: seven parameters, the default fit's, take one
+  using Cost = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, kStride>;
+  auto oracle = std::make_unique<Cost>(new RolloutResidualFunctor{problem});
+  for (int size : problem->layout.BlockSizes()) oracle->AddParameterBlock(size);
+  oracle->SetNumResiduals(problem->num_residuals());
+  oracle_ = std::move(oracle);
 }
 
 RolloutSums CondensedRollout::Alone(double const* const* blocks, LaneSums sums) const {
@@ -75,6 +83,101 @@ RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives d
     told(1 + at / people, at % people, residuals.data() + row, &by_column);
   }
   return {};
+}
+
+namespace {
+
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using RowsOfFrame =
+    Eigen::Map<RowMajorMatrix, Eigen::Unaligned, Eigen::OuterStride<Eigen::Dynamic>>;
+
+// Rows of [J r]: `columns` of J, padded.
+RowsOfFrame Mapped(double* rows, int count, int columns) {
+  return {rows, count, columns + 1,
+          Eigen::OuterStride<Eigen::Dynamic>(NormalEquations::PaddedSize(columns))};
+}
+
+}  // namespace
+
+CondensedRows::CondensedRows(std::shared_ptr<const RolloutProblem> problem)
+    : problem_(std::move(problem)), columns_(problem_->layout) {
+  for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
+  set_num_residuals(problem_->layout.num_acting() + 1);
+}
+
+bool CondensedRows::Evaluate(double const* const* blocks, double* residuals,
+                             double** jacobians) const {
+  const Derivatives wanted = WantedDerivatives(*problem_, jacobians);
+  const int held = wanted == Derivatives::kHeldWeights ? problem_->map.num_weights : 0;
+  const int acting = problem_->layout.num_acting() - held;
+  NormalEquations equations(wanted == Derivatives::kNone ? 0 : acting);
+  double squares = 0.0;
+  const RolloutStatus status = Visit(blocks, wanted, [&](const Rows& rows) {
+    const ConstVector r(rows.residuals, rows.count);
+    squares += r.squaredNorm();
+    if (wanted == Derivatives::kNone) return;
+    Mapped(rows.by_column, rows.count, acting).col(acting) = r;
+    equations.Add(rows.count, rows.by_column);
+  });
+  if (!status.ok) return false;
+  if (wanted == Derivatives::kNone) {
+    TellSquares(squares, residuals);
+  } else {
+    Tell(equations, residuals, jacobians);
+  }
+  return true;
+}
+
+void CondensedRows::TellSquares(double squares, double* residuals) const {
+  Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
+  values.setZero();
+  values[values.size() - 1] = std::sqrt(squares);
+}
+
+void CondensedRows::Tell(const NormalEquations& equations, double* residuals,
+                         double** jacobians) const {
+  const int acting = equations.columns();
+  const RowMajorMatrix factor = equations.Factor();
+  Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
+  values.setZero();
+  values.head(acting) = factor.col(acting).head(acting);
+  values[values.size() - 1] = factor(acting, acting);
+  RowMajorMatrix condensed = RowMajorMatrix::Zero(num_residuals(), acting);
+  condensed.topRows(acting) = factor.topLeftCorner(acting, acting);
+  columns_.Scatter(condensed, 0, num_residuals(), jacobians);
+}
+
+CondensedRows::PersonRows CondensedRows::RowsOf(const NormalEquations& plain,
+                                                const NormalEquations* robust) const {
+  const int acting = plain.columns();
+  const RowMajorMatrix factor = plain.Factor();
+  PersonRows rows{columns_.Expand(factor.leftCols(acting)), factor.col(acting), {}};
+  if (robust != nullptr) {
+    rows.robust_jacobian = columns_.Expand(robust->Factor().leftCols(acting));
+  }
+  return rows;
+}
+
+bool CondensedRows::EvaluatePeople(double const* const* blocks, bool robust,
+                                   std::vector<PersonRows>* people) const {
+  const int acting = problem_->layout.num_acting();
+  std::vector<NormalEquations> plain(num_people(), NormalEquations(acting));
+  std::vector<NormalEquations> corrected(robust ? num_people() : 0, NormalEquations(acting));
+  const RolloutStatus status = Visit(blocks, Derivatives::kAll, [&](const Rows& rows) {
+    const ConstVector r(rows.residuals, rows.count);
+    RowsOfFrame by_column = Mapped(rows.by_column, rows.count, acting);
+    by_column.col(acting) = r;
+    plain[rows.person].Add(rows.count, rows.by_column);
+    if (!robust) return;
+    CorrectForRobustLoss(r, rows.weight, problem_->sigmas.OfFrames(), by_column.leftCols(acting));
+    corrected[rows.person].Add(rows.count, rows.by_column);
+  });
+  if (!status.ok) return false;
+  people->clear();
+  for (int n = 0; n < num_people(); ++n) {
+    people->push_back(RowsOf(plain[n], robust ? &corrected[n] : nullptr));
+  }
+  return true;
 }
 
 }  // namespace pushid

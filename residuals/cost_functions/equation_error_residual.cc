@@ -1,7 +1,7 @@
 // residuals: net force against inverse dynamics at the measured states.
 #include "residuals/cost_functions/equation_error_residual.h"
 
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/lockstep/person_lanes.h"
 #include "residuals/normal_equations.h"
 

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "datasets/files/random.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/sensitivities/step_jacobian.h"
 
 namespace pushid {

@@ -28,7 +28,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "models/options.h"
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/gaussian_rows.h"
 #include "residuals/likelihood.h"
 #include "residuals/parameter_map.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 namespace {

@@ -11,6 +11,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/solver/solver.h"
 #include "tests/benchmarks/benchmark_recordings.h"
+#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

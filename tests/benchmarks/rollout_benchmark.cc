@@ -11,8 +11,8 @@
 #include <memory>
 #include <set>
 
-#include "residuals/cost_functions/rollout_residual.h"
 #include "tests/benchmarks/benchmark_recordings.h"
+#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

@@ -1,13 +1,11 @@
 // tests: two pushed people of a model that learns, and derivatives by hand against Jets in regimes.
 #pragma once
 
-#include <ceres/dynamic_autodiff_cost_function.h>
-
 #include <ostream>
 #include <string>
 
-#include "residuals/cost_functions/rollout_residual.h"
 #include "tests/residuals/residual_samples.h"
+#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 
@@ -48,11 +46,8 @@ inline void ExpectDerivativesEqualJets(const ModelOptions& options, ParameterMap
   for (double& v : blocks[blocks.size() - 2])
     v = random->Uniform(-regime.velocity, regime.velocity);
   for (double& w : blocks.back()) w = random->Uniform(-regime.weight, regime.weight);
-  ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16> oracle(
-      new RolloutResidualFunctor{problem});
-  for (int size : problem->layout.BlockSizes()) oracle.AddParameterBlock(size);
-  oracle.SetNumResiduals(problem->num_residuals());
-  ExpectCorrectJacobian(RolloutResidual(problem), oracle, blocks, {1e-10, regime.absolute, 1e-12});
+  ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
+                        {1e-10, regime.absolute, 1e-12});
 }
 
 // The same residuals and derivatives by everything else, whether or not the weights are fitted.

@@ -10,6 +10,7 @@
 
 #include "residuals/adjoint/adjoint_gradient.h"
 #include "tests/residuals/residual_samples.h"
+#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 
 #include "tests/residuals/residual_samples.h"
+#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

@@ -1,8 +1,6 @@
 // A whole recording's residual: forward sensitivities against Ceres' automatic differentiation of
 // the same residual, for every model; failures; horizons.
-#include "residuals/cost_functions/rollout_residual.h"
-
-#include <ceres/dynamic_autodiff_cost_function.h>
+#include "tests/residuals/rollout_residual.h"
 
 #include "tests/residuals/residual_samples.h"
 
@@ -10,15 +8,6 @@ namespace pushid {
 namespace {
 
 constexpr int kRolloutFrames = 40;
-
-using AutoDiff = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16>;
-
-std::unique_ptr<AutoDiff> Oracle(const std::shared_ptr<const RolloutProblem>& problem) {
-  auto oracle = std::make_unique<AutoDiff>(new RolloutResidualFunctor{problem});
-  for (int size : problem->layout.BlockSizes()) oracle->AddParameterBlock(size);
-  oracle->SetNumResiduals(problem->num_residuals());
-  return oracle;
-}
 
 // Two people and five pushes of every kind, measured with errors of `noise`.
 PendulumRecording PushedPair(const ModelOptions& options, double lean, double push, double noise,
@@ -66,7 +55,7 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
         RandomBlocks(map, problem->layout, RandomRecoveringParameters(&random, regime.spread),
                      regime.deviation, regime.velocity, &random);
     ASSERT_EQ(blocks.size(), 4u);
-    ExpectCorrectJacobian(RolloutResidual(problem), *Oracle(problem), blocks,
+    ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
                           {1e-10, regime.absolute, 1e-12});
     if (HasFailure()) return;  // one model's report is enough
   }
@@ -103,7 +92,8 @@ TEST(RolloutResidual, PeopleMayShareASubject) {
   const ParameterBlocks blocks =
       RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.2, &random);
   ASSERT_EQ(blocks.size(), 3u);
-  ExpectCorrectJacobian(RolloutResidual(problem), *Oracle(problem), blocks, {1e-10, 1e-13, 1e-12});
+  ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
+                        {1e-10, 1e-13, 1e-12});
 }
 
 // The oracle shares the rollout's lines; plain differences share nothing.
@@ -201,7 +191,7 @@ TEST_P(FailingRollout, ReturnsFalseAndNamesWhere) {
     EXPECT_GT(residual.last_failure().frame, failure.after);
     EXPECT_LT(residual.last_failure().frame, 150);
   }
-  EXPECT_FALSE(EvaluateCost(*Oracle(problem), {{failure.value}}, {true}).ok);
+  EXPECT_FALSE(EvaluateCost(*RolloutByJets(problem), {{failure.value}}, {true}).ok);
 }
 
 // An overflow leaves the domain while it is finite; a NaN spoils the first person at once.

@@ -3,7 +3,7 @@
 
 #include <ceres/jet.h>
 
-#include "residuals/cost_functions/rollout_residual.h"
+#include "residuals/cost_functions/rollout_problem.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {

@@ -1,4 +1,5 @@
-// residuals: a whole recording against its rollout: one Ceres residual block per recording.
+// residuals: a whole recording against its rollout, frame by frame. Ceres sees these rows
+// condensed, one residual block per recording (condensed_rollout.h).
 //
 //   residuals: FrameResidual (frame_residual.h) times `weight` for frames 1 .. horizon - 1, in
 //              sigmas; ordered by frame, then person, then component.
@@ -6,8 +7,6 @@
 // Jacobian by forward sensitivities (rollout_sensitivities.h). Rejected: one block per frame, which
 // would roll out the same recording once per frame.
 #pragma once
-
-#include <ceres/cost_function.h>
 
 #include <functional>
 #include <memory>
@@ -100,23 +99,11 @@ using FrameVisitor = std::function<void(int frame, int person, const FrameVector
 RolloutStatus VisitFrames(const RolloutProblem& problem, double const* const* blocks,
                           Derivatives derivatives, const FrameVisitor& visit);
 
-class RolloutResidual : public ceres::CostFunction {
- public:
-  explicit RolloutResidual(std::shared_ptr<const RolloutProblem> problem);
+// The residuals alone, problem.num_residuals() of them; false outside the model's domain.
+bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
+                      double* residuals);
 
-  // false when the rollout leaves the model's domain; last_failure then says where.
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
-
-  const RolloutStatus& last_failure() const { return last_failure_; }
-
- private:
-  std::shared_ptr<const RolloutProblem> problem_;
-  ActingColumns columns_;
-  // Ceres evaluates a block from one thread at a time.
-  mutable RolloutStatus last_failure_;
-};
-
-// The oracle: the same residual for ceres::DynamicAutoDiffCostFunction; RolloutResidual mirrors it.
+// The oracle: the same residuals for ceres::DynamicAutoDiffCostFunction.
 struct RolloutResidualFunctor {
   std::shared_ptr<const RolloutProblem> problem;
 

@@ -1,5 +1,5 @@
-// residuals: the rollout residual by forward sensitivities.
-#include "residuals/cost_functions/rollout_residual.h"
+// residuals: rollouts and their residuals by forward sensitivities.
+#include "residuals/cost_functions/rollout_problem.h"
 
 #include <algorithm>
 
@@ -177,23 +177,14 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
   return status;
 }
 
-RolloutResidual::RolloutResidual(std::shared_ptr<const RolloutProblem> problem)
-    : problem_(std::move(problem)), columns_(problem_->layout) {
-  for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
-  set_num_residuals(problem_->num_residuals());
-}
-
-bool RolloutResidual::Evaluate(double const* const* blocks, double* residuals,
-                               double** jacobians) const {
-  int row = 0;
-  last_failure_ = VisitFrames(*problem_, blocks, WantedDerivatives(*problem_, jacobians),
-                              [&](int, int, const FrameVector<double>& r, FrameRows* by_column) {
-                                Eigen::Map<FrameVector<double>>(residuals + row) = r;
-                                if (jacobians != nullptr)
-                                  columns_.Scatter(*by_column, row, num_residuals(), jacobians);
-                                row += kFrameResiduals;
-                              });
-  return last_failure_.ok;
+bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
+                      double* residuals) {
+  return VisitFrames(problem, blocks, Derivatives::kNone,
+                     [&residuals](int, int, const FrameVector<double>& r, FrameRows*) {
+                       Eigen::Map<FrameVector<double>>{residuals} = r;
+                       residuals += kFrameResiduals;
+                     })
+      .ok;
 }
 
 }  // namespace pushid

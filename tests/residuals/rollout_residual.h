@@ -1,0 +1,52 @@
+// All rows of a recording's rollout as a Ceres cost function, which a fit condenses
+// (condensed_rollout.h): by sensitivities, and by Jets through the whole rollout, their oracle.
+#pragma once
+
+#include <ceres/dynamic_autodiff_cost_function.h>
+
+#include <memory>
+#include <utility>
+
+#include "residuals/cost_functions/rollout_problem.h"
+
+namespace pushid {
+
+class RolloutResidual : public ceres::CostFunction {
+ public:
+  explicit RolloutResidual(std::shared_ptr<const RolloutProblem> problem)
+      : problem_(std::move(problem)), columns_(problem_->layout) {
+    for (int size : problem_->layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
+    set_num_residuals(problem_->num_residuals());
+  }
+
+  // false when the rollout leaves the model's domain; last_failure then says where.
+  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
+    int row = 0;
+    last_failure_ = VisitFrames(*problem_, blocks, WantedDerivatives(*problem_, jacobians),
+                                [&](int, int, const FrameVector<double>& r, FrameRows* by_column) {
+                                  Eigen::Map<FrameVector<double>>(residuals + row) = r;
+                                  if (jacobians != nullptr)
+                                    columns_.Scatter(*by_column, row, num_residuals(), jacobians);
+                                  row += kFrameResiduals;
+                                });
+    return last_failure_.ok;
+  }
+
+  const RolloutStatus& last_failure() const { return last_failure_; }
+
+ private:
+  std::shared_ptr<const RolloutProblem> problem_;
+  ActingColumns columns_;
+  mutable RolloutStatus last_failure_;
+};
+
+inline std::unique_ptr<ceres::CostFunction> RolloutByJets(
+    std::shared_ptr<const RolloutProblem> problem) {
+  using Cost = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16>;
+  auto cost = std::make_unique<Cost>(new RolloutResidualFunctor{problem});
+  for (int size : problem->layout.BlockSizes()) cost->AddParameterBlock(size);
+  cost->SetNumResiduals(problem->num_residuals());
+  return cost;
+}
+
+}  // namespace pushid
