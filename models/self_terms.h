@@ -13,7 +13,7 @@
 // Source: Yue et al., CVPR 2024 (PD balance, friction); the linear terms stand for its network.
 //
 // Templated by the scalar T of states and parameters, and by that of what is constant, L: double
-// for one person, a vector for several side by side (residuals/lockstep).
+// for one person, a vector for several side by side (residuals/lanes).
 #pragma once
 
 #include <Eigen/Core>

@@ -11,9 +11,8 @@
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
 #include "models/skeleton_mapping.h"
+#include "residuals/fit_choices.h"
 #include "residuals/frame_residual.h"
-#include "residuals/jacobian_method.h"
-#include "residuals/likelihood.h"
 
 namespace pushid {
 

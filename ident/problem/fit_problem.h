@@ -79,8 +79,8 @@ class FitProblem {
   static constexpr int kNetworkCluster = -4;   // what ties a network's weights to zero
 
   // By how much the logarithm of the noise may fall in a solve before its rows end
-  // (residuals/gaussian_rows.h): kFisherShift, where J'J is the Fisher information, or more far
-  // from the optimum.
+  // (residuals/cost_functions/likelihood_residual.h): kFisherShift, where J'J is the Fisher
+  // information, or more far from the optimum.
   void set_fall_of_noise(double logarithm) { fall_of_noise_ = logarithm; }
 
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
@@ -99,8 +99,8 @@ class FitProblem {
     std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
     std::vector<FailedRollout> shortened;
     // By recording: its cost less this is its negative log likelihood, up to a constant that no
-    // point changes (residuals/gaussian_rows.h): only so do costs of problems built at different
-    // points compare. Empty for rollouts.
+    // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
+    // built at different points compare. Empty for rollouts.
     std::map<int, double> offsets;
     double OffsetOf(int recording) const {
       const auto found = offsets.find(recording);

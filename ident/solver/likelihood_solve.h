@@ -1,9 +1,9 @@
-// ident: a solve that maximizes a likelihood of single steps (residuals/likelihood.h).
+// ident: a solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
 //
 // The noise starts at the spread of the transitions that the other parameters' start leaves, and
-// equation error starts these. A few steps of Fisher scoring (residuals/gaussian_rows.h), the
-// problem built anew after every third, come near the optimum; BFGS finds it (whitened_bfgs.h), in
-// turns with the spread of pooled units.
+// equation error starts these. A few steps of Fisher scoring
+// (residuals/cost_functions/likelihood_residual.h), the problem built anew after every third, come
+// near the optimum; BFGS finds it (whitened_bfgs.h), in turns with the spread of pooled units.
 #pragma once
 
 #include <string>

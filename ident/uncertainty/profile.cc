@@ -7,7 +7,6 @@
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/profile_plan.h"
-#include "residuals/cost_functions/combination_residual.h"
 #include "residuals/cost_functions/prior_residual.h"
 
 namespace pushid {

@@ -16,14 +16,14 @@ const ParameterSet<double>* Held(const AdjointRecording& r, int person) {
   return r.held.empty() ? nullptr : &r.held[r.held.size() == 1 ? 0 : person];
 }
 
-LockstepColumns ColumnsOf(const std::vector<AdjointRecording>& all,
-                          const std::vector<int>& recordings) {
+PackedColumns ColumnsOf(const std::vector<AdjointRecording>& all,
+                        const std::vector<int>& recordings) {
   std::vector<int> steps;
   for (int index : recordings) {
     steps.insert(steps.end(), all[index].recording->num_people(),
                  std::max(0, Frames(all[index]) - 1));
   }
-  return LockstepColumns(steps);
+  return PackedColumns(steps);
 }
 
 }  // namespace

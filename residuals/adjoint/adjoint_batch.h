@@ -6,9 +6,9 @@
 
 #include "models/rollout.h"
 #include "residuals/adjoint/adjoint_gradient.h"
-#include "residuals/adjoint/network_lockstep.h"
-#include "residuals/adjoint/rod_lockstep.h"
 #include "residuals/adjoint/touching_people.h"
+#include "residuals/packed/packed_network.h"
+#include "residuals/packed/packed_rod.h"
 
 namespace pushid {
 
@@ -41,7 +41,7 @@ class AdjointGradient::Batch {
     Vector4<double> network = Vector4<double>::Zero(), received = Vector4<double>::Zero();
   };
 
-  // One column of the lockstep.
+  // One column of the batch.
   struct Walker {
     const PendulumRecording* recording;
     int index, place, person;  // of the recording among all, in the batch; of the person in it
@@ -83,11 +83,11 @@ class AdjointGradient::Batch {
   const ResidualSigmas sigmas_;
   std::vector<Walker> walkers_;
   std::vector<int> horizon_, end_;  // by place: frames to roll out, and those that count
-  LockstepColumns columns_;
-  std::optional<NetworkLockstep> network_;  // none: no force
-  std::optional<RodLockstep> rod_;          // none: constant
-  std::optional<TouchingPeople> others_;    // none: nobody does anything to another
-  PeopleNow now_;                           // states: only where people touch
+  PackedColumns columns_;
+  std::optional<PackedNetwork> network_;  // none: no force
+  std::optional<PackedRod> rod_;          // none: constant
+  std::optional<TouchingPeople> others_;  // none: nobody does anything to another
+  PeopleNow now_;                         // states: only where people touch
   Eigen::MatrixXd inputs_, forces_, rod_inputs_;
   Eigen::MatrixXd received_, by_state_;  // from others; backwards the adjoints of both sides
   Eigen::RowVectorXd rod_velocities_;

@@ -11,7 +11,7 @@
 
 #include "residuals/cost_functions/lane_group.h"
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/jacobian_method.h"
+#include "residuals/fit_choices.h"
 
 namespace pushid {
 

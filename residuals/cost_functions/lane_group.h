@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/lockstep/person_lanes.h"
+#include "residuals/lanes/person_lanes.h"
 #include "residuals/normal_equations.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "residuals/kernels/narrow_product.h"
+#include "residuals/packed/packed_matrix.h"
 
 namespace pushid {
 

@@ -86,8 +86,8 @@ void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const
 }
 
 HeldPairs::HeldPairs(const PairShape& shape, const double* weights)
-    : lockstep_(shape, BestVectorKernels()) {
-  lockstep_.Start(weights);
+    : packed_(shape, BestVectorKernels()) {
+  packed_.Start(weights);
 }
 
 void HeldPairs::Ask(const SceneForces<double>& forces) {
@@ -110,9 +110,9 @@ void HeldPairs::Ask(const SceneForces<double>& forces) {
       inputs_.col(first_[k] + side) = u;
     }
   }
-  lockstep_.Forget();
-  lockstep_.Forward(inputs_, &outputs_);
-  lockstep_.Linearize(&by_input_);
+  packed_.Forget();
+  packed_.Forward(inputs_, &outputs_);
+  packed_.Linearize(&by_input_);
 }
 
 void HeldPairs::AddTo(size_t k, const SceneForces<double>& forces, PairJacobian* jacobian) const {

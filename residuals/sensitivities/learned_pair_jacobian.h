@@ -7,7 +7,7 @@
 // over both places and the contact's parameters.
 //
 // A network that is held needs no dy/dw: all pairs of a frame are then asked in one product a layer
-// (pair_lockstep.h), four outputs of each back. One of 512-512 has its weights read once a frame
+// (packed_pairs.h), four outputs of each back. One of 512-512 has its weights read once a frame
 // so, and not once a pair and output.
 #pragma once
 
@@ -16,8 +16,8 @@
 
 #include "models/learned_pair.h"
 #include "models/scene_forces.h"
+#include "residuals/packed/packed_pairs.h"
 #include "residuals/sensitivities/pair_jacobian.h"
-#include "residuals/sensitivities/pair_lockstep.h"
 
 namespace pushid {
 
@@ -75,10 +75,10 @@ class HeldPairs {
   void AddTo(size_t k, const SceneForces<double>& forces, PairJacobian* jacobian) const;
 
  private:
-  PairLockstep lockstep_;
+  PackedPairs packed_;
   std::vector<GateJacobian> gates_;
   std::vector<int> first_;  // column of each pair: what n hears of j; the next: j of n
-  PairLockstep::Columns inputs_, outputs_, by_input_;
+  PackedPairs::Columns inputs_, outputs_, by_input_;
 };
 
 }  // namespace pushid

@@ -1,16 +1,26 @@
 // residuals: the chained forward sensitivities.
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
+#include <ceres/jet.h>
+
 #include <algorithm>
 #include <optional>
 
-#include "residuals/kernels/narrow_product.h"
+#include "residuals/packed/packed_matrix.h"
 #include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
-#include "residuals/sensitivities/rod_sensitivities.h"
 #include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
+
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a) {
+  using Jet = ceres::Jet<double, 1>;
+  const BodyOf<Jet> jets{Jet(body.mass), Jet(body.rod_length, 0), Jet(0.0)};
+  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
+  const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
+  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
+}
 
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,

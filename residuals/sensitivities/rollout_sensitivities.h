@@ -6,7 +6,7 @@
 // Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
 // columns (measured in tests/benchmarks). States beside s are carried in the same way: a network's
-// memory (network_sensitivities.h), a rod that moves (rod_sensitivities.h), and the step state of
+// memory and a rod that moves (network_sensitivities.h), and the step state of
 // feet that stand and step (stance_sensitivities.h).
 #pragma once
 
@@ -15,7 +15,6 @@
 
 #include "models/rollout.h"
 #include "residuals/parameter_map.h"
-#include "residuals/sensitivities/inverse_dynamics_jacobian.h"
 #include "residuals/sensitivities/pair_jacobian.h"
 
 namespace pushid {
@@ -83,6 +82,10 @@ class RolloutSensitivities {
   Eigen::RowVectorXd rod_, step_;
   std::vector<Angles<double>> angles_;
 };
+
+// d(M a + C + G)/dl at fixed acceleration a (models/ipm.h).
+Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
+                                     const Vector4<double>& a);
 
 // Derivatives of NetForceAt: the analytic twin.
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,

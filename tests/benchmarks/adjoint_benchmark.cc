@@ -1,5 +1,5 @@
 // What one adjoint gradient over the 32 recordings of single people costs: cost alone and with its
-// gradient, by network and by the width of vectors (residuals/kernels/vector_kernels.h).
+// gradient, by network and by the width of vectors (residuals/packed/vector_kernels.h).
 //
 // lstm:256:32 is the size of LDP's own network (there the weights are 297 664), whose released
 // PyTorch code needs 18.6 s for one epoch, forward and backward, over the same 32 recordings on one

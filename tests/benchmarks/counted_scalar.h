@@ -1,5 +1,5 @@
 // benchmarks: one lane that counts what is done to it, in place of
-// residuals/lockstep/lane_scalar.h.
+// residuals/lanes/lane_scalar.h.
 #pragma once
 
 #include <Eigen/Core>

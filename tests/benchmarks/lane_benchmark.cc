@@ -2,7 +2,7 @@
 // of vectors, and how near that is to what the processor can do.
 //
 // The limit: sums and products, as one person's loops count them, at the rate that this core
-// reaches in products of small matrices whose sums stay in registers (kernels/vector_kernels.h).
+// reaches in products of small matrices whose sums stay in registers (packed/vector_kernels.h).
 // Quotients, roots, sines and exponentials come on top.
 #include <benchmark/benchmark.h>
 
@@ -15,13 +15,13 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/lane_group.h"
-#include "residuals/kernels/vector_kernels.h"
+#include "residuals/packed/vector_kernels.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 #define PUSHID_VECTOR_DOUBLES 1
 #define PUSHID_VECTOR_NAME "counted"
 #define PUSHID_LANE_SCALAR "tests/benchmarks/counted_scalar.h"
-#include "residuals/lockstep/person_lanes_loops.h"
+#include "residuals/lanes/person_lanes_loops.h"
 
 namespace pushid {
 namespace {

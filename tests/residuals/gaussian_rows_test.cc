@@ -1,6 +1,4 @@
 // Gaussian densities as squares: exact, and good enough to find drift and noise of Langevin paths.
-#include "residuals/gaussian_rows.h"
-
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/covariance.h>
 #include <ceres/problem.h>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "datasets/files/random.h"
+#include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
 namespace {

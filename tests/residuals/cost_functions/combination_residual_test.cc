@@ -1,8 +1,8 @@
-#include "residuals/cost_functions/combination_residual.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "residuals/cost_functions/prior_residual.h"
 
 namespace pushid {
 namespace {

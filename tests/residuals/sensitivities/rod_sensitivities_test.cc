@@ -1,8 +1,7 @@
 // Rollouts with a rod that moves: derivatives by hand against Jets, for every law, alone and
 // beside a learned self force, in three regimes.
-#include "residuals/sensitivities/rod_sensitivities.h"
-
 #include "residuals/cost_functions/rest_residual.h"
+#include "residuals/sensitivities/network_sensitivities.h"
 #include "tests/residuals/learned_pair.h"
 
 namespace pushid {

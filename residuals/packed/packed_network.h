@@ -14,18 +14,44 @@
 #include <vector>
 
 #include "models/self_network.h"
-#include "residuals/adjoint/lockstep_columns.h"
-#include "residuals/kernels/packed_matrix.h"
+#include "residuals/packed/packed_matrix.h"
 
 namespace pushid {
 
-class NetworkLockstep {
+// People side by side, one column each, over as many steps as each of them has.
+//
+// Those who go on longest are the first columns, so that a step has the first `active` of them.
+// What is kept of every step stands side by side in one matrix of total() columns.
+
+class PackedColumns {
+ public:
+  // steps: by person; never increasing.
+  explicit PackedColumns(const std::vector<int>& steps) {
+    const int longest = steps.empty() ? 0 : steps.front();
+    int active = static_cast<int>(steps.size());
+    for (int step = 0; step < longest; ++step) {
+      while (steps[active - 1] <= step) --active;
+      first_.push_back(first_.back() + active);
+    }
+  }
+
+  int num_steps() const { return static_cast<int>(first_.size()) - 1; }
+  int active(int step) const { return first_[step + 1] - first_[step]; }
+  int total() const { return first_.back(); }
+  // The columns of a step.
+  auto At(Eigen::MatrixXd& of, int step) const { return of.middleCols(first_[step], active(step)); }
+
+ private:
+  std::vector<int> first_ = {0};  // column of each step, and the total
+};
+
+class PackedNetwork {
  public:
   using Columns = Eigen::MatrixXd;
 
   // masses: by column.
-  NetworkLockstep(const NetworkShape& shape, const VectorKernels& kernels,
-                  const LockstepColumns& columns, const std::vector<double>& masses);
+  PackedNetwork(const NetworkShape& shape, const VectorKernels& kernels,
+                const PackedColumns& columns, const std::vector<double>& masses);
 
   // Everybody's memory back to zero. weights: there until the last step back.
   void Start(const double* weights);
@@ -51,7 +77,7 @@ class NetworkLockstep {
   void Deactivate(int step, const Columns& hidden);
 
   NetworkShape shape_;
-  LockstepColumns columns_;
+  PackedColumns columns_;
   const VectorKernels& kernels_;
   const double* weights_ = nullptr;  // of the last Start
   int rows_;                         // of W

@@ -1,6 +1,6 @@
 // residuals: the network of a learned interaction (models/learned_pair.h) for many people at once,
 // step by step, and back: d(cost)/d(weights) of whole rollouts by the adjoint, as
-// network_lockstep.h has it for self forces.
+// packed_network.h has it for self forces.
 //
 // Each of two people who touch is a column of U, so that a step has as many columns as it has
 // contacts, twice. Forwards, layer by layer with H_0 = U,
@@ -15,15 +15,15 @@
 #include <vector>
 
 #include "models/learned_pair.h"
-#include "residuals/kernels/packed_layer.h"
+#include "residuals/packed/packed_matrix.h"
 
 namespace pushid {
 
-class PairLockstep {
+class PackedPairs {
  public:
   using Columns = Eigen::MatrixXd;
 
-  PairLockstep(const PairShape& shape, const VectorKernels& kernels);
+  PackedPairs(const PairShape& shape, const VectorKernels& kernels);
 
   // Before the first step; weights: of the interaction alone, there until the last step back.
   void Start(const double* weights);

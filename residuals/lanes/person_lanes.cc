@@ -1,7 +1,7 @@
 // residuals: the choice among the widths of people side by side.
-#include "residuals/lockstep/person_lanes.h"
+#include "residuals/lanes/person_lanes.h"
 
-#include "residuals/kernels/vector_kernels.h"
+#include "residuals/packed/vector_kernels.h"
 
 namespace pushid {
 

@@ -1,6 +1,6 @@
 // Products and activations by vectors: against Eigen and the standard library, for every width that
 // this processor has.
-#include "residuals/kernels/packed_matrix.h"
+#include "residuals/packed/packed_matrix.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #define PUSHID_VECTOR_DOUBLES 2
 #define PUSHID_TILE_VECTORS 2
 #define PUSHID_TILE_COLUMNS 4
-#include "residuals/kernels/vector_kernels_loops.h"
+#include "residuals/packed/vector_kernels_loops.h"
 
 namespace pushid {
 

@@ -7,11 +7,12 @@
 // What serves many products (a network's weights over a rollout) is packed once.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
-#include "residuals/kernels/vector_kernels.h"
+#include "residuals/packed/vector_kernels.h"
 
 namespace pushid {
 
@@ -49,5 +50,52 @@ class PackedMatrix {
 // c (by columns, `stride` apart) += left right. Always in the same order of summation.
 void AddProduct(const PackedMatrix& left, const PackedMatrix& right, double* c,
                 std::ptrdiff_t stride);
+
+// One dense layer [W b] of a packed network, laid out for products with many
+// columns.
+
+struct PackedLayer {
+  int rows, width;  // of W
+  int at;           // its first weight
+  PackedMatrix weights, transposed;
+
+  PackedLayer(const VectorKernels& kernels, int layer_rows, int layer_width, int first_weight)
+      : rows(layer_rows),
+        width(layer_width),
+        at(first_weight),
+        weights(kernels, PackedMatrix::kLeft),
+        transposed(kernels, PackedMatrix::kLeft) {}
+
+  int stride() const { return width + 1; }
+  int num_weights() const { return rows * stride(); }
+
+  // all: the network's weights, row after row of this layer from `at` on, b last in each.
+  void Pack(const double* all) {
+    weights.Pack(all + at, rows, width, stride(), 1);
+    transposed.Pack(all + at, width, rows, 1, stride());
+  }
+};
+
+// A few rows times many columns, which is how derivatives go from step to step: c = a b
+// or c += a b with a small and b, c by rows, so that vectors run along the columns.
+
+template <typename A, typename B, typename C>
+void NarrowProduct(const A& a, const B& b, bool add, C&& c) {
+  static_assert(B::IsRowMajor && std::decay_t<C>::IsRowMajor, "vectors run along the columns");
+  const Eigen::Matrix<double, A::RowsAtCompileTime, A::ColsAtCompileTime, Eigen::RowMajor> rows = a;
+  BestVectorKernels().narrow_product(static_cast<int>(a.rows()), static_cast<int>(a.cols()),
+                                     b.cols(), rows.data(), b.data(), b.outerStride(), c.data(),
+                                     c.outerStride(), add);
+}
+
+template <typename A, typename B, typename C>
+void SetNarrowProduct(const A& a, const B& b, C&& c) {
+  NarrowProduct(a, b, false, c);
+}
+
+template <typename A, typename B, typename C>
+void AddNarrowProduct(const A& a, const B& b, C&& c) {
+  NarrowProduct(a, b, true, c);
+}
 
 }  // namespace pushid

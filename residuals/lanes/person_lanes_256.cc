@@ -1,10 +1,10 @@
 // residuals: people side by side for AVX2 and FMA.
-#include "residuals/lockstep/person_lanes.h"
+#include "residuals/lanes/person_lanes.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
 #define PUSHID_VECTOR_NAME "256-bit vectors"
 #define PUSHID_VECTOR_DOUBLES 4
-#include "residuals/lockstep/person_lanes_loops.h"
+#include "residuals/lanes/person_lanes_loops.h"
 
 namespace pushid {
 

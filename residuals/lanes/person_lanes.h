@@ -1,6 +1,6 @@
 // residuals: rollouts of people alone, of sliding feet, side by side in the vectors of a processor:
 // their normal equations, once for each width of vectors, and the choice of the widest at run time
-// as in kernels/vector_kernels.h.
+// as in packed/vector_kernels.h.
 //
 // The equations are those of the models' templates (ipm.h, self_terms.h, push.h) and of
 // frame_residual.h, whose scalar is a lane each of a vector. All arrays of numbers end in the lane:

@@ -1,12 +1,12 @@
-// residuals: networks in lockstep, forwards and backwards.
-#include "residuals/adjoint/network_lockstep.h"
+// residuals: packed self-force networks, forwards and backwards.
+#include "residuals/packed/packed_network.h"
 
 #include <algorithm>
 
 namespace pushid {
 namespace {
 
-using Columns = NetworkLockstep::Columns;
+using Columns = PackedNetwork::Columns;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 int StackedRows(const NetworkShape& shape) {
@@ -15,8 +15,8 @@ int StackedRows(const NetworkShape& shape) {
 
 }  // namespace
 
-NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels& kernels,
-                                 const LockstepColumns& columns, const std::vector<double>& masses)
+PackedNetwork::PackedNetwork(const NetworkShape& shape, const VectorKernels& kernels,
+                             const PackedColumns& columns, const std::vector<double>& masses)
     : shape_(shape),
       columns_(columns),
       kernels_(kernels),
@@ -45,7 +45,7 @@ NetworkLockstep::NetworkLockstep(const NetworkShape& shape, const VectorKernels&
   }
 }
 
-void NetworkLockstep::PackWeights() {
+void PackedNetwork::PackWeights() {
   const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
   const NetworkWeights<double> w = Weights();
   RowMajor stacked = RowMajor::Zero(rows_, width);
@@ -61,7 +61,7 @@ void NetworkLockstep::PackWeights() {
   transposed_.Pack(stacked.data(), width, rows_, 1, width);
 }
 
-void NetworkLockstep::Start(const double* weights) {
+void PackedNetwork::Start(const double* weights) {
   weights_ = weights;
   PackWeights();
   hidden_carry_.setZero();
@@ -76,7 +76,7 @@ void NetworkLockstep::Start(const double* weights) {
   kernels_.tanh(rest_.data(), rest_.size());
 }
 
-void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) {
+void PackedNetwork::Forward(int step, const Columns& inputs, Columns* forces) {
   const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto z = At(z_, step);
   At(inputs_, step) = inputs;
@@ -104,7 +104,7 @@ void NetworkLockstep::Forward(int step, const Columns& inputs, Columns* forces) 
   *forces *= scale_.head(n).asDiagonal();
 }
 
-void NetworkLockstep::Activate(int step) {
+void PackedNetwork::Activate(int step) {
   const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto hidden = At(hidden_, step).array();
   for (int column = 0; column < n; ++column) {
@@ -144,13 +144,13 @@ void NetworkLockstep::Activate(int step) {
   }
 }
 
-void NetworkLockstep::Forget(int step, int column) {
+void PackedNetwork::Forget(int step, int column) {
   for (Columns* of : {&inputs_, &z_, &activations_, &hidden_, &cells_, &cell_tanh_}) {
     if (of->size() > 0) At(*of, step).col(column).setZero();
   }
 }
 
-void NetworkLockstep::Deactivate(int step, const Columns& adjoint) {
+void PackedNetwork::Deactivate(int step, const Columns& adjoint) {
   const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   const auto tanh_slope = [](const auto& a) { return 1.0 - a * a; };
   const auto logistic_slope = [](const auto& a) { return a * (1.0 - a); };
@@ -201,7 +201,7 @@ void NetworkLockstep::Deactivate(int step, const Columns& adjoint) {
   }
 }
 
-void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs) {
+void PackedNetwork::Backward(int step, const Columns& forces, Columns* inputs) {
   const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
   auto outputs = At(outputs_, step);
   outputs = forces * scale_.head(n).asDiagonal();
@@ -225,7 +225,7 @@ void NetworkLockstep::Backward(int step, const Columns& forces, Columns* inputs)
   *inputs = Weights().embed.transpose() * embedded;
 }
 
-void NetworkLockstep::AddWeightGradient(double* gradient) {
+void PackedNetwork::AddWeightGradient(double* gradient) {
   const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
   const int total = columns_.total(), gate_rows = shape_.gate_rows();
   PackedMatrix left(kernels_, PackedMatrix::kLeft);

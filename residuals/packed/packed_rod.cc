@@ -1,10 +1,10 @@
-// residuals: laws of the rod in lockstep, forwards and backwards.
-#include "residuals/adjoint/rod_lockstep.h"
+// residuals: packed laws of the rod, forwards and backwards.
+#include "residuals/packed/packed_rod.h"
 
 namespace pushid {
 
-RodLockstep::RodLockstep(const RodShape& shape, const VectorKernels& kernels,
-                         const LockstepColumns& columns)
+PackedRod::PackedRod(const RodShape& shape, const VectorKernels& kernels,
+                     const PackedColumns& columns)
     : columns_(columns), kernels_(kernels), right_(kernels, PackedMatrix::kRight) {
   for (int rows : shape.hidden) {
     layers_.push_back({PackedLayer(kernels, rows, top_, output_at_), Eigen::VectorXd(rows),
@@ -17,7 +17,7 @@ RodLockstep::RodLockstep(const RodShape& shape, const VectorKernels& kernels,
   outputs_.resize(1, columns_.total());
 }
 
-void RodLockstep::Start(const double* weights) {
+void PackedRod::Start(const double* weights) {
   weights_ = weights;
   for (Layer& layer : layers_) {
     layer.Pack(weights);
@@ -28,7 +28,7 @@ void RodLockstep::Start(const double* weights) {
   }
 }
 
-void RodLockstep::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* velocities) {
+void PackedRod::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* velocities) {
   const int n = columns_.active(step);
   columns_.At(inputs_, step) = inputs;
   for (size_t i = 0; i < layers_.size(); ++i) {
@@ -45,7 +45,7 @@ void RodLockstep::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* v
   *velocities = kRodSpeed * (Output().transpose() * columns_.At(Below(layers_.size()), step));
 }
 
-void RodLockstep::Backward(int step, const Eigen::RowVectorXd& velocities, Columns* inputs) {
+void PackedRod::Backward(int step, const Eigen::RowVectorXd& velocities, Columns* inputs) {
   const int n = columns_.active(step);
   columns_.At(outputs_, step) = kRodSpeed * velocities;
   *inputs = Output() * columns_.At(outputs_, step);
@@ -63,7 +63,7 @@ void RodLockstep::Backward(int step, const Eigen::RowVectorXd& velocities, Colum
   }
 }
 
-void RodLockstep::AddWeightGradient(double* gradient) {
+void PackedRod::AddWeightGradient(double* gradient) {
   for (size_t i = 0; i < layers_.size(); ++i) {
     const Layer& layer = layers_[i];
     PackedMatrix left(kernels_, PackedMatrix::kLeft);

@@ -8,13 +8,12 @@
 #pragma once
 
 #ifndef PUSHID_LANE_SCALAR
-#define PUSHID_LANE_SCALAR "residuals/lockstep/lane_scalar.h"
+#define PUSHID_LANE_SCALAR "residuals/lanes/lane_scalar.h"
 #endif
 #include PUSHID_LANE_SCALAR
 
 #include "models/push.h"
-#include "residuals/lockstep/person_lanes.h"
-#include "residuals/sensitivities/inverse_dynamics_jacobian.h"
+#include "residuals/lanes/person_lanes.h"
 
 namespace pushid {
 namespace {

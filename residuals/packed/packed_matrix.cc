@@ -1,5 +1,5 @@
 // residuals: packing, and the loops about the tiles.
-#include "residuals/kernels/packed_matrix.h"
+#include "residuals/packed/packed_matrix.h"
 
 namespace pushid {
 namespace {

@@ -1,5 +1,5 @@
 // residuals: a law of the rod (models/rod_law.h) for many people at once, step by step, and back:
-// d(cost)/d(weights) of whole rollouts by the adjoint, as network_lockstep.h has it for self
+// d(cost)/d(weights) of whole rollouts by the adjoint, as packed_network.h has it for self
 // forces.
 //
 // Everybody is a column of U. Forwards, layer by layer,
@@ -13,16 +13,16 @@
 #include <vector>
 
 #include "models/rod_law.h"
-#include "residuals/adjoint/lockstep_columns.h"
-#include "residuals/kernels/packed_layer.h"
+#include "residuals/packed/packed_matrix.h"
+#include "residuals/packed/packed_network.h"
 
 namespace pushid {
 
-class RodLockstep {
+class PackedRod {
  public:
   using Columns = Eigen::MatrixXd;
 
-  RodLockstep(const RodShape& shape, const VectorKernels& kernels, const LockstepColumns& columns);
+  PackedRod(const RodShape& shape, const VectorKernels& kernels, const PackedColumns& columns);
 
   // weights: of the law alone; there until the last step back.
   void Start(const double* weights);
@@ -47,7 +47,7 @@ class RodLockstep {
   Columns& Below(size_t layer) { return layer == 0 ? inputs_ : layers_[layer - 1].hidden; }
   auto Output() const { return Eigen::Map<const Eigen::VectorXd>(weights_ + output_at_, top_); }
 
-  LockstepColumns columns_;
+  PackedColumns columns_;
   const VectorKernels& kernels_;
   const double* weights_ = nullptr;
   int output_at_ = 0, top_ = RodShape::kInputs;  // of o: its first weight, its size

@@ -1,12 +1,12 @@
 // residuals: kernels for AVX2 and FMA.
-#include "residuals/kernels/vector_kernels.h"
+#include "residuals/packed/vector_kernels.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
 #define PUSHID_VECTOR_NAME "256-bit vectors"
 #define PUSHID_VECTOR_DOUBLES 4
 #define PUSHID_TILE_VECTORS 3
 #define PUSHID_TILE_COLUMNS 4
-#include "residuals/kernels/vector_kernels_loops.h"
+#include "residuals/packed/vector_kernels_loops.h"
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "residuals/kernels/vector_math.h"
+#include "residuals/packed/vector_math.h"
 
 namespace pushid {
 namespace {

@@ -1,5 +1,5 @@
 // residuals: the choice among the vector kernels.
-#include "residuals/kernels/vector_kernels.h"
+#include "residuals/packed/vector_kernels.h"
 
 namespace pushid {
 namespace {

@@ -1,5 +1,5 @@
-// residuals: the inner loops of networks in lockstep (network_lockstep.h), of derivatives carried
-// from step to step (narrow_product.h) and of normal equations (normal_equations.h), once for each
+// residuals: the inner loops of packed networks (packed_network.h), of derivatives carried
+// from step to step (packed_matrix.h) and of normal equations (normal_equations.h), once for each
 // width of vectors that processors have, and the choice of the widest at run time.
 //
 // Releases are built for any x86-64, where Eigen's own products have 128-bit vectors and no fused

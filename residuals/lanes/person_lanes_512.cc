@@ -1,10 +1,10 @@
 // residuals: people side by side for AVX-512.
-#include "residuals/lockstep/person_lanes.h"
+#include "residuals/lanes/person_lanes.h"
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 #define PUSHID_VECTOR_NAME "512-bit vectors"
 #define PUSHID_VECTOR_DOUBLES 8
-#include "residuals/lockstep/person_lanes_loops.h"
+#include "residuals/lanes/person_lanes_loops.h"
 
 namespace pushid {
 

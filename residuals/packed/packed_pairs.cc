@@ -1,5 +1,5 @@
-// residuals: learned interactions in lockstep, forwards and backwards.
-#include "residuals/sensitivities/pair_lockstep.h"
+// residuals: packed learned interactions, forwards and backwards.
+#include "residuals/packed/packed_pairs.h"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 }  // namespace
 
-PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
+PackedPairs::PackedPairs(const PairShape& shape, const VectorKernels& kernels)
     : kernels_(kernels), right_(kernels, PackedMatrix::kRight), inputs_(PairShape::kInputs, 0) {
   std::vector<int> sizes = shape.hidden;
   sizes.push_back(4);
@@ -22,13 +22,13 @@ PairLockstep::PairLockstep(const PairShape& shape, const VectorKernels& kernels)
   }
 }
 
-void PairLockstep::Start(const double* weights) {
+void PackedPairs::Start(const double* weights) {
   weights_ = weights;
   Forget();
   for (Layer& layer : layers_) layer.Pack(weights);
 }
 
-void PairLockstep::Grow() {
+void PackedPairs::Grow() {
   const Eigen::Index total = first_.back(), had = inputs_.cols();
   if (total <= had) return;
   const Eigen::Index now = std::max(total, 2 * had);  // so that few steps copy what there is
@@ -39,7 +39,7 @@ void PairLockstep::Grow() {
   }
 }
 
-void PairLockstep::Forward(const Columns& inputs, Columns* outputs) {
+void PackedPairs::Forward(const Columns& inputs, Columns* outputs) {
   const int step = static_cast<int>(first_.size()) - 1, n = static_cast<int>(inputs.cols());
   first_.push_back(first_.back() + n);
   outputs->setZero(4, n);
@@ -57,7 +57,7 @@ void PairLockstep::Forward(const Columns& inputs, Columns* outputs) {
   *outputs = At(layers_.back().values, step);
 }
 
-void PairLockstep::Backward(int step, const Columns& outputs, Columns* inputs) {
+void PackedPairs::Backward(int step, const Columns& outputs, Columns* inputs) {
   const int n = first_[step + 1] - first_[step];
   *inputs = outputs;
   if (n == 0) return;
@@ -72,7 +72,7 @@ void PairLockstep::Backward(int step, const Columns& outputs, Columns* inputs) {
   }
 }
 
-void PairLockstep::Linearize(Columns* by_input) {
+void PackedPairs::Linearize(Columns* by_input) {
   const int step = static_cast<int>(first_.size()) - 2, n = first_[step + 1] - first_[step];
   *by_input = Eigen::Matrix4d::Identity().replicate(1, n);
   if (n == 0) return;
@@ -90,7 +90,7 @@ void PairLockstep::Linearize(Columns* by_input) {
   }
 }
 
-void PairLockstep::AddWeightGradient(double* gradient) {
+void PackedPairs::AddWeightGradient(double* gradient) {
   const int total = first_.back();
   if (total == 0) return;
   PackedMatrix left(kernels_, PackedMatrix::kLeft);

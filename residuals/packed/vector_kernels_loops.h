@@ -6,8 +6,8 @@
 // of any header and no external linkage.
 #pragma once
 
-#include "residuals/kernels/vector_kernels.h"
-#include "residuals/kernels/vector_math.h"
+#include "residuals/packed/vector_kernels.h"
+#include "residuals/packed/vector_math.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,7 @@
 #include "datasets/files/random.h"
 
 #define PUSHID_VECTOR_DOUBLES 2
-#include "residuals/kernels/vector_math.h"
+#include "residuals/packed/vector_math.h"
 
 namespace pushid {
 namespace {
