@@ -5,7 +5,8 @@
 // whatever its scalar, chains its derivatives through value and Jacobian. A law is seldom derived
 // by hand: MakeForceLaw (residuals/autodiff_force_law.h) makes one from a templated functor. It
 // acts where balance and the linear terms act (scene_forces.h), counts as the person's own force
-// (rod_law.h, free modes), and is the part "own" of the net force, together with other such laws.
+// (learned_terms.h, free modes), and is the part "own" of the net force, together with other such
+// laws.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +17,6 @@
 #include "models/dual.h"
 #include "models/ipm.h"
 #include "models/options.h"
-#include "models/parameter_facts.h"
 #include "models/parameters.h"
 
 namespace pushid {

@@ -54,7 +54,7 @@ struct PairPartOf {
 template <typename Term>
 struct PairPartOf<Term, std::void_t<decltype(Term::kPart)>> {
   static constexpr int value = static_cast<int>(Term::kPart) - static_cast<int>(kFirstPairPart);
-  static_assert(0 <= value && value < kNumPairParts, "no part that pairs make (terms.h)");
+  static_assert(0 <= value && value < kNumPairParts, "no part that pairs make (options.h)");
 };
 
 // What two people do to each other, by part, from kFirstPairPart on.

@@ -1,7 +1,8 @@
 // models: the inverted pendulum on a cart (IPM) that stands for a person.
 //
 // q = [x, y, theta, phi]: cart position (m), angles about y and about x (rad); rod length l (m).
-// A learned law may change l from step to step (rod_law.h); what l' and l'' would add is left out.
+// A learned law may change l from step to step (learned_terms.h); what l' and l'' would add is left
+// out.
 //   M(q) qdd + C(q, qd) + G(q) = F_net,   semi-implicit Euler: qd += dt qdd, q += dt qd.
 // Point mass (hip): p = (x + l sin(theta), y - l cos(theta) sin(phi), h + l cos(theta) cos(phi)).
 // Source: Yue et al., CVPR 2024, supplement, with row 3 of C as the derivation gives it (s_th c_th,

@@ -2,14 +2,203 @@
 // other; any of them, their weights in one flat array.
 #pragma once
 
+#include <cmath>
+#include <string>
 #include <vector>
 
-#include "models/learned_pair.h"
+#include "models/contact.h"
+#include "models/enum_names.h"
 #include "models/options.h"
-#include "models/rod_law.h"
 #include "models/self_network.h"
 
 namespace pushid {
+
+// The rod's length as a state that a learned law changes from step to step.
+//
+//   l' = l + dt * 0.1 m/s * f(u)
+//   u = [e_theta / 0.15, e_phi / 0.15, xd / 0.8, yd / 0.8, thd / 0.6, phd / 0.6,
+//        (F_self - F_rest) / (2 M) (4), (l - l_0) / 0.05]
+//   linear  f = w u
+//   mlp     h_1 = tanh(W_1 u + b_1) - tanh(b_1),  h_i = tanh(W_i h_{i-1} + b_i) - tanh(b_i),
+//           f = o h_n
+// F_self: friction, balance, linear and learned self force, whether or not a push hides them for a
+// while; F_rest: the torque that holds the posture. A person at rest with the rod of frame 0
+// (u = 0) keeps exactly that rod, whatever the weights, and zero weights (of f or of o) are a
+// constant rod. Nothing pulls the rod back but the weights on l - l_0: built-in relaxation would
+// decide what the data can say. Source: LDP's rod network (Yue et al., CVPR 2024: 256-128-256),
+// with that guarantee added.
+//
+// Weights are one flat array: f's, or for each layer the rows [W b], then o.
+
+enum class RodKind { kConstant, kLinear, kMlp };
+constexpr EnumNames<RodKind, 3> Names(RodKind) {
+  return {{{"constant", RodKind::kConstant}, {"linear", RodKind::kLinear}, {"mlp", RodKind::kMlp}}};
+}
+
+struct RodShape {
+  RodKind kind = RodKind::kConstant;
+  std::vector<int> hidden = {};  // layers of an MLP, at least one
+
+  static constexpr int kInputs = 11;
+  static constexpr int kForceInputs = kMotionInputs;  // where the four of the self force start
+  static constexpr int kRodInput = kForceInputs + 4;
+
+  bool moves() const { return kind != RodKind::kConstant; }
+  int num_weights() const;
+};
+
+// "constant", "linear", "mlp:4", "mlp:256-128-256".
+std::string RodName(const RodShape& shape);
+
+inline constexpr double kRodSpeed = 0.1;  // m/s per unit of f
+// m: beyond them a rollout has left the model's domain.
+inline constexpr double kShortestRod = 0.3, kLongestRod = 1.6;
+
+// The values on the way from the inputs to the output of the last step.
+template <typename T>
+struct RodLayers {
+  VectorX<T> inputs;                     // u
+  std::vector<VectorX<T>> active, rest;  // tanh(W x + b), tanh(b)
+  std::vector<VectorX<T>> hidden;        // the one less the other
+
+  explicit RodLayers(const RodShape& shape)
+      : inputs(VectorX<T>::Zero(RodShape::kInputs)),
+        active(shape.hidden.size()),
+        rest(shape.hidden.size()),
+        hidden(shape.hidden.size()) {}
+};
+
+// e: (theta, phi) less the posture; force: F_self - F_rest; rod: l - l_0.
+template <typename T>
+void SetRodInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, const Vector4<T>& force,
+                  const T& rod, double mass, RodLayers<T>* layers) {
+  VectorX<T>& u = layers->inputs;
+  SetMotionInputs(e_theta, e_phi, qd, &u);
+  for (int i = 0; i < 4; ++i) {
+    u[RodShape::kForceInputs + i] = force[i] / (kNetworkAcceleration * mass);
+  }
+  u[RodShape::kRodInput] = rod / kNetworkRod;
+}
+
+// dl/dt in m/s, the inputs set.
+template <typename T>
+T RodVelocity(const RodShape& shape, const T* weights, RodLayers<T>* layers) {
+  using std::tanh;
+  const auto squash = [](const T& a) { return tanh(a); };
+  const VectorX<T>* below = &layers->inputs;
+  for (size_t i = 0; i < shape.hidden.size(); ++i) {
+    const int rows = shape.hidden[i], width = static_cast<int>(below->size());
+    const Eigen::OuterStride<> stride(width + 1);
+    const ConstRows<T> w(weights, rows, width, stride), b(weights + width, rows, 1, stride);
+    layers->active[i] = (w * *below + b).unaryExpr(squash);
+    layers->rest[i] = b.unaryExpr(squash);
+    layers->hidden[i] = layers->active[i] - layers->rest[i];
+    below = &layers->hidden[i];
+    weights += rows * (width + 1);
+  }
+  return kRodSpeed * Eigen::Map<const VectorX<T>>(weights, below->size()).dot(*below);
+}
+
+// Its derivatives by the inputs and, where by_weight is not null, by every weight, as RodVelocity
+// left the layers; by hand, from the output back.
+using RodInputGradient = Eigen::Matrix<double, 1, RodShape::kInputs>;
+RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weights,
+                                     const RodLayers<double>& layers, double* by_weight);
+
+// What people do to each other, learned: a small network beside contact, fitted with
+// everything else.
+//
+//   u = [dx/0.4, dy/0.4, dxd/0.8, dyd/0.8, th_n/0.15, th_j/0.15, ph_n/0.15, ph_j/0.15,
+//        dthd/0.6, dphd/0.6]                     carts, n minus j: LDP's ten inputs
+//   h_1 = tanh(W_1 u + b_1), h_i = tanh(W_i h_(i-1) + b_i)
+//   F on n = 2 M_n g (O h_last + c),             g = x / (x + w)
+//
+// x: the load of contact, w its onset (contact.h), so that people who do not touch do nothing to
+// each other, whatever the weights, and O = c = 0 is no force at all. Each of the two asks the same
+// network alone: the force is not mutual, and no matter who is numbered first. Source: LDP's
+// interaction network (Yue et al., CVPR 2024: 10-512-512-4, given by file in
+// network_interaction.h), with that gate added.
+//
+// Weights are one flat array: for each layer the rows [W b], then the rows [O c].
+
+inline constexpr double kPairDistance = 0.4;  // m
+
+struct PairShape {
+  std::vector<int> hidden = {};  // units of each layer; empty: nothing is learned
+
+  static constexpr int kInputs = 10;
+  bool any() const { return !hidden.empty(); }
+  int num_weights() const;
+};
+
+// "network:4", "network:32-16".
+std::string PairName(const PairShape& shape);
+
+// The values on the way from the inputs to the output.
+template <typename T>
+struct PairLayers {
+  std::vector<VectorX<T>> values;  // u, then the hidden layers
+  Vector4<T> output;               // O h + c
+};
+
+template <typename T>
+void SetPairInputs(const PendulumState<T>& n, const PendulumState<T>& j, VectorX<T>* u) {
+  u->resize(PairShape::kInputs);
+  *u << (n.q[0] - j.q[0]) / kPairDistance, (n.q[1] - j.q[1]) / kPairDistance,
+      (n.qd[0] - j.qd[0]) / kNetworkSpeed, (n.qd[1] - j.qd[1]) / kNetworkSpeed,
+      n.q[2] / kNetworkAngle, j.q[2] / kNetworkAngle, n.q[3] / kNetworkAngle,
+      j.q[3] / kNetworkAngle, (n.qd[2] - j.qd[2]) / kNetworkRate,
+      (n.qd[3] - j.qd[3]) / kNetworkRate;
+}
+
+// A layer's [W b] in the flat array.
+template <typename T>
+ConstRows<T> PairLayer(const T* weights, int rows, int inputs) {
+  return {weights, rows, inputs + 1, Eigen::OuterStride<>(inputs + 1)};
+}
+
+// What n gets from j before gate and mass; layers keeps the way there.
+template <typename T>
+void RunPairNetwork(const PairShape& shape, const T* weights, const PendulumState<T>& n,
+                    const PendulumState<T>& j, PairLayers<T>* layers) {
+  layers->values.resize(shape.hidden.size() + 1);
+  SetPairInputs(n, j, &layers->values[0]);
+  int inputs = PairShape::kInputs;
+  for (size_t i = 0; i < shape.hidden.size(); ++i) {
+    const ConstRows<T> layer = PairLayer(weights, shape.hidden[i], inputs);
+    const VectorX<T> sum = layer.leftCols(inputs) * layers->values[i] + layer.col(inputs);
+    layers->values[i + 1] = sum.unaryExpr([](const T& a) {
+      using std::tanh;
+      return tanh(a);
+    });
+    weights += layer.size();
+    inputs = shape.hidden[i];
+  }
+  const ConstRows<T> last = PairLayer(weights, 4, inputs);
+  layers->output = last.leftCols(inputs) * layers->values.back() + last.col(inputs);
+}
+
+// The gate g of two people; zero where neither loads the other.
+template <typename T>
+T PairGate(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
+           const Vector4<T>& q_j) {
+  const T load = LoadBetween(pair, p, q_n, q_j);
+  return RealPart(load) > 0.0 ? T(load / (load + kContactOnset)) : T(0.0);
+}
+
+template <typename T>
+void AddLearnedPair(const PairShape& shape, const T* weights, const Pair& pair,
+                    const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
+                    PairForce<T>* force) {
+  const T gate = PairGate<T>(pair, p, n.q, j.q);
+  if (!(RealPart(gate) > 0.0)) return;
+  PairLayers<T> layers;
+  RunPairNetwork(shape, weights, n, j, &layers);
+  force->on_n += (kNetworkAcceleration * pair.body_n.mass * gate) * layers.output;
+  RunPairNetwork(shape, weights, j, n, &layers);
+  force->on_j += (kNetworkAcceleration * pair.body_j.mass * gate) * layers.output;
+  force->acts = true;
+}
 
 struct LearnedTerms {
   NetworkShape shape;           // of the self force

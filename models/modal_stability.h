@@ -8,10 +8,10 @@
 // where m_.. are elements of the mass matrix, f and t the derivatives of the forces less gravity,
 // and K = -d F / d v', which only a backward difference of the cart's velocity has, here in the
 // limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
-// rate zero and left out, and so are learned terms: of a rod that moves (rod_law.h) the length
-// alone has no part in the first order, upright. A user's own law (force_law.h) that couples the
-// planes does so in behaviour.h, not here. Where feet stand (stance.h) rest is standing: the ankles
-// balance, and the ground resists the cart.
+// rate zero and left out, and so are learned terms: of a rod that moves (learned_terms.h) the
+// length alone has no part in the first order, upright. A user's own law (force_law.h) that couples
+// the planes does so in behaviour.h, not here. Where feet stand (stance.h) rest is standing: the
+// ankles balance, and the ground resists the cart.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,11 +1,11 @@
 // models: what a model may be made of, one row for each: laws of friction, terms between people,
 // and parameters. Names, flags, defaults, bounds, the glossary and what acts where are made from
-// the rows (options.h, terms.h, interaction.h, parameters.h, parameter_facts.h).
+// the rows (options.h, interaction.h, parameters.h).
 #pragma once
 
 // X(id, name, along_y, Law): a law of friction.
 //   name     of --friction
-//   along_y  the parameter that is the drag along y as mu is along x (cart_damping.h)
+//   along_y  the parameter that is the drag along y as mu is along x (self_terms.h)
 //   Law      its formula (self_terms.h)
 #define PUSHID_FRICTION_LAWS(X)               \
   X(kIsotropic, "isotropic", kMu, LinearDrag) \
@@ -31,7 +31,7 @@
 //   nominal    start of a fit, value when fixed: where its term vanishes, or LDP's
 //   lower, upper  bounds of a fit
 //   scale      a typical size, for scaling null directions and judging "weak"
-//   transform  the scale on which it is fitted (transform.h)
+//   transform  the scale on which it is fitted (parameters.h)
 //   acts       for a model m: whether the parameter has any effect
 //   freed      whether choosing its term frees it, with a weak prior
 //   meaning    what it is

@@ -7,14 +7,43 @@
 // network for fitting around should have none.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
+#include "models/enum_names.h"
 #include "models/ldp_interaction.h"
-#include "models/mlp.h"
 
 namespace pushid {
+
+// A small fully connected network with fixed weights: its value and its derivatives by the
+// inputs, at once and by hand, so that no automatic differentiation runs through the layers.
+//
+//   y = W_L s(... s(W_1 x + b_1) ...) + b_L, s = tanh or max(0, .)
+
+enum class Activation { kTanh, kRelu };
+constexpr EnumNames<Activation, 2> Names(Activation) {
+  return {{{"tanh", Activation::kTanh}, {"relu", Activation::kRelu}}};
+}
+
+struct MlpLayer {
+  Eigen::MatrixXd weights;  // outputs x inputs
+  Eigen::VectorXd bias;
+};
+
+struct Mlp {
+  Activation activation = Activation::kTanh;
+  std::vector<MlpLayer> layers;  // at least one; the last is linear
+
+  int num_inputs() const { return static_cast<int>(layers.front().weights.cols()); }
+  int num_outputs() const { return static_cast<int>(layers.back().weights.rows()); }
+  int num_weights() const;
+
+  // by_input (outputs x inputs) may be null.
+  Eigen::VectorXd Evaluate(const Eigen::VectorXd& input, Eigen::MatrixXd* by_input) const;
+};
 
 inline constexpr int kNetworkInputs = 10;
 

@@ -1,14 +1,121 @@
 // models: the choices that turn the general equations into one particular model. Plain data.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "models/enum_names.h"
 #include "models/model_rows.h"
-#include "models/terms.h"
 
 namespace pushid {
+
+// What people may do to each other, and the parts that the net force is made of. Every list
+// of them - flags, CSV headers, pictures, totals - is made from tables: the rows of model_rows.h
+// and those here.
+
+// What people do to each other: terms that add up (interaction.h), a switch for each row, and one
+// for a learned force (learned_terms.h), which has a size besides its name
+// (ident/parameters/learned_terms_io.h).
+struct InteractionTerms {
+#define PUSHID_SWITCH(member, ...) bool member = false;
+  PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+  bool learned = false;
+
+  // Those that ask how far the points of contact are apart, and those that ask it of the carts.
+  bool Contact() const { return learned || AnyWhere(Near::kPoints); }
+  bool AtCarts() const { return AnyWhere(Near::kCarts); }
+  bool Any() const { return Contact() || AtCarts(); }
+  // A learned force that may do what stiffness and damping of contact should.
+  bool LearnedBesideContact() const { return learned && (spring || damping); }
+  // What one gets the other gives: contact alone.
+  bool Mutual() const { return Any() && !learned && !AtCarts(); }
+
+ private:
+  enum class Near { kPoints, kCarts };
+  bool AnyWhere(Near asked) const {
+    bool any = false;
+#define PUSHID_SWITCH(member, near, ...) any |= member && Near::near == asked;
+    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+    return any;
+  }
+};
+
+struct InteractionTermName {
+  std::string_view name;
+  bool InteractionTerms::*member;
+  std::string_view note;
+};
+inline constexpr InteractionTermName kInteractionTerms[] = {
+#define PUSHID_SWITCH(member, near, Term, note) {#member, &InteractionTerms::member, note},
+    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
+#undef PUSHID_SWITCH
+};
+
+// White forces that act on everybody beside all others (process_noise.h).
+struct ProcessNoiseTerms {
+  bool diagonal = false;  // one standard deviation for each generalized force
+  bool full = false;      // a full Cholesky factor: they may be correlated
+  bool speed = false;     // growing with the cart's speed
+  bool push = false;      // with a factor of its own while a push acts
+
+  bool Any() const { return diagonal || full; }
+};
+
+struct ProcessNoiseTermName {
+  std::string_view name;
+  bool ProcessNoiseTerms::*member;
+};
+inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
+    {"diagonal", &ProcessNoiseTerms::diagonal},
+    {"full", &ProcessNoiseTerms::full},
+    {"speed", &ProcessNoiseTerms::speed},
+    {"push", &ProcessNoiseTerms::push}};
+
+// The parts of the net force, in the order of the CSV's columns. Those that pairs of people make
+// stand together, from kFirstPairPart on; a pair term that names another than kInteraction
+// (pair.h) is summed there. The last two are told of only where there are any (ReportedParts).
+#define PUSHID_FORCE_PARTS(X)                             \
+  X(kFriction, "friction")       /* of the ground */      \
+  X(kBalance, "balance")         /* PD control */         \
+  X(kLinear, "linear")           /* cross terms */        \
+  X(kPush, "push")               /* as recorded */        \
+  X(kTail, "tail")               /* of a net push */      \
+  X(kInteraction, "interaction") /* with others */        \
+  X(kNetwork, "network")         /* learned self force */ \
+  X(kNoise, "noise")             /* drawn */              \
+  X(kOwn, "own")                 /* laws of the user's */
+
+enum class ForcePart : int {
+#define PUSHID_FORCE_PART(id, name) id,
+  PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
+#undef PUSHID_FORCE_PART
+};
+
+inline constexpr std::string_view kForcePartNames[] = {
+#define PUSHID_FORCE_PART(id, name) name,
+    PUSHID_FORCE_PARTS(PUSHID_FORCE_PART)
+#undef PUSHID_FORCE_PART
+};
+inline constexpr int kNumForceParts = sizeof(kForcePartNames) / sizeof(kForcePartNames[0]);
+
+inline constexpr ForcePart kFirstPairPart = ForcePart::kInteraction;
+inline constexpr int kNumPairParts =
+    static_cast<int>(ForcePart::kNetwork) - static_cast<int>(kFirstPairPart);
+
+// For loops over the parts.
+inline constexpr auto kForceParts = [] {
+  std::array<ForcePart, kNumForceParts> parts{};
+  for (int i = 0; i < kNumForceParts; ++i) parts[i] = static_cast<ForcePart>(i);
+  return parts;
+}();
+
+constexpr std::string_view NameOf(ForcePart part) {
+  return kForcePartNames[static_cast<int>(part)];
+}
 
 // What the balance error is measured from.
 enum class Posture {

@@ -7,7 +7,7 @@
 // that adds the generalized forces [N, N, N m, N m] it exerts on both. interaction.h sums the
 // terms that a model asks for; a term whose force shall be a part of its own in reports has a
 //   static constexpr ForcePart kPart
-// from kFirstPairPart on (terms.h).
+// from kFirstPairPart on (options.h).
 #pragma once
 
 #include <cmath>

@@ -2,6 +2,7 @@
 #include "models/particles.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pushid {
 namespace {
@@ -69,6 +70,49 @@ Eigen::VectorXf MeanDistance(const Trajectories& a, const Trajectories& b,
     }
   }
   return mean / static_cast<float>(layout.joints);
+}
+
+Eigen::Matrix3d Rodrigues(const Eigen::Vector3d& map) {
+  const double angle = map.norm();
+  const Eigen::Vector3d axis = map / (angle + 1e-7);
+  Eigen::Matrix3d cross;
+  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+  return Eigen::Matrix3d::Identity() + std::sin(angle) * cross +
+         (1.0 - std::cos(angle)) * cross * cross;
+}
+
+Eigen::Matrix3Xd JointPositions(const JointTree& tree, const Eigen::VectorXd& maps) {
+  Eigen::Matrix3Xd positions = tree.offsets;
+  std::vector<Eigen::Matrix3d> turns(tree.num_joints());
+  for (int i = 0; i < tree.num_joints(); ++i) {
+    turns[i] = Rodrigues(maps.segment<3>(3 * i));
+    const int parent = tree.parents[i];
+    if (parent <= 0) continue;
+    turns[i] *= turns[parent];
+    positions.col(i) = turns[parent].transpose() * tree.offsets.col(i) + positions.col(parent);
+  }
+  return positions;
+}
+
+Eigen::MatrixXd CountTransitions(const std::vector<Symbols>& people, int num_symbols,
+                                 Transitions which) {
+  Eigen::MatrixXd counts = Eigen::MatrixXd::Zero(num_symbols, num_symbols);
+  for (const Symbols& symbols : people) {
+    for (size_t t = 1; t < symbols.size(); ++t) counts(symbols[t - 1], symbols[t]) += 1.0;
+  }
+  if (which == Transitions::kChanges) counts.diagonal().setZero();
+  return counts;
+}
+
+std::optional<double> JensenShannon(const Eigen::MatrixXd& p, const Eigen::MatrixXd& q) {
+  if (!(p.sum() > 0.0) || !(q.sum() > 0.0)) return std::nullopt;
+  double divergence = 0.0;
+  for (Eigen::Index i = 0; i < p.size(); ++i) {
+    const double a = p.data()[i] / p.sum(), b = q.data()[i] / q.sum(), mean = 0.5 * (a + b);
+    if (a > 0.0) divergence += 0.5 * a * std::log(a / mean);
+    if (b > 0.0) divergence += 0.5 * b * std::log(b / mean);
+  }
+  return std::sqrt(std::max(0.0, divergence));  // rounding may leave less than nothing
 }
 
 }  // namespace pushid

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,48 @@ void ProjectBones(const Eigen::VectorXf& like, const ParticleLayout& layout, Tra
 // Distances of particles, weighted: a value per frame, m.
 Eigen::VectorXf MeanDistance(const Trajectories& a, const Trajectories& b,
                              const ParticleLayout& layout);
+
+// Joint positions of a body that is given by exponential maps, one rotation vector a joint.
+//
+// With row vectors, as the data's literature has them: R_i = Rodrigues(r_i) with angle |r_i| and
+// axis r_i / (|r_i| + 1e-7). A joint with parent p > 0 turns with it, R_i <- R_i R_p, and stands at
+// x_i = offset_i R_p + x_p; a joint whose parent is the root, and the root, keep R_i and stand at
+// their offset. So the pose has neither the place nor the heading of the body.
+
+struct JointTree {
+  std::vector<int> parents;  // -1: the root; every parent precedes its children
+  Eigen::Matrix3Xd offsets;  // a column a joint, m
+
+  int num_joints() const { return static_cast<int>(parents.size()); }
+};
+
+// Turns row vectors: x R.
+Eigen::Matrix3d Rodrigues(const Eigen::Vector3d& map);
+
+// A column a joint, m. maps: three numbers a joint.
+Eigen::Matrix3Xd JointPositions(const JointTree& tree, const Eigen::VectorXd& maps);
+
+// How often one symbol follows another, and how unlike two such statistics are: the
+// comparison of symbolic social cues (SSCP) of Tanke et al., ICCV 2023 (called SDM), for any
+// symbols.
+//
+//   P[a][b]  share of the steps that lead from symbol a to symbol b; all of them sum to 1
+//   D(p, q) = sqrt((KL(p | m) + KL(q | m)) / 2), m = (p + q) / 2, natural logarithm
+//
+// D is Jensen and Shannon's distance: 0 of equal statistics, sqrt(ln 2) of disjoint ones.
+
+using Symbols = std::vector<int>;  // of one person, frame by frame; from 0 on
+
+enum class Transitions {
+  kAll,     // most of them from a symbol to itself
+  kChanges  // between different symbols alone
+};
+
+// Counts of steps, symbols x symbols.
+Eigen::MatrixXd CountTransitions(const std::vector<Symbols>& people, int num_symbols,
+                                 Transitions which);
+
+// Of counts or shares, which are normalized here. No value where either of them is all zero.
+std::optional<double> JensenShannon(const Eigen::MatrixXd& p, const Eigen::MatrixXd& q);
 
 }  // namespace pushid

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 
 #include "models/ipm.h"
 #include "models/options.h"
@@ -62,5 +63,10 @@ Matrix4<T> MeasurementCovariance(const Body& body, const ParameterSet<T>& p) {
   }
   return covariance;
 }
+
+// Where random numbers come from; models hold no random generator of their own.
+
+// Standard normal draws.
+using NormalSource = std::function<double()>;
 
 }  // namespace pushid

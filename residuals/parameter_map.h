@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "models/parameters.h"
-#include "models/transform.h"
 
 namespace pushid {
 

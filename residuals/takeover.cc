@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "models/contact.h"
-#include "models/learned_pair.h"
+#include "models/learned_terms.h"
 #include "models/neighbours.h"
 #include "models/self_force.h"
 

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "models/joint_tree.h"
 #include "models/particles.h"
 
 namespace pushid {

@@ -13,7 +13,7 @@
 #include "ident/problem/behaviour_text.h"
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/few_clusters.h"
-#include "models/cart_damping.h"
+#include "models/self_terms.h"
 #include "residuals/takeover.h"
 
 namespace pushid {

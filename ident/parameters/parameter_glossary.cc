@@ -2,7 +2,7 @@
 #include "ident/parameters/parameter_glossary.h"
 
 #include "datasets/files/number_text.h"
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 
 namespace pushid {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 
 namespace pushid {
 

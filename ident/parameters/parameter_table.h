@@ -10,7 +10,6 @@
 #include "datasets/files/error.h"
 #include "models/enum_names.h"
 #include "models/options.h"
-#include "models/parameter_facts.h"
 #include "models/parameters.h"
 #include "residuals/parameter_map.h"
 

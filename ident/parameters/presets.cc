@@ -7,7 +7,7 @@
 
 #include "datasets/manifest/recording.h"
 #include "ident/parameters/learned_terms_io.h"
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 
 namespace pushid {
 namespace {

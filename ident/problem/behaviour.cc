@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "models/cart_damping.h"
 #include "models/decompositions.h"
 #include "models/learned_terms.h"
 #include "models/modal_stability.h"
 #include "models/rollout.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 namespace {

@@ -10,7 +10,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/problem/pooling_spread.h"
-#include "models/cart_damping.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 

@@ -9,7 +9,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/pooling_spread.h"
 #include "ident/solver/whitened_bfgs.h"
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {

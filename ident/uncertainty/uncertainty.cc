@@ -10,8 +10,8 @@
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/held_directions.h"
 #include "ident/uncertainty/null_directions.h"
-#include "models/cart_damping.h"
 #include "models/decompositions.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 namespace {

@@ -10,8 +10,8 @@
 
 #include <vector>
 
-#include "models/normal_source.h"
 #include "models/particles.h"
+#include "models/process_noise.h"
 
 namespace pushid {
 

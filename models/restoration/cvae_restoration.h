@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "models/normal_source.h"
+#include "models/process_noise.h"
 #include "models/restoration/cvae_features.h"
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"

@@ -15,8 +15,8 @@
 #include <functional>
 #include <vector>
 
+#include "models/particles.h"
 #include "models/restoration/body.h"
-#include "models/transition_statistics.h"
 
 namespace pushid {
 

@@ -1,4 +1,4 @@
-// residuals: the network of a learned interaction (models/learned_pair.h) for many people at once,
+// residuals: the network of a learned interaction (models/learned_terms.h) for many people at once,
 // step by step, and back: d(cost)/d(weights) of whole rollouts by the adjoint, as
 // packed_network.h has it for self forces.
 //
@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/learned_pair.h"
+#include "models/learned_terms.h"
 #include "residuals/packed/packed_matrix.h"
 
 namespace pushid {

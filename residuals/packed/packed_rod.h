@@ -1,4 +1,4 @@
-// residuals: a law of the rod (models/rod_law.h) for many people at once, step by step, and back:
+// residuals: a law of the rod (models/learned_terms.h) for many people at once, step by step, and back:
 // d(cost)/d(weights) of whole rollouts by the adjoint, as packed_network.h has it for self
 // forces.
 //
@@ -12,7 +12,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "models/rod_law.h"
+#include "models/learned_terms.h"
 #include "residuals/packed/packed_matrix.h"
 #include "residuals/packed/packed_network.h"
 

@@ -1,4 +1,4 @@
-// residuals: derivatives of a learned interaction (models/learned_pair.h), by hand but for its
+// residuals: derivatives of a learned interaction (models/learned_terms.h), by hand but for its
 // gate.
 //
 // F = 2 M g y(u, w) of each of the two gives
@@ -14,7 +14,7 @@
 #include <array>
 #include <vector>
 
-#include "models/learned_pair.h"
+#include "models/learned_terms.h"
 #include "models/scene_forces.h"
 #include "residuals/packed/packed_pairs.h"
 #include "residuals/sensitivities/pair_jacobian.h"

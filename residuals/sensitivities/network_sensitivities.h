@@ -66,7 +66,7 @@ class NetworkSensitivities {
 // Derivatives of a rod's velocity, beside those of the rollout
 // (rollout_sensitivities.h), by hand.
 //
-// With v the velocity of a rod law (models/rod_law.h), S = d[q, qd]/d(columns) and the rod's own
+// With v the velocity of a rod law (models/learned_terms.h), S = d[q, qd]/d(columns) and the rod's own
 // row s:
 //   dv = (v_u u_[q,qd] + v_F F_[q,qd]) S + v_F dF_network + v_F F_p dp + v_l s + v_w dw,
 //   s <- s + dt dv

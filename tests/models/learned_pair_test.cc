@@ -1,6 +1,4 @@
 // A learned interaction: silent without load, the same however people are numbered.
-#include "models/learned_pair.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>

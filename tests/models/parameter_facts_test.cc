@@ -1,15 +1,14 @@
 // The rows of parameters, and the parts of the net force.
-#include "models/parameter_facts.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
 #include <set>
 #include <string>
 
-#include "models/cart_damping.h"
 #include "models/learned_terms.h"
-#include "models/terms.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 namespace {

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "models/joint_tree.h"
-
 namespace pushid {
 namespace {
 

@@ -1,10 +1,9 @@
 // The rod as a state: its law's derivatives by hand against Jets, silence at rest, the constant rod
 // as the limit of zero weights, and what a rod that moved does to the pendulum.
-#include "models/rod_law.h"
-
 #include <ceres/jet.h>
 
 #include "models/crowd.h"
+#include "models/learned_terms.h"
 #include "models/rollout.h"
 #include "tests/models/model_samples.h"
 

@@ -1,9 +1,9 @@
 // Transitions by hand; Jensen and Shannon's distance against SciPy.
-#include "models/transition_statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "models/particles.h"
 
 namespace pushid {
 namespace {

@@ -6,7 +6,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_json.h"
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

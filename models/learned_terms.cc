@@ -1,5 +1,5 @@
 // models: sizes, names and derivatives of rod laws.
-#include "models/rod_law.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 
@@ -51,6 +51,22 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
     slope = w.transpose() * by_sum;
   }
   return slope.transpose();
+}
+
+int PairShape::num_weights() const {
+  if (!any()) return 0;
+  int weights = 0, inputs = kInputs;
+  for (int size : hidden) {
+    weights += size * (inputs + 1);
+    inputs = size;
+  }
+  return weights + 4 * (inputs + 1);
+}
+
+std::string PairName(const PairShape& shape) {
+  std::string name;
+  for (int size : shape.hidden) name += (name.empty() ? "network:" : "-") + std::to_string(size);
+  return name;
 }
 
 }  // namespace pushid

@@ -1,5 +1,5 @@
 // models: forward and, for the derivatives, backward through the layers.
-#include "models/mlp.h"
+#include "models/network_interaction.h"
 
 namespace pushid {
 

@@ -1,5 +1,5 @@
 // models: the parameters' facts, from their rows.
-#include "models/parameter_facts.h"
+#include "models/parameters.h"
 
 #include "models/force_law.h"
 #include "models/learned_terms.h"

@@ -1,0 +1,143 @@
+// models: the net force on one person in one step, by parts.
+//
+//   F_net = the sum of the parts of options.h, where by push kind (push.h)
+//   and PushUse (options.h) a `net` push may replace all other forces, and a `net_without_friction`
+//   push all but the friction, while it lasts. Where feet stand and step (stance.h), what a person
+//   does about being pushed depends on the step state as well.
+//
+// Templated, so that the same lines serve doubles and automatic differentiation.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "models/interaction.h"
+#include "models/options.h"
+#include "models/parameters.h"
+#include "models/scene.h"
+#include "models/self_force.h"
+#include "models/stance.h"
+
+namespace pushid {
+
+// Which forces act on a person during one step.
+enum class ActiveForces { kAll, kPushAndFriction, kPushOnly };
+
+ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame);
+
+// The force of all pushes on a person in one step, without tails. Constant in the parameters.
+Vector4<double> PushForceAt(const Scene& scene, int person, int frame);
+
+// The parts of F_net on one person in one step (options.h).
+template <typename T>
+struct NetForce {
+  std::array<Vector4<T>, kNumForceParts> parts;
+  Angles<T> angles;  // of the state at which it acts
+  // Where feet stand and step: the ground's resistance (N s/m) to the cart's velocity after the
+  // step, a part of the friction once that is known (AddGround), and the next step state.
+  T ground = T(0.0), next_step = T(0.0);
+
+  NetForce() { parts.fill(Vector4<T>::Zero()); }
+  Vector4<T>& operator[](ForcePart part) { return parts[static_cast<int>(part)]; }
+  const Vector4<T>& operator[](ForcePart part) const { return parts[static_cast<int>(part)]; }
+
+  Vector4<T> Total() const {
+    Vector4<T> sum = parts[0];
+    for (int i = 1; i < kNumForceParts; ++i) sum += parts[i];
+    return sum;
+  }
+
+  void AddGround(const Vector4<T>& next_qd) {
+    for (int i = 0; i < 2; ++i) (*this)[ForcePart::kFriction][i] -= ground * next_qd[i];
+  }
+};
+
+// The parts that reports list: all but for noise, and for a user's own laws where the model has
+// none.
+std::vector<ForcePart> ReportedParts(const ModelOptions& options);
+
+// What a person gets from others, by part.
+template <typename T>
+struct Received {
+  std::array<Vector4<T>, kNumPairParts> part;
+
+  Received() { part.fill(Vector4<T>::Zero()); }
+  Vector4<T> Now() const {
+    Vector4<T> sum = part[0];
+    for (int i = 1; i < kNumPairParts; ++i) sum += part[i];
+    return sum;
+  }
+};
+
+// What a person does about being pushed: friction, balance and the linear terms.
+template <typename T>
+void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
+                      const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                      NetForce<T>* force) {
+  if (active == ActiveForces::kPushOnly) return;
+  (*force)[ForcePart::kFriction] = self.Friction(p, state.qd);
+  if (active == ActiveForces::kPushAndFriction) return;
+  (*force)[ForcePart::kBalance] = self.Balance(p, state, qd_previous);
+  (*force)[ForcePart::kLinear] = self.Linear(p, state);
+}
+
+// The same of feet that stand and step.
+template <typename T>
+void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
+                     const PendulumState<T>& state, NetForce<T>* force) {
+  using Cart = Eigen::Matrix<T, 2, 1>;
+  const T &vx = state.qd[0], &vy = state.qd[1], &s = state.step;
+  const Cart friction = self.Friction(p, state.qd).template head<2>();
+  const Cart balance = self.Balance(p, state, state.qd).template head<2>();
+  const Cart linear = self.LinearOnCart(p, state), cart_force = friction + balance + linear;
+  const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
+  const StanceForces<T> of_stance = StanceAt(self, stance, force->angles, state, cart_force);
+  force->next_step = of_stance.next_step;
+  if (active == ActiveForces::kPushOnly) return;
+  Vector4<T>& ground = (*force)[ForcePart::kFriction];
+  if (active == ActiveForces::kPushAndFriction) {
+    ground = {-kPublishedFriction * vx, -kPublishedFriction * vy, T(0.0), T(0.0)};
+    return;
+  }
+  force->ground = of_stance.ground;
+  ground = {s * friction[0], s * friction[1], T(0.0), T(0.0)};
+  (*force)[ForcePart::kBalance] = {s * balance[0], s * balance[1], of_stance.torque[0],
+                                   of_stance.torque[1]};
+  (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
+}
+
+template <typename T>
+NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
+                       const ParameterSet<T>& p, int person, int frame,
+                       const PosedPendulum<T>& state, const Vector4<T>& qd_previous,
+                       const Received<T>& received = {},
+                       const Vector4<T>& network = Vector4<T>::Zero()) {
+  NetForce<T> force;
+  force.angles = state.angles;
+  force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  const bool stands = options.stance == Stance::kThreshold;
+  if (stands) {
+    AddStanceForces(self, p, active, state, &force);
+  } else {
+    AddSlidingForces(self, p, active, state, qd_previous, &force);
+  }
+  if (active != ActiveForces::kAll) return force;
+  // Only here: a push that is the whole force includes the tail of an earlier one.
+  if (options.push_tail == PushTail::kExponential) {
+    for (const ScenePush& push : scene.pushes) {
+      if (push.person != person) continue;
+      force[ForcePart::kTail] +=
+          stands ? TailForceAtHip(push, p, self.body, force.angles, frame, scene.dt)
+                 : TailForce(push, p, frame, scene.dt);
+    }
+  }
+  if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);
+  for (int i = 0; i < kNumPairParts; ++i) {
+    force.parts[static_cast<int>(kFirstPairPart) + i] = received.part[i];
+  }
+  force[ForcePart::kNetwork] = network;
+  return force;
+}
+
+}  // namespace pushid
