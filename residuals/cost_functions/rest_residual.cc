@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kWatched = 1.0;  // s, of settled people
 constexpr double kMet = 0.9;      // of what counts as settled: where the hinge begins
-constexpr int kRows = 3;          // for each frame and person
+constexpr int kSettlingRows = 3;  // for each frame and person
 
-using SettlingRows = Eigen::Matrix<double, kRows, 8>;  // residuals by [q, qd]
+using SettlingRows = Eigen::Matrix<double, kSettlingRows, 8>;  // residuals by [q, qd]
 
 // max(0, |v| / limit - 1) and its derivative by v.
 template <int kSize>
@@ -69,7 +69,7 @@ SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& opti
 SettlingResidual::SettlingResidual(SettlingProblem problem) : problem_(std::move(problem)) {
   for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
   set_num_residuals((problem_.last_frame - problem_.first_frame) * problem_.scene.num_people() *
-                    kRows);
+                    kSettlingRows);
 }
 
 bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
@@ -92,10 +92,10 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
   SettlingRows by_state;
   int row = 0;
   for (int t = p.first_frame; t < p.last_frame; ++t) {
-    for (int n = 0; n < p.scene.num_people(); ++n, row += kRows) {
+    for (int n = 0; n < p.scene.num_people(); ++n, row += kSettlingRows) {
       SettlingOf(path.At(t, n), self[n], residuals + row,
                  jacobians != nullptr ? &by_state : nullptr);
-      for (int k = 0; k < kRows; ++k) residuals[row + k] *= scale;
+      for (int k = 0; k < kSettlingRows; ++k) residuals[row + k] *= scale;
       if (jacobians == nullptr || by_state.isZero(0.0)) continue;
       slopes.push_back({t, n, row, by_state});
     }

@@ -13,33 +13,16 @@
 #include PUSHID_LANE_SCALAR
 
 #include "models/push.h"
+#include "residuals/lanes/lane_storage.h"
 #include "residuals/lanes/person_lanes.h"
 
 namespace pushid {
 namespace {
 
-constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
-
 // Of FrameLoss::kHip, the nonzero entries of RawFrameJacobian.
 constexpr int kOfRow[kFrameResiduals][3] = {{0, 2, -1},  {1, 2, 3},   {2, 3, -1},
                                             {4, -1, -1}, {5, -1, -1}, {2, -1, -1},
                                             {3, -1, -1}, {6, -1, -1}, {7, -1, -1}};
-
-template <int kSize>
-Eigen::Matrix<Lanes, kSize, 1> LoadVector(const double* from) {
-  Eigen::Matrix<Lanes, kSize, 1> vector;
-  for (int i = 0; i < kSize; ++i) vector[i] = LoadLanes(from + i * kWidth);
-  return vector;
-}
-
-// The derivatives that are carried from step to step, and what they are summed up to.
-struct Carried {
-  Lanes* by_column;  // P x 8: [q, qd]
-  Lanes* before;     // P x 2: of the cart's velocity, one frame earlier
-  Lanes* rows;       // (P + 1) x kFrameResiduals: [J r] of one frame
-  Lanes* plain;      // (P + 1) x (P + 1)
-  Lanes* robust;     // the same
-};
 
 class Roller {
  public:
@@ -285,23 +268,6 @@ class Roller {
   Angles<Lanes> angles_;
   SelfJacobian<Lanes> jacobian_;
   Lanes failed_ = 0.0, squares_ = 0.0;
-};
-
-// Lanes of which storage has room for, one after the other.
-class Room {
- public:
-  explicit Room(double* storage) {
-    const auto address = reinterpret_cast<unsigned long long>(storage);
-    at_ = reinterpret_cast<Lanes*>((address + sizeof(Lanes) - 1) / sizeof(Lanes) * sizeof(Lanes));
-  }
-  Lanes* Take(int count) {
-    Lanes* const taken = at_;
-    at_ += count;
-    return taken;
-  }
-
- private:
-  Lanes* at_;
 };
 
 void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
