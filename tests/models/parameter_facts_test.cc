@@ -102,6 +102,17 @@ TEST(CartDampings, AreMuPlusKp) {
   }
 }
 
+// A switch says where its term acts: at points of contact or at carts, and not at both.
+TEST(InteractionTerms, EverySwitchActsSomewhere) {
+  for (const InteractionTermName& term : kInteractionTerms) {
+    InteractionTerms terms;
+    terms.*term.member = true;
+    EXPECT_TRUE(terms.Any()) << term.name;
+    EXPECT_NE(terms.Contact(), terms.AtCarts()) << term.name;
+  }
+  EXPECT_FALSE(InteractionTerms().Any());
+}
+
 TEST(ForceParts, HaveNamesOfTheirOwnAndOwnIsTheLast) {
   std::set<std::string_view> names(std::begin(kForcePartNames), std::end(kForcePartNames));
   EXPECT_EQ(names.size(), static_cast<size_t>(kNumForceParts));
