@@ -7,8 +7,10 @@
 //                    (1 cm in groups). For comparison only.
 #pragma once
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "models/enum_names.h"
 #include "models/ipm.h"
@@ -37,5 +39,19 @@ inline MappedPose MapSkeleton(const Vector3<double>& hip, const Vector3<double>&
   const double phi = exact ? std::atan2(-u.y(), u.z()) : arcsine(-u.y());
   return {{cart.x(), cart.y(), theta, phi}, length, cart.z()};
 }
+
+// Smoothing and differentiating a sampled signal by local polynomials.
+//
+// Savitzky & Golay, Analytical Chemistry 36 (1964): a cubic is fitted to the 2 k + 1 samples around
+// each one; near the ends the window keeps its length and the polynomial is read off centre.
+
+struct SmoothedSample {
+  Eigen::Vector4d value, rate, acceleration;
+};
+
+// window: odd, at least 5; shortened (to the largest odd number) where the signal is shorter.
+// A signal of fewer than 5 samples is returned as it is, with zero derivatives.
+std::vector<SmoothedSample> SavitzkyGolay(const std::vector<Eigen::Vector4d>& samples, int window,
+                                          double dt);
 
 }  // namespace pushid

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "models/rollout.h"
-#include "models/savitzky_golay.h"
+#include "models/skeleton_mapping.h"
 
 namespace pushid {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "models/options.h"
-#include "models/savitzky_golay.h"
+#include "models/skeleton_mapping.h"
 #include "residuals/parameter_map.h"
 
 namespace pushid {

@@ -1,9 +1,8 @@
 // Smoothing by local cubics: exact on cubics, ends included.
-#include "models/savitzky_golay.h"
-
 #include <gtest/gtest.h>
 
 #include "datasets/files/random.h"
+#include "models/skeleton_mapping.h"
 #include "tests/models/model_samples.h"
 
 namespace pushid {

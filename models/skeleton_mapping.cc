@@ -1,5 +1,5 @@
 // models: local cubic least squares.
-#include "models/savitzky_golay.h"
+#include "models/skeleton_mapping.h"
 
 #include <algorithm>
 
