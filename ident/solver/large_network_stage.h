@@ -21,7 +21,7 @@ struct FittedPhysics {
 };
 
 // The options of the last of the three steps: the trained network, held, and the physical
-// parameters' values to start from. Errors: what the adjoint gradient refuses (drive, free initial
+// parameters' values to start from. Errors: what the adjoint gradient refuses (free initial
 // velocities).
 Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
                                      const FitOptions& options, const FittedPhysics& physics,
