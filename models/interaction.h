@@ -1,8 +1,6 @@
 // models: the sum of the interaction terms a model asks for, between two people.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <type_traits>
 
 #include "models/contact.h"
@@ -46,53 +44,15 @@ void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* networ
 #undef PUSHID_TERM
 }
 
-// The place of a term's force among the parts that pairs make.
-template <typename Term, typename = void>
-struct PairPartOf {
-  static constexpr int value = 0;
-};
-template <typename Term>
-struct PairPartOf<Term, std::void_t<decltype(Term::kPart)>> {
-  static constexpr int value = static_cast<int>(Term::kPart) - static_cast<int>(kFirstPairPart);
-  static_assert(0 <= value && value < kNumPairParts, "no part that pairs make (options.h)");
-};
-
-// What two people do to each other, by part, from kFirstPairPart on.
-template <typename T>
-struct PairForces {
-  std::array<PairForce<T>, kNumPairParts> part;
-
-  bool acts() const {
-    return std::any_of(part.begin(), part.end(), [](const PairForce<T>& f) { return f.acts; });
-  }
-  PairForce<T> Sum() const {
-    PairForce<T> sum = part[0];
-    for (int i = 1; i < kNumPairParts; ++i) {
-      sum.on_n += part[i].on_n;
-      sum.on_j += part[i].on_j;
-    }
-    sum.acts = acts();
-    return sum;
-  }
-};
-
-template <typename T>
-PairForces<T> PairForcesBetween(const InteractionTerms& terms, const InteractionNetwork* network,
-                                const Pair& pair, const ParameterSet<T>& p,
-                                const PosedPendulum<T>& n, const PosedPendulum<T>& j) {
-  PairForces<T> forces;
-  ForEachTerm(terms, network, [&](auto term) {
-    term.Add(pair, p, n, j, &forces.part[PairPartOf<decltype(term)>::value]);
-  });
-  return forces;
-}
-
-// All of it together.
+// What two people do to each other; their poses as PosedPendulum or, to be posed here, as states.
 template <typename T>
 PairForce<T> InteractionBetween(const InteractionTerms& terms, const InteractionNetwork* network,
                                 const Pair& pair, const ParameterSet<T>& p,
-                                const PendulumState<T>& n, const PendulumState<T>& j) {
-  return PairForcesBetween<T>(terms, network, pair, p, n, j).Sum();
+                                const std::common_type_t<PosedPendulum<T>>& n,
+                                const std::common_type_t<PosedPendulum<T>>& j) {
+  PairForce<T> force;
+  ForEachTerm(terms, network, [&](auto term) { term.Add(pair, p, n, j, &force); });
+  return force;
 }
 
 }  // namespace pushid

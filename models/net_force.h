@@ -56,19 +56,6 @@ struct NetForce {
 // none.
 std::vector<ForcePart> ReportedParts(const ModelOptions& options);
 
-// What a person gets from others, by part.
-template <typename T>
-struct Received {
-  std::array<Vector4<T>, kNumPairParts> part;
-
-  Received() { part.fill(Vector4<T>::Zero()); }
-  Vector4<T> Now() const {
-    Vector4<T> sum = part[0];
-    for (int i = 1; i < kNumPairParts; ++i) sum += part[i];
-    return sum;
-  }
-};
-
 // What a person does about being pushed: friction, balance and the linear terms.
 template <typename T>
 void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
@@ -106,11 +93,12 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
   (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
 }
 
+// received: from others; network: what the person's own network answers.
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
                        const PosedPendulum<T>& state, const Vector4<T>& qd_previous,
-                       const Received<T>& received = {},
+                       const Vector4<T>& received = Vector4<T>::Zero(),
                        const Vector4<T>& network = Vector4<T>::Zero()) {
   NetForce<T> force;
   force.angles = state.angles;
@@ -133,9 +121,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
     }
   }
   if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);
-  for (int i = 0; i < kNumPairParts; ++i) {
-    force.parts[static_cast<int>(kFirstPairPart) + i] = received.part[i];
-  }
+  force[ForcePart::kInteraction] = received;
   force[ForcePart::kNetwork] = network;
   return force;
 }

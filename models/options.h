@@ -75,9 +75,8 @@ inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
     {"speed", &ProcessNoiseTerms::speed},
     {"push", &ProcessNoiseTerms::push}};
 
-// The parts of the net force, in the order of the CSV's columns. Those that pairs of people make
-// stand together, from kFirstPairPart on; a pair term that names another than kInteraction
-// (pair.h) is summed there. The last two are told of only where there are any (ReportedParts).
+// The parts of the net force, in the order of the CSV's columns. The last two are told of only
+// where there are any (ReportedParts).
 #define PUSHID_FORCE_PARTS(X)                             \
   X(kFriction, "friction")       /* of the ground */      \
   X(kBalance, "balance")         /* PD control */         \
@@ -101,10 +100,6 @@ inline constexpr std::string_view kForcePartNames[] = {
 #undef PUSHID_FORCE_PART
 };
 inline constexpr int kNumForceParts = sizeof(kForcePartNames) / sizeof(kForcePartNames[0]);
-
-inline constexpr ForcePart kFirstPairPart = ForcePart::kInteraction;
-inline constexpr int kNumPairParts =
-    static_cast<int>(ForcePart::kNetwork) - static_cast<int>(kFirstPairPart);
 
 // For loops over the parts.
 inline constexpr auto kForceParts = [] {

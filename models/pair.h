@@ -5,9 +5,7 @@
 //                                         const PosedPendulum<T>& n, const PosedPendulum<T>& j,
 //                                         PairForce<T>*);
 // that adds the generalized forces [N, N, N m, N m] it exerts on both. interaction.h sums the
-// terms that a model asks for; a term whose force shall be a part of its own in reports has a
-//   static constexpr ForcePart kPart
-// from kFirstPairPart on (options.h).
+// terms that a model asks for.
 #pragma once
 
 #include <cmath>

@@ -31,7 +31,7 @@ class SceneForces {
         parameters_(&parameters),
         self_(SelfForces(scene, options)),
         finder_(scene, options.interaction),
-        received_(scene.people.size()) {
+        received_(scene.people.size(), Vector4<T>::Zero()) {
     if (options.learned != nullptr) StartNetworks(network_weights);
   }
 
@@ -45,25 +45,25 @@ class SceneForces {
   // person adds up in canonical order (neighbours.h).
   void Prepare(int person, std::vector<int>* scratch) {
     finder_.Near(person, scratch);
-    received_[person].part.fill(Vector4<T>::Zero());
+    received_[person].setZero();
     for (int other : *scratch) {
       const bool first = finder_.Rank(person) < finder_.Rank(other);
-      const PairForces<T> forces = first ? Between(person, other) : Between(other, person);
-      Receive(person, forces, first);
+      const PairForce<T> force = first ? Between(person, other) : Between(other, person);
+      Receive(person, force, first);
     }
     AskNetwork(person);
   }
 
   // The same for everybody, to the last bit.
   void PrepareAll() {
-    for (Received<T>& received : received_) received.part.fill(Vector4<T>::Zero());
+    for (Vector4<T>& received : received_) received.setZero();
     acting_.clear();
     finder_.ForEachPair([this](int n, int j) {
-      const PairForces<T> forces = Between(n, j);
-      if (!forces.acts()) return;
+      const PairForce<T> force = Between(n, j);
+      if (!force.acts) return;
       acting_.emplace_back(n, j);
-      Receive(n, forces, true);
-      Receive(j, forces, false);
+      Receive(n, force, true);
+      Receive(j, force, false);
     });
     for (int n = 0; n < scene_->num_people(); ++n) AskNetwork(n);
   }
@@ -105,7 +105,7 @@ class SceneForces {
   // Who acted on whom at PrepareAll, as ForEachPair visits them.
   const std::vector<std::pair<int, int>>& acting() const { return acting_; }
   const SelfForce& self(int person) const { return self_[person]; }
-  const Received<T>& received(int person) const { return received_[person]; }
+  const Vector4<T>& received(int person) const { return received_[person]; }
   // As Prepare left it; only where options have a network.
   const NetworkState<T>& network(int person) const { return networks_[person].state; }
   // As Next left it; only where options have a law for the rod.
@@ -118,25 +118,22 @@ class SceneForces {
     Vector4<T> force;
   };
 
-  PairForces<T> Between(int n, int j) const {
+  PairForce<T> Between(int n, int j) const {
     const Pair pair = finder_.Of(n, j);
-    PairForces<T> forces =
-        PairForcesBetween(options_->interaction, options_->interaction_network.get(), pair,
-                          Parameters(0), states_[n], states_[j]);
+    PairForce<T> force =
+        InteractionBetween<T>(options_->interaction, options_->interaction_network.get(), pair,
+                              Parameters(0), states_[n], states_[j]);
     if (options_->interaction.learned) {
       const LearnedTerms& learned = *options_->learned;
       AddLearnedPair(learned.pair, network_weights_ + learned.pair_at(), pair, Parameters(0),
-                     states_[n], states_[j], &forces.part[0]);
+                     states_[n], states_[j], &force);
     }
-    return forces;
+    return force;
   }
 
   // first: whether the person is the first of the two.
-  void Receive(int person, const PairForces<T>& forces, bool first) {
-    for (int i = 0; i < kNumPairParts; ++i) {
-      const PairForce<T>& part = forces.part[i];
-      if (part.acts) received_[person].part[i] += first ? part.on_n : part.on_j;
-    }
+  void Receive(int person, const PairForce<T>& force, bool first) {
+    if (force.acts) received_[person] += first ? force.on_n : force.on_j;
   }
 
   void AskNetwork(int person) {
@@ -181,7 +178,7 @@ class SceneForces {
   const std::vector<ParameterSet<T>>* parameters_;
   std::vector<SelfForce> self_;
   PairFinder finder_;
-  std::vector<Received<T>> received_;
+  std::vector<Vector4<T>> received_;
   std::vector<Network> networks_;
   std::vector<RodLayers<T>> rods_;
   std::vector<T> own_weights_;

@@ -136,12 +136,12 @@ void AdjointGradient::Batch::SetRodVelocities(int step) {
 }
 
 void AdjointGradient::Batch::Step(int step, std::vector<RolloutStatus>* status) {
-  Received<double> received;
+  Vector4<double> received = Vector4<double>::Zero();
   for (int column = 0; column < columns_.active(step); ++column) {
     Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
     const PendulumState<double>& state = walker.path[step];
-    if (others_) received.part[0] = received_.col(column);
+    if (others_) received = received_.col(column);
     const Vector4<double> force =
         NetForceAt<double>(walker.scene(), options_, walker.self, Parameters(column), walker.person,
                            step, state, walker.VelocityBefore(step), received, forces_.col(column))

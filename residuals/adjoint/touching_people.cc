@@ -57,9 +57,8 @@ void TouchingPeople::FindContacts(Group* group, const PeopleNow& now,
   group->finder.ForEachPair([&](int n, int j) {
     Contact contact{first + n, first + j, first, group->finder.Of(n, j), false, 0.0};
     const PairForce<double> force =
-        PairForcesBetween(options_.interaction, options_.interaction_network.get(), contact.pair, p,
-                          states[n], states[j])
-            .Sum();
+        InteractionBetween<double>(options_.interaction, options_.interaction_network.get(),
+                                   contact.pair, p, states[n], states[j]);
     contact.terms = force.acts;
     if (network_) contact.gate = PairGate<double>(contact.pair, p, states[n].q, states[j].q);
     if (!contact.terms && !contact.learned()) return;

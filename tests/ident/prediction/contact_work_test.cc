@@ -57,7 +57,7 @@ struct Bounce {
       forces.Update(path.Frame(t));
       for (int n : {0, 1}) {
         forces.Prepare(n, &scratch);
-        trace.At(t, n)[ForcePart::kInteraction] = forces.received(n).Now();
+        trace.At(t, n)[ForcePart::kInteraction] = forces.received(n);
       }
     }
     return BalanceContactEnergy(path, trace, scene.dt);
