@@ -1,7 +1,7 @@
 // residuals: the cost of whole recordings and its gradient by the adjoint: for networks of so many
 // weights that no Jacobian fits (an LSTM of 256 has 300 000).
 //
-//   cost = sum over recordings of 1/2 |RolloutResidual|^2, robust loss and weights included
+//   cost = sum over recordings of 1/2 |RolloutResiduals|^2, robust loss and weights included
 // With L = d(cost)/d[q, qd] of the next frame and g = L_qd + dt L_q, the step
 //   M a = F - C - G,  qd' = qd + dt a,  q' = q + dt qd'
 // goes back by

@@ -6,7 +6,7 @@
 //           together count as the hip alone does in FrameResidual; times its robust weight over the
 //           66, the recording's and the frame's weight, and sqrt(body_weight kBodyStride), for
 //           every kBodyStride-th frame.
-//   blocks: as RolloutResidual.
+//   blocks: as rollout_problem.h.
 // Joints are those of the window network on the rollout's path, before any post-processing; their
 // Jacobian is the network's (models/restoration/window_tangent.h) times the rollout's
 // sensitivities.
