@@ -22,7 +22,6 @@ namespace pushid {
 // inputs, at once and by hand, so that no automatic differentiation runs through the layers.
 //
 //   y = W_L s(... s(W_1 x + b_1) ...) + b_L, s = tanh or max(0, .)
-
 enum class Activation { kTanh, kRelu };
 constexpr EnumNames<Activation, 2> Names(Activation) {
   return {{{"tanh", Activation::kTanh}, {"relu", Activation::kRelu}}};

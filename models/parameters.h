@@ -52,7 +52,6 @@ template <typename T>
 using ParameterSet = std::array<T, kNumParameters>;
 
 // The scale on which a parameter is fitted.
-
 enum class Transform {
   kIdentity,
   kLog,   // positive parameters

@@ -34,7 +34,6 @@ namespace pushid {
 //   c_x = mu + Kp_x,   c_y = mu_y + Kp_y   (mu_y: the row's along_y, model_rows.h), N s/m.
 // A fit holds Kp_x and Kp_y, fits c by way of mu, and says so: mu = c - Kp. Kp free as well leaves
 // the two unidentifiable, which the fit then reports.
-
 struct CartDamping {
   std::string_view name;
   Parameter friction;  // derived: c - gain

@@ -1,6 +1,11 @@
-// residuals: a whole recording against its rollout, condensed: the rows of RolloutResidual. Those
-// of people alone are summed up side by side (cost_functions/lane_group.h), in a group of their own
-// where Ceres asks for one recording.
+// residuals: rows of a recording, in as few as its blocks have columns.
+//
+//   residuals: F of the normal equations of all rows (normal_equations.h), one more than acting
+//              columns (parameter_map.h): J'J, J'r and the cost are those of the rows, robust loss
+//              and weights included. Without derivatives, [0 ... 0 |r|].
+//   blocks:    BlockLayout (parameter_map.h).
+// This is what Ceres solves with: a group of five has some 4,000 rows of 36 columns, and 20 rows so
+// condensed. Diagnostics ask for the rows of each person, whose errors are clustered.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -14,15 +19,6 @@
 #include "residuals/fit_choices.h"
 
 namespace pushid {
-
-// Rows of a recording, in as few as its blocks have columns.
-//
-//   residuals: F of the normal equations of all rows (normal_equations.h), one more than acting
-//              columns (parameter_map.h): J'J, J'r and the cost are those of the rows, robust loss
-//              and weights included. Without derivatives, [0 ... 0 |r|].
-//   blocks:    BlockLayout (parameter_map.h).
-// This is what Ceres solves with: a group of five has some 4,000 rows of 36 columns, and 20 rows so
-// condensed. Diagnostics ask for the rows of each person, whose errors are clustered.
 
 class CondensedRows : public ceres::CostFunction {
  public:
@@ -71,6 +67,9 @@ class CondensedRows : public ceres::CostFunction {
   ActingColumns columns_;
 };
 
+// A whole recording against its rollout: the rows of rollout_problem.h. Those of people alone are
+// summed up side by side (lane_group.h), in a group of their own where Ceres asks for one
+// recording.
 class CondensedRollout : public CondensedRows {
  public:
   CondensedRollout(std::shared_ptr<const RolloutProblem> problem, JacobianMethod method);

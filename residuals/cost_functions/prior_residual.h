@@ -64,7 +64,6 @@ class RidgeResidual : public ceres::CostFunction {
 //   r = (sum over k of coefficient_k natural_k - wanted) / sigma
 //   block: the shared values on the fitted scale (parameter_map.h).
 // Used to profile sums such as mu + Kp_x, which are linear in natural values only.
-
 class CombinationResidual : public ceres::CostFunction {
  public:
   // coefficients: one per fitted parameter; constant: what the fixed ones contribute.

@@ -22,7 +22,6 @@ namespace pushid {
 //
 // Those who go on longest are the first columns, so that a step has the first `active` of them.
 // What is kept of every step stands side by side in one matrix of total() columns.
-
 class PackedColumns {
  public:
   // steps: by person; never increasing.

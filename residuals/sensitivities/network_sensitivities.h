@@ -1,5 +1,5 @@
-// residuals: derivatives of a self-force network, carried from step to step beside those of the
-// rollout (rollout_sensitivities.h), by hand.
+// residuals: derivatives of a self-force network and of a rod that moves, carried from step to step
+// beside those of the rollout (rollout_sensitivities.h), by hand.
 //
 // With Z = d[x; h]/d(columns) of the network's features and memory before a step, the memory after
 // it has d h'/d(columns) = T Z + D: T (hidden x [x; h]) is the step linearized, all gates and
@@ -63,11 +63,10 @@ class NetworkSensitivities {
   Eigen::VectorXd hidden_;                 // the last step's
 };
 
-// Derivatives of a rod's velocity, beside those of the rollout
-// (rollout_sensitivities.h), by hand.
+// Derivatives of a rod's velocity, beside those of the rollout (rollout_sensitivities.h), by hand.
 //
-// With v the velocity of a rod law (models/learned_terms.h), S = d[q, qd]/d(columns) and the rod's own
-// row s:
+// With v the velocity of a rod law (models/learned_terms.h), S = d[q, qd]/d(columns) and the rod's
+// own row s:
 //   dv = (v_u u_[q,qd] + v_F F_[q,qd]) S + v_F dF_network + v_F F_p dp + v_l s + v_w dw,
 //   s <- s + dt dv
 // The law has one output: its derivatives by all inputs and weights are one sweep back, and what
