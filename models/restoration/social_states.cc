@@ -30,7 +30,7 @@ int InFront(const std::vector<BodyMotion>& people, size_t of) {
 }
 
 // Of frame t > 0.
-int Posture(const BodyMotion& body, size_t t, double dt) {
+int PostureSymbol(const BodyMotion& body, size_t t, double dt) {
   for (const int ankle : {kRightAnkle, kLeftAnkle}) {
     const Eigen::Vector3d way = body[t].col(ankle) - body[t - 1].col(ankle);
     if (way.head<2>().norm() > kStepSpeed * dt) return kStep;
@@ -55,7 +55,7 @@ std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double 
     Symbols symbols(people[n].size(), kStand);
     for (size_t t = 1; t < symbols.size(); ++t) {
       const bool pushes = front != kNobody && Pushes(people[n], people[front], t, dt);
-      symbols[t] = (pushes ? kPushStanding : kStand) + Posture(people[n], t, dt);
+      symbols[t] = (pushes ? kPushStanding : kStand) + PostureSymbol(people[n], t, dt);
     }
     if (symbols.size() > 1) symbols[0] = symbols[1];
     all.push_back(std::move(symbols));
