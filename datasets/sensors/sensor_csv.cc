@@ -1,16 +1,12 @@
-// datasets: records of force sensors as CSV files, and lists of sensors.
+// datasets: records of force sensors as CSV files.
 #include "datasets/sensors/sensor_csv.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/json_fields.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/manifest.h"
-#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 namespace {
@@ -98,60 +94,6 @@ Result<SensorRecord> ReadSensorCsv(const std::string& path) {
   }
   if (MaybeError gap = FindGap(record, lines)) return *std::move(gap);
   return record;
-}
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-void ReadDirection(JsonFields* fields, SensorChoice* sensor) {
-  if (!fields->Has("direction")) return;
-  const Json& value = fields->At("direction");
-  bool numbers = value.is_array() && value.size() == 3;
-  for (std::size_t i = 0; numbers && i < 3; ++i) numbers = value[i].is_number();
-  if (!numbers) {
-    fields->Fail("direction", "must be [x, y, z], as in [1, 0, 0], not " + Shown(value));
-    return;
-  }
-  for (int i = 0; i < 3; ++i) sensor->direction[i] = value[i].get<double>();
-}
-
-}  // namespace
-
-Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const Json& content = document.value().content;
-  if (!content.is_array() || content.empty()) {
-    return document.value().ErrorAt("", "a list of sensors is expected, [{\"file\": ...}, ...]");
-  }
-  std::vector<SensorChoice> sensors;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
-                      "sensor " + std::to_string(i));
-    SensorChoice sensor;
-    sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
-    sensor.column = fields.OptionalText("column", "");
-    sensor.gain = fields.OptionalNumber("gain", "the N per unit", 1.0);
-    sensor.up = fields.OptionalText("up", "");
-    sensor.forward = fields.OptionalText("forward", "");
-    ReadDirection(&fields, &sensor);
-    sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
-    if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
-    if (fields.Has("height") && fields.Has("height_m")) {
-      fields.Fail("height", "is given together with height_m; give one of them");
-    }
-    if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
-    sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
-    sensor.zero_n = fields.OptionalNumber("zero", "what it reads at rest in N", 0.0);
-    if (!fields.error() && !(sensor.idle_force >= 0.0)) {
-      fields.Fail("idle_force", "must be a force of at least 0 N");
-    }
-    fields.OnlyAsked();
-    if (fields.error()) return *fields.error();
-    sensors.push_back(sensor);
-  }
-  return sensors;
 }
 
 }  // namespace pushid
