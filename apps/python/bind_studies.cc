@@ -84,7 +84,7 @@ void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) 
 using Json = nlohmann::ordered_json;
 
 // A number for each name; none where there are none.
-Json Named(const std::vector<std::string>& names, const std::vector<double>& numbers) {
+Json ByName(const std::vector<std::string>& names, const std::vector<double>& numbers) {
   Json json = Json::object();
   for (size_t i = 0; i < numbers.size(); ++i) json[names[i]] = NumberJson(numbers[i]);
   return json;
@@ -99,7 +99,7 @@ Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
                     {"height", row.push.height},
                     {"duration_s", row.push.duration_s},
                     {"mass_kg", row.push.mass_kg},
-                    {"error_ratio", Named(design.parameters, row.error_ratio)},
+                    {"error_ratio", ByName(design.parameters, row.error_ratio)},
                     {"mean_error_ratio", NumberJson(row.volume_ratio)}});
   }
   return rows;
@@ -110,15 +110,15 @@ Json StudiesJson(const StudyPlan& plan) {
   for (const StudySize& size : plan.sizes) {
     sizes.push_back({{"people", size.people},
                      {"pushes_of_each", size.pushes},
-                     {"standard_error", Named(plan.parameters, size.standard_error)}});
+                     {"standard_error", ByName(plan.parameters, size.standard_error)}});
   }
-  return {{"sensor_ratio", Named(plan.parameters, plan.sensor_ratio)},
+  return {{"sensor_ratio", ByName(plan.parameters, plan.sensor_ratio)},
           {"no_sensor", plan.no_sensor},
           {"sizes", sizes},
           {"no_sizes", plan.no_sizes},
-          {"between_people", Named(plan.parameters, plan.between_people)},
-          {"between_recordings", Named(plan.parameters, plan.between_recordings)},
-          {"noise", Named(plan.parameters, plan.noise)}};
+          {"between_people", ByName(plan.parameters, plan.between_people)},
+          {"between_recordings", ByName(plan.parameters, plan.between_recordings)},
+          {"noise", ByName(plan.parameters, plan.noise)}};
 }
 
 py::object DesignOf(const Model& model, const std::string& parameter) {
@@ -130,7 +130,7 @@ py::object DesignOf(const Model& model, const std::string& parameter) {
     design = DesignExperiments(to->pendulums, fitted->fit);
   }
   Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
-               {"standard_error", Named(design.parameters, design.standard_error)},
+               {"standard_error", ByName(design.parameters, design.standard_error)},
                {"pushes", PushesJson(design, parameter)},
                {"no_push", design.refused}};
   json.update(StudiesJson(design.studies));
