@@ -52,11 +52,13 @@ Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
 void AddToProvenance(Provenance* from) {
   const std::map<std::string, std::string> now = EffectiveFlags();
   std::vector<std::string>& known = from->changed_flags;
+  std::vector<std::string> added;
   for (const std::string& name : ChangedFlags()) {
     if (!MovedCheckFlags().Has(name) && name != "bootstrap_by") continue;
     from->configuration[name] = now.at(name);
-    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+    if (std::find(known.begin(), known.end(), name) == known.end()) added.push_back(name);
   }
+  known.insert(known.begin(), added.begin(), added.end());
 }
 
 int Run() {
