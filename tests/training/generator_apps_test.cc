@@ -142,7 +142,7 @@ TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
 
 TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--out=" + Path("g")}), {"--folder"}));
-  EXPECT_TRUE(Refused(Train("g", {"--cell=rnn"}), {"--cell is 'rnn'", "gru, lstm"}));
+  EXPECT_TRUE(Refused(Train("g", {"--cell=rnn"}), {"--cell is 'rnn'", "gru or lstm"}));
   EXPECT_TRUE(Refused(Train("g", {"--kind=waves"}), {"--kind is 'waves'"}));
   EXPECT_TRUE(
       Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate makes folds of pushes"}));
