@@ -97,46 +97,45 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
 
 }  // namespace
 
-ReportSection IdentifiabilitySection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"identifiability", "Identifiability", {}, {}, {}, {}, {}, ""};
-  const Diagnostics& d = result.diagnostics;
+ReportSection IdentifiabilitySection(const ReportSource& source) {
+  ReportSection section;
+  const Diagnostics& d = source.fit.diagnostics;
   section.paragraphs.push_back(
       "Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
-      " at the start, " + Rounded(result.uncertainty.condition_number, 3) + " at the optimum.");
-  for (const NullDirection& n : result.uncertainty.null_directions) {
+      " at the start, " + Rounded(source.fit.uncertainty.condition_number, 3) + " at the optimum.");
+  for (const NullDirection& n : source.fit.uncertainty.null_directions) {
     section.paragraphs.push_back("Unidentifiable: " + n.sentence);
   }
-  if (result.uncertainty.null_directions.empty()) {
+  if (source.fit.uncertainty.null_directions.empty()) {
     section.paragraphs.push_back("Data, priors and constraints together determine all directions.");
   }
-  for (const std::string& held : result.uncertainty.held_directions) {
+  for (const std::string& held : source.fit.uncertainty.held_directions) {
     section.paragraphs.push_back("Prior-dependent: " + held);
   }
   for (const std::string& note : d.start.notes) section.paragraphs.push_back("Start: " + note);
-  const std::string correlations = CorrelationText(result);
+  const std::string correlations = CorrelationText(source.fit);
   if (!correlations.empty()) section.paragraphs.push_back(correlations);
-  section.figures.push_back(CorrelationFigure(result));
+  section.figures.push_back(CorrelationFigure(source.fit));
   return section;
 }
 
-ReportSection ProfileSection(const FittedModel& model) {
-  ReportSection section{"profiles", "Profile likelihood", {}, {}, {}, {}, {}, ""};
-  if (model.profiles.empty()) return section;
+ReportSection ProfileSection(const ReportSource& source) {
+  ReportSection section;
+  if (source.model.profiles.empty()) return section;
   section.paragraphs = {
       "Each parameter is moved away from its estimate and everything else refitted. Where the "
       "curve crosses the dashed line the 95 % interval ends; a flat curve means that the data do "
       "not determine the parameter."};
-  section.paragraphs.push_back(AgreementNote(model));
-  section.tables.push_back({"three kinds of intervals", AgreementTable(model)});
+  section.paragraphs.push_back(AgreementNote(source.model));
+  section.tables.push_back({"three kinds of intervals", AgreementTable(source.model)});
   std::vector<Chart> charts;
   TextTable ends({"profile of", "why it ended below", "above"}, AllWords(3));
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"}, AllWords(5));
-  for (const Profile& p : model.profiles) {
+  for (const Profile& p : source.model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
-    if (p.points.size() > 1 && !IsAlias(model, p)) charts.push_back(ProfileChart(p));
+    if (p.points.size() > 1 && !IsAlias(source.model, p)) charts.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
       numbers.Add({p.name, p.unit, DoubleText(point.value), DoubleText(point.cost - p.cost),
                    DoubleText(p.threshold)});
@@ -150,23 +149,22 @@ ReportSection ProfileSection(const FittedModel& model) {
   return section;
 }
 
-ReportSection BootstrapSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"bootstrap", "Bootstrap", {}, {}, {}, {}, {}, ""};
-  if (!model.bootstrap || model.bootstrap->values.empty()) return section;
-  const Bootstrap& b = *model.bootstrap;
+ReportSection BootstrapSection(const ReportSource& source) {
+  ReportSection section;
+  if (!source.model.bootstrap || source.model.bootstrap->values.empty()) return section;
+  const Bootstrap& b = *source.model.bootstrap;
   section.paragraphs = {"The fit was repeated on samples drawn with replacement, " +
                         ResamplingText(b) + "."};
-  if (model.profiles.empty()) {
-    section.paragraphs.push_back(AgreementNote(model));
-    section.tables.push_back({"two kinds of intervals", AgreementTable(model)});
+  if (source.model.profiles.empty()) {
+    section.paragraphs.push_back(AgreementNote(source.model));
+    section.tables.push_back({"two kinds of intervals", AgreementTable(source.model)});
   }
   std::vector<Chart> charts;
   std::vector<std::string> header;
   for (size_t i = 0; i < b.names.size(); ++i) {
     header.push_back(b.names[i] + " (" + b.units[i] + ")");
     const Estimate* estimate = nullptr;
-    for (const Estimate& e : result.estimates) {
+    for (const Estimate& e : source.fit.estimates) {
       if (e.name == b.names[i]) estimate = &e;
     }
     if (estimate == nullptr) continue;  // combinations are their parameter on another scale
@@ -241,9 +239,9 @@ ReportFigure ForestFigure(const RecordingEffect& effect) {
 
 }  // namespace
 
-ReportSection PopulationSection(const FittedModel& model) {
-  ReportSection section{"population", "How recordings differ", {}, {}, {}, {}, {}, ""};
-  const auto& effect = model.fit.recording_effect;
+ReportSection PopulationSection(const ReportSource& source) {
+  ReportSection section;
+  const auto& effect = source.fit.recording_effect;
   if (!effect || effect->recordings.empty()) return section;
   section.paragraphs.push_back(PopulationSentence(*effect));
   section.tables.push_back({"", EffectGroupsTable(*effect)});

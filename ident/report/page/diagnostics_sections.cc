@@ -110,10 +110,9 @@ Chart Correlogram(const std::string& title, const std::vector<double>& values,
 
 }  // namespace
 
-ReportSection RecordingSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"recordings", "Recording by recording", {}, {}, {}, {}, {}, ""};
-  const Diagnostics& d = result.diagnostics;
+ReportSection RecordingSection(const ReportSource& source) {
+  ReportSection section;
+  const Diagnostics& d = source.fit.diagnostics;
   if (d.recordings.empty()) return section;
   std::vector<const RecordingDiagnostics*> sorted;
   TextTable numbers({"recording", "explained_percent", "cost", "lag1", "ljung_box", "ljung_box_p",
@@ -140,10 +139,9 @@ ReportSection RecordingSection(const FittedModel& model) {
   return section;
 }
 
-ReportSection LeverageSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"leverage", "Influence of each recording", {}, {}, {}, {}, {}, ""};
-  const Leverage& l = result.diagnostics.leverage;
+ReportSection LeverageSection(const ReportSource& source) {
+  ReportSection section;
+  const Leverage& l = source.fit.diagnostics.leverage;
   if (l.recordings.empty()) return section;
   HeatMap map{
       "change without the recording, in standard errors", {}, l.parameters, {}, kStrongMove};
@@ -176,10 +174,9 @@ ReportSection LeverageSection(const FittedModel& model) {
   return section;
 }
 
-ReportSection ResidualSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"residuals", "Residuals", {}, {}, {}, {}, {}, ""};
-  const std::vector<Whiteness>& channels = result.diagnostics.whiteness;
+ReportSection ResidualSection(const ReportSource& source) {
+  ReportSection section;
+  const std::vector<Whiteness>& channels = source.fit.diagnostics.whiteness;
   if (channels.empty()) return section;
   section.paragraphs = {
       "Autocorrelation of the residuals, and their correlation with the push, by lag in frames: "

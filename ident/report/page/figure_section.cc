@@ -140,20 +140,20 @@ std::string KeyHtml(const std::vector<RecordingView>& views) {
 
 }  // namespace
 
-ReportSection FigureSection(const std::vector<RecordingView>& views) {
-  ReportSection section{"figure", "Moving figure", {}, {}, {}, {}, {}, ""};
-  if (views.empty()) return section;
+ReportSection FigureSection(const ReportSource& source) {
+  ReportSection section;
+  if (source.views.empty()) return section;
   section.paragraphs = {
       "Every recording with the model's prediction from its first frame and the push. The slider "
       "and the list can be operated with the arrow keys."};
   int skeletons = 0;
-  for (const RecordingView& view : views) skeletons += view.run.num_people();
+  for (const RecordingView& view : source.views) skeletons += view.run.num_people();
   const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
   std::string data;
-  for (const RecordingView& view : views) {
+  for (const RecordingView& view : source.views) {
     data += (data.empty() ? "" : ",\n") + ViewJson(view, seconds);
   }
-  section.widget = std::string(kControls) + KeyHtml(views) +
+  section.widget = std::string(kControls) + KeyHtml(source.views) +
                    "<script type=\"application/json\" id=\"fig-data\">[" + data + "]</script>\n";
   return section;
 }

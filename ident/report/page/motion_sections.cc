@@ -249,19 +249,19 @@ std::string MedianText(const std::vector<RecordingView>& views) {
 
 }  // namespace
 
-ReportSection MotionSection(const std::vector<RecordingView>& views) {
-  ReportSection section{"motion", "Measured and predicted motion", {}, {}, {}, {}, {}, ""};
-  if (views.empty()) return section;
+ReportSection MotionSection(const ReportSource& source) {
+  ReportSection section;
+  if (source.views.empty()) return section;
   section.paragraphs = {
       "Predicted from the first frame and the push alone. The bands include the uncertainty of the "
       "parameters and, for the pushed person, the variation between people with the same "
       "parameters; for others only the uncertainty of the parameters. Bars under the hip show when "
       "a foot was off the ground. The forces explain the motion: balance, friction, interaction, "
       "push and all others add up to the net force (thick)."};
-  if (const std::string median = MedianText(views); !median.empty()) {
+  if (const std::string median = MedianText(source.views); !median.empty()) {
     section.paragraphs.push_back(median);
   }
-  for (const RecordingView& view : views) {
+  for (const RecordingView& view : source.views) {
     ReportFold fold{FoldTitle(view), {}};
     const std::string& id = view.run.recording.id;
     fold.figures.push_back({"motion_" + id, "", PathPicture(view), PathNumbers(view)});

@@ -155,21 +155,20 @@ const Agreement* Find(const std::vector<Agreement>& rows, const std::string& nam
 
 }  // namespace
 
-ReportSection ParameterSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"parameters", "Parameters", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {IdentifiedText(result), SharesNote(), HowSure(result),
-                        ConventionText(result)};
-  section.tables.push_back({"fitted and held", EstimateTable(result)});
-  section.tables.push_back({"derived", DerivedTable(result)});
-  const std::vector<Agreement> agreements = CompareIntervals(model);
+ReportSection ParameterSection(const ReportSource& source) {
+  ReportSection section;
+  section.paragraphs = {IdentifiedText(source.fit), SharesNote(), HowSure(source.fit),
+                        ConventionText(source.fit)};
+  section.tables.push_back({"fitted and held", EstimateTable(source.fit)});
+  section.tables.push_back({"derived", DerivedTable(source.fit)});
+  const std::vector<Agreement> agreements = CompareIntervals(source.model);
   std::vector<ForestRow> rows;
   TextTable numbers(
       {"parameter", "unit", "value", "nominal", "clustered_lower95", "clustered_upper95",
        "profile_lower95", "profile_upper95", "bootstrap_lower95", "bootstrap_upper95"},
       AllWords(10));
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* spec = result.options.table.Find(e.name);
+  for (const Estimate& e : source.fit.estimates) {
+    const ParameterSpec* spec = source.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
     const Agreement* agreement = Find(agreements, e.name);
     ForestRow row{e.name, e.unit, e.value, spec->nominal, true, {}};
@@ -190,10 +189,10 @@ ReportSection ParameterSection(const FittedModel& model) {
     numbers.Add(cells);
   }
   std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
-  if (!model.profiles.empty()) legend.push_back({"profile", kProfileLook});
-  if (model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
+  if (!source.model.profiles.empty()) legend.push_back({"profile", kProfileLook});
+  if (source.model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});
-  const ReportFigure shares = SharesFigure(result);
+  const ReportFigure shares = SharesFigure(source.fit);
   if (shares.numbers.rows().size() > 1) section.figures.push_back(shares);
   section.figures.push_back(
       {"forest",
@@ -203,11 +202,11 @@ ReportSection ParameterSection(const FittedModel& model) {
   return section;
 }
 
-ReportSection UnitSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  const std::string by = result.options.pool_by;
-  ReportSection section{"units", "By " + by, {}, {}, {}, {}, {}, ""};
-  const TextTable pooled = PooledTable(result);
+ReportSection UnitSection(const ReportSource& source) {
+  const std::string by = source.fit.options.pool_by;
+  ReportSection section;
+  section.title = "By " + by;
+  const TextTable pooled = PooledTable(source.fit);
   if (pooled.rows().size() < 2) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value (diamond) as far as its "
@@ -218,14 +217,14 @@ ReportSection UnitSection(const FittedModel& model) {
   std::map<std::string, std::vector<ForestRow>> by_parameter;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& estimates) {
     for (const auto& [name, e] : estimates) {
-      const double shared = result.parameters[result.options.table.Find(name)->id];
+      const double shared = source.fit.parameters[source.fit.options.table.Find(name)->id];
       ForestRow row{unit, e.unit, e.value, shared, true, {}};
       row.intervals.push_back({{e.standard_error, e.lower95, e.upper95}, kClusteredLook});
       by_parameter[name].push_back(row);
     }
   };
-  for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
-  for (const auto& [setting, estimates] : result.settings) add(setting, estimates);
+  for (const auto& [id, subject] : source.fit.subjects) add(id, subject.pooled);
+  for (const auto& [setting, estimates] : source.fit.settings) add(setting, estimates);
   const std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook},
                                            {"shared value", kNominalLook}};
   for (const auto& [name, rows] : by_parameter) {
@@ -240,7 +239,7 @@ ReportSection UnitSection(const FittedModel& model) {
          {{"units_" + name, name + " by " + by, Forest(rows, name, true).Draw(legend), numbers}}});
   }
   section.tables.push_back({"", pooled});
-  section.tables.push_back({"spread of the values", SpreadTable(result)});
+  section.tables.push_back({"spread of the values", SpreadTable(source.fit)});
   return section;
 }
 

@@ -61,13 +61,13 @@ ReportFigure ReliabilityFigure(const StepScore& score) {
 
 }  // namespace
 
-ReportSection StepSection(const FittedModel& model, const std::vector<RecordingView>& views) {
-  ReportSection section{"steps", "Who steps", {}, {}, {}, {}, {}, ""};
-  const auto& probability = model.fit.step_probability;
+ReportSection StepSection(const ReportSource& source) {
+  ReportSection section;
+  const auto& probability = source.fit.step_probability;
   if (!probability) return section;
   section.paragraphs.push_back(StepProbabilityText(*probability));
-  section.figures.push_back(MapFigure(ModelOf(model.fit)));
-  const StepScore score = ScoreOf(views);
+  section.figures.push_back(MapFigure(ModelOf(source.fit)));
+  const StepScore score = ScoreOf(source.views);
   if (!score.known()) return section;
   section.tables.push_back(
       {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
@@ -103,10 +103,9 @@ ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
 
 }  // namespace
 
-ReportSection GroupSection(const std::vector<RecordingView>& views,
-                           const PropagationSummary& propagation) {
-  ReportSection section{"groups", "Groups", {}, {}, {}, {}, {}, ""};
-  const ShownGroups groups = GroupsOf(views);
+ReportSection GroupSection(const ReportSource& source) {
+  ReportSection section;
+  const ShownGroups groups = GroupsOf(source.views);
   const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
   const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
   if (!model) return section;
@@ -121,7 +120,7 @@ ReportSection GroupSection(const std::vector<RecordingView>& views,
        GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
   section.tables.push_back(
       {"how the push travels through them, +- a standard error over recordings",
-       PropagationTable({{"predicted and measured", &propagation}})});
+       PropagationTable({{"predicted and measured", &source.propagation}})});
   return section;
 }
 
@@ -234,12 +233,11 @@ std::string TestText(const std::string& axis, const UniformityTest& test) {
 
 }  // namespace
 
-ReportSection VisualCheckSection(const FittedModel& model,
-                                 const std::vector<RecordingView>& views) {
-  ReportSection section{"checks", "Visual predictive check", {}, {}, {}, {}, {}, ""};
+ReportSection VisualCheckSection(const ReportSource& source) {
+  ReportSection section;
   std::vector<PendulumRecording> recordings;
-  for (const RecordingView& view : views) recordings.push_back(view.run.recording);
-  const VisualCheck check = CheckVisually(ModelOf(model.fit), recordings);
+  for (const RecordingView& view : source.views) recordings.push_back(view.run.recording);
+  const VisualCheck check = CheckVisually(ModelOf(source.fit), recordings);
   if (check.strata.empty()) return section;
   section.paragraphs = {
       "Simulated recordings have their own recording effects and correlated errors; only the first "

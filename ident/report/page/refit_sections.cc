@@ -1,16 +1,19 @@
 // ident: refits of the fit: with other pushes, and of fewer frames.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/design_text.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/refits_text.h"
 #include "ident/report/report_text.h"
+#include "ident/validation/experiment_design.h"
 
 namespace pushid {
 namespace {
@@ -57,35 +60,35 @@ TextTable HorizonNumbers(const RefitTable& check) {
 
 }  // namespace
 
-ReportSection PushCheckSection(const FittedModel& model) {
-  ReportSection section{"push_check", "Sensitivity to the pushes", {}, {}, {}, {}, {}, ""};
-  if (!model.push_check) return section;
+ReportSection PushCheckSection(const ReportSource& source) {
+  ReportSection section;
+  if (!source.model.push_check) return section;
   section.paragraphs = {
       "The pushes are not known exactly: a push from inverse dynamics depends on its window and on "
       "smoothing, a measured push on the noise and the clock of its sensor. The fit was repeated "
       "with other pushes; the total error combines the resulting changes with the standard error."};
   section.tables.push_back(
-      {"errors including those of the pushes", PushErrorTable(*model.push_check)});
+      {"errors including those of the pushes", PushErrorTable(*source.model.push_check)});
   section.tables.push_back(
-      {"change of each parameter in each refit", MovesTable(*model.push_check)});
+      {"change of each parameter in each refit", MovesTable(*source.model.push_check)});
   return section;
 }
 
-ReportSection PriorCheckSection(const FittedModel& model) {
-  ReportSection section{"prior_check", "Sensitivity to the priors", {}, {}, {}, {}, {}, ""};
-  if (!model.prior_check || model.prior_check->rows.empty()) return section;
+ReportSection PriorCheckSection(const ReportSource& source) {
+  ReportSection section;
+  if (!source.model.prior_check || source.model.prior_check->rows.empty()) return section;
   section.paragraphs = {
       "The fit was repeated with means and widths of all priors halved, and doubled. A parameter "
       "that the recordings determine keeps its value; profiles and bootstrap cannot show this, "
       "because they use the same priors."};
-  section.tables.push_back({"values under other priors", PriorTable(*model.prior_check)});
+  section.tables.push_back({"values under other priors", PriorTable(*source.model.prior_check)});
   return section;
 }
 
-ReportSection HorizonCheckSection(const FittedModel& model) {
-  ReportSection section{"horizon_check", "Estimates from fewer frames", {}, {}, {}, {}, {}, ""};
-  if (!model.horizon_check || model.horizon_check->rows.empty()) return section;
-  const RefitTable& check = *model.horizon_check;
+ReportSection HorizonCheckSection(const ReportSource& source) {
+  ReportSection section;
+  if (!source.model.horizon_check || source.model.horizon_check->rows.empty()) return section;
+  const RefitTable& check = *source.model.horizon_check;
   section.paragraphs = {
       "The fit was repeated on only the first frames of every recording. A parameter with physical "
       "meaning keeps its value; one that drifts compensates for something that the model omits.",
@@ -95,7 +98,7 @@ ReportSection HorizonCheckSection(const FittedModel& model) {
   }
   section.tables.push_back({"values +- standard errors", HorizonTable(check)});
   double all = 0.0;
-  for (const FittedRecording& r : model.fit.recordings) all = std::max(all, r.frames - 1.0);
+  for (const FittedRecording& r : source.fit.recordings) all = std::max(all, r.frames - 1.0);
   std::vector<Chart> charts;
   for (size_t i = 0; i < check.parameters.size(); ++i) charts.push_back(DriftChart(check, i, all));
   section.figures.push_back(
@@ -128,6 +131,29 @@ void AddPushes(const ExperimentDesign& design, ReportSection* section) {
   section->tables.push_back({"for each parameter", best});
 }
 
+// The design needs the fit's own recordings, all of them and as they were.
+ExperimentDesign DesignOf(const FitResult& result, const std::vector<RecordingView>& views) {
+  ExperimentDesign none;
+  none.refused = "it needs all recordings that were fitted, as they were then, each of one person";
+  if (views.size() != result.recordings.size() || result.best_start < 0) return none;
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : views) {
+    const bool same = std::any_of(
+        result.recordings.begin(), result.recordings.end(), [&](const FittedRecording& r) {
+          return r.id == view.run.recording.id && r.content_hash == view.run.recording.content_hash;
+        });
+    // A candidate is one person alone.
+    if (!same || view.run.recording.num_people() > 1) return none;
+    recordings.push_back(view.run.recording);
+  }
+  const FitProblem problem(recordings, result.options);
+  const std::optional<FitPoint> point = problem.PointAt(result.starts[result.best_start].to.Flat());
+  if (!point) return none;
+  const FitPoint& estimate = *point;
+  return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
+                           DefaultCandidates(recordings));
+}
+
 // What a force sensor and more people would tell.
 void AddStudies(const StudyPlan& plan, ReportSection* section) {
   if (plan.no_sensor.empty()) {
@@ -148,8 +174,9 @@ void AddStudies(const StudyPlan& plan, ReportSection* section) {
 
 }  // namespace
 
-ReportSection DesignSection(const ExperimentDesign& design) {
-  ReportSection section{"design", "What to record next", {}, {}, {}, {}, {}, ""};
+ReportSection DesignSection(const ReportSource& source) {
+  ReportSection section;
+  const ExperimentDesign design = DesignOf(source.fit, source.views);
   if (!design.refused.empty()) section.paragraphs = {"Left out: " + design.refused + "."};
   if (!design.rows.empty()) AddPushes(design, &section);
   AddStudies(design.studies, &section);
@@ -199,11 +226,10 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
 
 }  // namespace
 
-ReportSection SolveSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"solve", "Solver convergence", {}, {}, {}, {}, {}, ""};
+ReportSection SolveSection(const ReportSource& source) {
+  ReportSection section;
   std::vector<const SolveStart*> ranked;
-  for (const SolveStart& start : result.starts) ranked.push_back(&start);
+  for (const SolveStart& start : source.fit.starts) ranked.push_back(&start);
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
     return std::make_tuple(!a->usable, a->failed.size(), a->cost) <
            std::make_tuple(!b->usable, b->failed.size(), b->cost);
@@ -218,13 +244,13 @@ ReportSection SolveSection(const FittedModel& model) {
                 std::to_string(s.failed.size()), s.message});
   }
   section.tables.push_back({"starts, best first", starts});
-  if (result.likelihood) section.paragraphs.push_back(LikelihoodText(result));
-  const std::string across = AcrossStartsNote(result);
+  if (source.fit.likelihood) section.paragraphs.push_back(LikelihoodText(source.fit));
+  const std::string across = AcrossStartsNote(source.fit);
   if (!across.empty()) section.paragraphs.push_back(across);
   if (ranked.size() > 1) section.figures.push_back(WaterfallFigure(ranked));
-  const TextTable spread = AcrossStartsTable(result);
+  const TextTable spread = AcrossStartsTable(source.fit);
   if (spread.rows().size() > 1) section.tables.push_back({"where the best starts ended", spread});
-  const std::vector<TracePoint>& trace = result.diagnostics.trace;
+  const std::vector<TracePoint>& trace = source.fit.diagnostics.trace;
   if (trace.size() < 2) return section;
   double lowest = HUGE_VAL;
   for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
@@ -252,7 +278,7 @@ ReportSection SolveSection(const FittedModel& model) {
     }
   }
   section.figures.push_back({"trace",
-                             result.options.likelihood == Likelihood::kTrajectory
+                             source.fit.options.likelihood == Likelihood::kTrajectory
                                  ? "The best start. The cost jumps where the horizon grows (lines)."
                                  : "The best start: Fisher scoring, then BFGS.",
                              DrawCharts({cost, gradient}, "trace", 2, 450, 210), numbers});

@@ -1,44 +1,65 @@
-// ident: the sections of a report, each a pure function of the result and, where motion is shown,
-// of the recordings seen through it (build_report.h). A section with nothing to say is empty.
+// ident: the sections of a report: a row each. A section with nothing to say stays empty and is
+// left out. A new one is a renderer in a file of its own, its name and its row here.
 #pragma once
 
 #include <vector>
 
-#include "ident/model/fitted_model.h"
 #include "ident/report/page/build_report.h"
-#include "ident/report/page/document.h"
-#include "ident/validation/experiment_design.h"
 
 namespace pushid {
+
+// What sections are made of.
+struct ReportSource {
+  const FittedModel& model;
+  const FitResult& fit = model.fit;
+  std::vector<RecordingView> views = {};  // of the recordings that are shown; may be none
+  PropagationSummary propagation = {};    // of those
+};
+
+using RenderSection = ReportSection(const ReportSource& source);
+
+struct SectionRow {
+  const char* id;
+  const char* title;  // where the section gives itself none
+  RenderSection* render;
+};
+
+RenderSection LeadSection, SummarySection, ParameterSection, UnitSection, IdentifiabilitySection,
+    ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection, HorizonCheckSection,
+    BehaviourSection, PopulationSection, StepSection, GroupSection, FigureSection, MotionSection,
+    VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
+    DesignSection, AdviceSection, ProvenanceSection;
+
+// In the order of the report.
+inline constexpr SectionRow kSections[] = {
+    {"short", "In short", LeadSection},
+    {"summary", "What was fitted", SummarySection},
+    {"parameters", "Parameters", ParameterSection},
+    {"units", "", UnitSection},  // "By subject"
+    {"identifiability", "Identifiability", IdentifiabilitySection},
+    {"profiles", "Profile likelihood", ProfileSection},
+    {"bootstrap", "Bootstrap", BootstrapSection},
+    {"prior_check", "Sensitivity to the priors", PriorCheckSection},
+    {"push_check", "Sensitivity to the pushes", PushCheckSection},
+    {"horizon_check", "Estimates from fewer frames", HorizonCheckSection},
+    {"behaviour", "After a push", BehaviourSection},
+    {"population", "How recordings differ", PopulationSection},
+    {"steps", "Who steps", StepSection},
+    {"groups", "Groups", GroupSection},
+    {"figure", "Moving figure", FigureSection},
+    {"motion", "Measured and predicted motion", MotionSection},
+    {"checks", "Visual predictive check", VisualCheckSection},
+    {"recordings", "Recording by recording", RecordingSection},
+    {"leverage", "Influence of each recording", LeverageSection},
+    {"residuals", "Residuals", ResidualSection},
+    {"solve", "Solver convergence", SolveSection},
+    {"design", "What to record next", DesignSection},
+    {"advice", "What to try next", AdviceSection},
+    {"provenance", "Provenance", ProvenanceSection},
+};
 
 // Charts side by side, unless a section says otherwise.
 inline constexpr int kPanelColumns = 3;
 inline constexpr double kPanelWidth = 320, kPanelHeight = 200;
-
-ReportSection LeadSection(const FittedModel& model, const PropagationSummary& propagation);
-ReportSection SummarySection(const FittedModel& model);
-ReportSection ParameterSection(const FittedModel& model);
-ReportSection UnitSection(const FittedModel& model);  // subjects or settings that differ
-ReportSection IdentifiabilitySection(const FittedModel& model);
-ReportSection ProfileSection(const FittedModel& model);
-ReportSection BootstrapSection(const FittedModel& model);
-ReportSection PushCheckSection(const FittedModel& model);
-ReportSection HorizonCheckSection(const FittedModel& model);
-ReportSection PriorCheckSection(const FittedModel& model);
-ReportSection BehaviourSection(const FittedModel& model);
-ReportSection PopulationSection(const FittedModel& model);
-ReportSection VisualCheckSection(const FittedModel& model, const std::vector<RecordingView>& views);
-ReportSection RecordingSection(const FittedModel& model);
-ReportSection LeverageSection(const FittedModel& model);
-ReportSection ResidualSection(const FittedModel& model);
-ReportSection SolveSection(const FittedModel& model);
-ReportSection MotionSection(const std::vector<RecordingView>& views);
-ReportSection StepSection(const FittedModel& model, const std::vector<RecordingView>& views);
-ReportSection GroupSection(const std::vector<RecordingView>& views,
-                           const PropagationSummary& propagation);
-ReportSection FigureSection(const std::vector<RecordingView>& views);
-ReportSection DesignSection(const ExperimentDesign& design);
-ReportSection AdviceSection(const FittedModel& model);
-ReportSection ProvenanceSection(const FittedModel& model);
 
 }  // namespace pushid

@@ -111,14 +111,14 @@ TextTable Legend(const FitResult& result) {
 
 }  // namespace
 
-ReportSection LeadSection(const FittedModel& model, const PropagationSummary& propagation) {
-  ReportSection section{"short", "In short", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {Known(model.fit) + " In brackets: 95 % intervals.", NotKnown(model.fit)};
-  if (const std::string travels = Travels(propagation); !travels.empty()) {
+ReportSection LeadSection(const ReportSource& source) {
+  ReportSection section;
+  section.paragraphs = {Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
+  if (const std::string travels = Travels(source.propagation); !travels.empty()) {
     section.paragraphs.push_back(travels);
   }
-  section.paragraphs.push_back(Next(model));
-  section.tables.push_back({"the parameters that were fitted", Legend(model.fit)});
+  section.paragraphs.push_back(Next(source.model));
+  section.tables.push_back({"the parameters that were fitted", Legend(source.fit)});
   return section;
 }
 
@@ -141,14 +141,13 @@ double MeanExplained(const FitResult& result) {
 
 }  // namespace
 
-ReportSection SummarySection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"summary", "What was fitted", {}, {}, {}, {}, {}, ""};
-  section.paragraphs.push_back(VerdictText(result));
-  const FitOptions& o = result.options;
+ReportSection SummarySection(const ReportSource& source) {
+  ReportSection section;
+  section.paragraphs.push_back(VerdictText(source.fit));
+  const FitOptions& o = source.fit.options;
   TextTable facts({"what", "value"}, {true, true});
-  facts.Add({"recordings",
-             std::to_string(result.recordings.size()) + " (" + model.provenance.setting + ")"});
+  facts.Add({"recordings", std::to_string(source.fit.recordings.size()) + " (" +
+                               source.model.provenance.setting + ")"});
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
@@ -156,53 +155,53 @@ ReportSection SummarySection(const FittedModel& model) {
   facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
   facts.Add({"interaction", InteractionText(o.model)});
-  facts.Add({"cost", Rounded(result.cost, 6)});
-  if (!result.diagnostics.recordings.empty()) {
-    facts.Add(
-        {"hip motion explained, mean over recordings", Rounded(MeanExplained(result), 3) + " %"});
+  facts.Add({"cost", Rounded(source.fit.cost, 6)});
+  if (!source.fit.diagnostics.recordings.empty()) {
+    facts.Add({"hip motion explained, mean over recordings",
+               Rounded(MeanExplained(source.fit), 3) + " %"});
   }
   section.tables.push_back({"", facts});
-  if (const std::string network = NetworkText(result); !network.empty()) {
+  if (const std::string network = NetworkText(source.fit); !network.empty()) {
     section.paragraphs.push_back("Learned terms: " + network + ".");
   }
-  const std::string prepared = PreparationText(model.provenance.configuration);
+  const std::string prepared = PreparationText(source.model.provenance.configuration);
   if (!prepared.empty()) section.paragraphs.push_back(prepared);
-  for (const std::string& warning : GroupedWarnings(result.warnings)) {
+  for (const std::string& warning : GroupedWarnings(source.fit.warnings)) {
     section.paragraphs.push_back("Warning: " + warning);
   }
-  for (const std::string& warning : GroupedWarnings(result.diagnostics.start.unit_warnings)) {
+  for (const std::string& warning : GroupedWarnings(source.fit.diagnostics.start.unit_warnings)) {
     section.paragraphs.push_back("Units? " + warning);
   }
   return section;
 }
 
-ReportSection AdviceSection(const FittedModel& model) {
-  ReportSection section{"advice", "What to try next", {}, {}, {}, {}, {}, ""};
-  for (const Advice& advice : model.advice) {
+ReportSection AdviceSection(const ReportSource& source) {
+  ReportSection section;
+  for (const Advice& advice : source.model.advice) {
     section.advice.emplace_back(advice.sentence, advice.command);
   }
   return section;
 }
 
-ReportSection BehaviourSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"behaviour", "After a push", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {BehaviourText(result)};
-  section.tables.push_back({"settling simulations: pushed and left alone", BehaviourTable(result)});
+ReportSection BehaviourSection(const ReportSource& source) {
+  ReportSection section;
+  section.paragraphs = {BehaviourText(source.fit)};
+  section.tables.push_back(
+      {"settling simulations: pushed and left alone", BehaviourTable(source.fit)});
   return section;
 }
 
-ReportSection ProvenanceSection(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  ReportSection section{"provenance", "Provenance", {}, {}, {}, {}, {}, ""};
-  section.paragraphs = {"pushid " + model.provenance.version + ", manifest " +
-                        model.provenance.manifest + " (hash " + model.provenance.manifest_hash +
-                        ")"};
+ReportSection ProvenanceSection(const ReportSource& source) {
+  ReportSection section;
+  section.paragraphs = {"pushid " + source.model.provenance.version + ", manifest " +
+                        source.model.provenance.manifest + " (hash " +
+                        source.model.provenance.manifest_hash + ")"};
   TextTable flags({"flag", "value"}, {true, true});
-  for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
+  for (const auto& [name, value] : source.model.provenance.configuration)
+    flags.Add({"--" + name, value});
   section.tables.push_back({"flags of the fit (empty: the preset's value)", flags});
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
-  for (const FittedRecording& r : result.recordings) {
+  for (const FittedRecording& r : source.fit.recordings) {
     files.Add({r.id, std::to_string(r.frames), r.content_hash});
   }
   section.tables.push_back({"recordings", files});

@@ -48,10 +48,15 @@ RecordingView Seen(const Recording& recording) {
   return view;
 }
 
+ReportSection SectionOf(const std::vector<RecordingView>& views) {
+  const FittedModel model;
+  return GroupSection({model, model.fit, views});
+}
+
 TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
   const Recording group = Walkers(3), alone = Walkers(1);
-  EXPECT_TRUE(GroupSection({Seen(alone)}, {}).tables.empty());
-  const ReportSection section = GroupSection({Seen(alone), Seen(group)}, {});
+  EXPECT_TRUE(SectionOf({Seen(alone)}).tables.empty());
+  const ReportSection section = SectionOf({Seen(alone), Seen(group)});
   ASSERT_EQ(section.tables.size(), 2u) << "what they do, how the push travels";
   const auto& rows = section.tables[0].table.rows();
   ASSERT_EQ(rows.size(), 3u);
@@ -67,7 +72,7 @@ TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
 TEST(GroupSectionTest, WithoutBodiesOnsetsAreLeft) {
   Recording group = Walkers(2);
   for (RecordedPerson& person : group.people) person.roles = {};
-  const ReportSection section = GroupSection({Seen(group)}, {});
+  const ReportSection section = SectionOf({Seen(group)});
   ASSERT_EQ(section.tables.size(), 2u) << "what they do, how the push travels";
   EXPECT_EQ(section.tables[0].table.rows()[1][1], "none");
   EXPECT_EQ(section.tables[0].table.rows()[1][4], "1 of 1");
@@ -79,7 +84,7 @@ TEST(GroupSectionTest, APredictionThatFailedIsLeftOut) {
   RecordingView failed = Seen(group);
   failed.run.prediction.status.ok = false;
   failed.run.prediction.hip.clear();
-  EXPECT_TRUE(GroupSection({failed}, {}).tables.empty());
+  EXPECT_TRUE(SectionOf({failed}).tables.empty());
 }
 
 }  // namespace

@@ -16,6 +16,10 @@ Estimate EstimateOf(const std::string& name, double value, EstimateStatus status
   return e;
 }
 
+ReportSection SectionOf(const FittedModel& model, const PropagationSummary& propagation) {
+  return LeadSection({model, model.fit, {}, propagation});
+}
+
 TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   FittedModel model;
   model.fit.estimates = {EstimateOf("mu", 31.25, EstimateStatus::kIdentified),
@@ -29,7 +33,7 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   model.fit.uncertainty.num_clusters = 4;
   model.fit.uncertainty.clustered_by = ClusterBy::kSubject;
   model.advice = {{"Record more people.", "pushid-fit"}};
-  const ReportSection section = LeadSection(model, {});
+  const ReportSection section = SectionOf(model, {});
   ASSERT_EQ(section.paragraphs.size(), 3u);
   EXPECT_TRUE(Contains(section.paragraphs[0],
                        "What is known: these recordings identify mu = 31.2 N s/m (20 to 42)"));
@@ -48,7 +52,7 @@ TEST(LeadSection, SaysHowThePushTravels) {
   travels.missed_movers = 2.0;
   travels.figures[kSlownessMeasured] = {0.5, 0.1, 3.0};
   travels.figures[kSlownessPredicted] = {0.25, 0.0, 9.0};
-  const ReportSection section = LeadSection(FittedModel(), travels);
+  const ReportSection section = SectionOf(FittedModel(), travels);
   ASSERT_EQ(section.paragraphs.size(), 4u);
   EXPECT_EQ(section.paragraphs[2],
             "How the push travels in the fitted recordings: in 3 recordings the onset of motion "
@@ -61,9 +65,9 @@ TEST(LeadSection, ManyNamesAreCounted) {
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
     model.fit.estimates.push_back(EstimateOf(name, 1.0, EstimateStatus::kWeak));
   }
-  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[1],
+  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[1],
                        "a = 1 N s/m, b = 1 N s/m, c = 1 N s/m, d = 1 N s/m and 2 more"));
-  EXPECT_TRUE(Contains(LeadSection(model, {}).paragraphs[0], "identify no parameter"));
+  EXPECT_TRUE(Contains(SectionOf(model, {}).paragraphs[0], "identify no parameter"));
 }
 
 }  // namespace
