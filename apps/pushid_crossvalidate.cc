@@ -23,6 +23,7 @@
 #include "ident/fit/fit_setup.h"
 #include "ident/parameters/option_names.h"
 #include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/score_groups.h"
 #include "ident/problem/fold_file.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/futures_validation.h"
@@ -46,6 +47,8 @@ DEFINE_bool(yardsticks, true,
             "also score the baselines: static, constant velocity and ridge regression");
 DEFINE_bool(bands, false,
             "also score how often predictive 50 and 90 % bands contain the held-out recordings");
+DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
+              "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 
 namespace {
@@ -207,6 +210,8 @@ int Run() {
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), FitOptionsFromFlags().value().mapping);
   if (MaybeError error = CheckObservedFlag(pendulums)) return Fail(*error);
+  if (MaybeError error = CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)))
+    return Fail(*error);
   const Result<FitOptions> options = FitOptionsFromFlags(&pendulums);
   if (!options.ok()) return Fail(options.error());
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
@@ -226,7 +231,8 @@ int Run() {
   ProgressLine line;
   for (const auto& predictor : predictors.value()) {
     validations.push_back(CrossValidate(pendulums, folds.value(), *predictor, NumThreads(),
-                                        line.OfJobs(predictor->name + ": fold"), bodies));
+                                        line.OfJobs(predictor->name + ": fold"), bodies,
+                                        ParseLabelKeys(FLAGS_group_by)));
   }
   std::vector<HeldOutFutures> futures;
   for (const auto& [name, model] : noisy.value()) {

@@ -18,12 +18,15 @@
 #include "ident/bodies/body_report.h"
 #include "ident/peers/peer_files.h"
 #include "ident/prediction/prediction.h"
+#include "ident/prediction/score_groups.h"
 #include "ident/validation/futures_validation.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 #include "ident/validation/steps_report.h"
 #include "models/learned_terms.h"
 
+DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
+              "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_string(peer, "",
               "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe or "
@@ -68,7 +71,8 @@ Result<std::optional<BodyEvaluation>> Bodies(const RestorationFlags& flags,
     if (!peer.ok()) return peer.error();
     for (const BodyRecording& body : bodies.value()) ScorePeer(*peer.value(), body, &scores);
   }
-  return std::optional<BodyEvaluation>(SummarizeAll(bodies.value(), scores));
+  return std::optional<BodyEvaluation>(
+      SummarizeAll(bodies.value(), scores, ParseLabelKeys(FLAGS_group_by)));
 }
 
 int Run() {
@@ -86,11 +90,13 @@ int Run() {
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), model.value().mapping);
   if (MaybeError error = CheckObservedFlag(pendulums, model.value())) return Fail(*error);
+  const LabelKeys group_by = ParseLabelKeys(FLAGS_group_by);
+  if (MaybeError error = CheckGroups(pendulums, group_by)) return Fail(*error);
   const Result<std::optional<BodyEvaluation>> bodies =
       Bodies(restoration.value(), model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
   WarnGrouped(InputWarnings(model.value(), pendulums));
-  const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames());
+  const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames(), group_by);
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);

@@ -2,6 +2,7 @@
 #include "datasets/loading/pendulum_recording.h"
 
 #include <algorithm>
+#include <set>
 
 #include "datasets/files/input_file.h"
 
@@ -84,6 +85,19 @@ std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recordin
     pendulums.push_back(MakePendulumRecording(recording, mapping));
   }
   return pendulums;
+}
+
+MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const std::string& flag,
+                      const std::string& key, const std::string& other) {
+  std::set<std::string> known = {other};
+  for (const PendulumRecording& recording : recordings) {
+    for (const std::string& own : recording.labels.Keys()) known.insert(own);
+  }
+  if (known.count(key) > 0) return std::nullopt;
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  return Error{"--" + flag + " is '" + key + "', a label that no recording has; there are " +
+               names};
 }
 
 }  // namespace pushid

@@ -47,4 +47,8 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
 std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
                                                       SkeletonMapping mapping);
 
+// Error: a key (of --flag) that is neither `other` nor a label of any recording; it names those.
+MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const std::string& flag,
+                      const std::string& key, const std::string& other);
+
 }  // namespace pushid

@@ -80,11 +80,11 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   add("rigid", RigidRestoration().Restore(people));
 }
 
-BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
-                            const BodyScores& scores) {
+BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores,
+                            const LabelKeys& group_by) {
   BodyEvaluation evaluation;
   for (const auto& [name, of_name] : scores) {
-    evaluation[name] = SummarizeBodies(recordings, of_name);
+    evaluation[name] = SummarizeBodies(recordings, of_name, group_by);
   }
   return evaluation;
 }

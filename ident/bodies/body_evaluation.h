@@ -43,7 +43,8 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
                       BodyScores* scores, int observed = 0);
 
 using BodyEvaluation = std::map<std::string, BodySummary>;
-BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores);
+BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores,
+                            const LabelKeys& group_by = UsualGroups());
 // The scores of each recording, by name.
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
                             const std::vector<std::map<std::string, BodyScore>>& by_recording);

@@ -109,27 +109,20 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
 }
 
 BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
-                            std::vector<BodyScore> scores) {
+                            std::vector<BodyScore> scores, const LabelKeys& group_by) {
   BodySummary summary;
   summary.recordings = std::move(scores);
   Scores all;
-  std::map<std::string, Scores> magnitude, subject, setting;
+  std::vector<PendulumRecording> pendulums;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    const BodyScore& score = summary.recordings[i];
-    if (!score.failure.empty()) continue;
-    const PendulumRecording& recording = recordings[i].pendulum;
-    all.push_back(&score);
-    const RecordingLabels& labels = recording.labels;
-    if (!labels.magnitude().empty()) magnitude[labels.magnitude()].push_back(&score);
-    subject[recording.subject_ids[recording.pushed_person]].push_back(&score);
-    setting[labels.setting()].push_back(&score);
+    pendulums.push_back(recordings[i].pendulum);
+    if (summary.recordings[i].failure.empty()) all.push_back(&summary.recordings[i]);
   }
   summary.groups = GroupsOf(recordings, summary.recordings);
   summary.mean = Mean(all, false);
   summary.frame_weighted = Mean(all, true);
-  for (const auto& [key, group] : magnitude) summary.by_magnitude[key] = Mean(group, false);
-  for (const auto& [key, group] : subject) summary.by_subject[key] = Mean(group, false);
-  for (const auto& [key, group] : setting) summary.by_setting[key] = Mean(group, false);
+  summary.by = GroupScores(pendulums, summary.recordings, group_by,
+                           [](const Scores& group) { return Mean(group, false); });
   return summary;
 }
 

@@ -15,12 +15,12 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
 #include "ident/figures/text_table.h"
+#include "ident/prediction/score_groups.h"
 #include "ident/validation/group_metrics.h"
 
 namespace pushid {
@@ -75,12 +75,13 @@ struct BodyMean {
 struct BodySummary {
   std::vector<BodyScore> recordings;
   BodyMean mean, frame_weighted;
-  std::map<std::string, BodyMean> by_magnitude, by_subject, by_setting;
+  ByLabel<BodyMean> by;
   std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
 };
 
-// scores in the order of recordings. By subject: the pushed person.
+// scores in the order of recordings.
 BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
-                            std::vector<BodyScore> scores);
+                            std::vector<BodyScore> scores,
+                            const LabelKeys& group_by = UsualGroups());
 
 }  // namespace pushid

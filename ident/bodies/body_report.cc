@@ -18,12 +18,6 @@ Json MetricsJson(const BodyMetrics& value) {
   return json;
 }
 
-Json GroupsJson(const std::map<std::string, BodyMean>& groups) {
-  Json json = Json::object();
-  for (const auto& [name, mean] : groups) json[name] = MeanJson(mean);
-  return json;
-}
-
 // Keys of `more` into `json`, objects into objects, lists entry by entry.
 void Merge(const Json& more, Json* json) {
   if (more.is_object()) {
@@ -103,9 +97,10 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
   }
   json["mean"] = MeanJson(summary.mean);
   json["frame_weighted"] = MeanJson(summary.frame_weighted);
-  json["by_magnitude"] = GroupsJson(summary.by_magnitude);
-  json["by_subject"] = GroupsJson(summary.by_subject);
-  json["by_setting"] = GroupsJson(summary.by_setting);
+  for (const auto& [key, groups] : summary.by) {
+    Json& rows = json["by_" + key] = Json::object();
+    for (const auto& [name, mean] : groups) rows[name] = MeanJson(mean);
+  }
   if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
   return json;
 }
@@ -154,8 +149,9 @@ std::string BodyText(const BodyEvaluation& evaluation) {
   text += "\n";
   TextTable groups = NewTable("restoration by");
   const BodySummary& restored = found->second;
-  for (const auto* by : {&restored.by_magnitude, &restored.by_setting, &restored.by_subject}) {
-    for (const auto& [name, mean] : *by) groups.Add(Row(name, mean));
+  const std::map by_key(restored.by.begin(), restored.by.end());
+  for (const auto& [key, means] : by_key) {
+    for (const auto& [name, mean] : means) groups.Add(Row(name, mean));
   }
   text += groups.ToString();
   for (const BodyScore& score : restored.recordings) {

@@ -20,7 +20,7 @@ Result<BodyMetrics> MeanBodyMetrics(const nlohmann::ordered_json& json, const st
 nlohmann::ordered_json MeanJson(const BodyMean& mean);
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
-// A row per predictor, a column per metric; then the restoration by strength, setting and subject.
+// A row per predictor, a column per metric; then the restoration by label.
 std::string BodyText(const BodyEvaluation& evaluation);
 
 }  // namespace pushid

@@ -82,14 +82,7 @@ MaybeError CheckPoolingLabel(const std::vector<PendulumRecording>& recordings,
                              const FitOptions& options) {
   const std::string& key = options.pool_by;
   if (key == kSubjectUnit || key == kSettingLabel || key == kConditionLabel) return std::nullopt;
-  std::set<std::string> known = {kSubjectUnit};
-  for (const PendulumRecording& recording : recordings) {
-    for (const std::string& own : recording.labels.Keys()) known.insert(own);
-  }
-  if (known.count(key) > 0) return std::nullopt;
-  std::string names;
-  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
-  return Error{"--pool_by is '" + key + "', a label that no recording has; there are " + names};
+  return CheckLabel(recordings, "pool_by", key, kSubjectUnit);
 }
 
 MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,

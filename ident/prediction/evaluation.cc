@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
@@ -11,7 +10,9 @@
 namespace pushid {
 namespace {
 
-MeanScore Mean(const std::vector<const RecordingScore*>& scores, bool by_frames) {
+using Group = std::vector<const RecordingScore*>;
+
+MeanScore Mean(const Group& scores, bool by_frames) {
   MeanScore mean;
   const auto weight = [by_frames](const RecordingScore* s) {
     return by_frames ? s->frames - 1 : 1.0;
@@ -216,70 +217,42 @@ bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording
   return !prediction.status.ok || AnybodyFalls(prediction);
 }
 
-namespace {
-
-// Who was pushed, for the rows of tables; people of one name and two masses are two.
-std::vector<std::string> NamesOfPushed(const std::vector<PendulumRecording>& recordings) {
-  std::map<std::string, std::set<std::string>> people;
-  for (const PendulumRecording& r : recordings) {
-    people[r.subject_ids[r.pushed_person]].insert(PersonKey(r, r.pushed_person));
-  }
-  std::vector<std::string> names;
-  for (const PendulumRecording& r : recordings) {
-    const std::string& name = r.subject_ids[r.pushed_person];
-    names.push_back(people[name].size() > 1 ? PersonKey(r, r.pushed_person) + " kg" : name);
-  }
-  return names;
-}
-
-}  // namespace
-
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
-                       std::vector<RecordingScore> scores, int observed, bool bands) {
+                       std::vector<RecordingScore> scores, int observed, bool bands,
+                       const LabelKeys& group_by) {
   ScoreSummary summary;
   summary.observed = observed;
   summary.bands = bands;
   summary.recordings = std::move(scores);
-  using Group = std::vector<const RecordingScore*>;
   Group all;
-  std::map<std::string, Group> magnitude, subject, setting;
-  const std::vector<std::string> names = NamesOfPushed(recordings);
+  std::vector<StepPrediction> steps;
   for (size_t i = 0; i < recordings.size(); ++i) {
     RecordingScore& score = summary.recordings[i];
-    const PendulumRecording& recording = recordings[i];
-    score.pushed = PersonKey(recording, recording.pushed_person);
+    score.pushed = PersonKey(recordings[i], recordings[i].pushed_person);
     if (!score.failure.empty()) continue;
     all.push_back(&score);
-    const RecordingLabels& labels = recording.labels;
-    if (!labels.magnitude().empty()) magnitude[labels.magnitude()].push_back(&score);
-    subject[names[i]].push_back(&score);
-    setting[labels.setting()].push_back(&score);
+    steps.insert(steps.end(), score.steps.begin(), score.steps.end());
   }
-  auto propagation = [](const Group& group) {
+  summary.steps = ScoreSteps(steps);
+  const auto propagation = [](const Group& group) {
     std::vector<const PropagationScore*> of_group;
     for (const RecordingScore* score : group) of_group.push_back(&score->propagation);
     return SummarizePropagation(of_group);
   };
   summary.propagation = propagation(all);
-  std::vector<StepPrediction> steps;
-  for (const RecordingScore* score : all) {
-    steps.insert(steps.end(), score->steps.begin(), score->steps.end());
-  }
-  summary.steps = ScoreSteps(steps);
-  for (const auto& [key, group] : setting) {
-    const PropagationSummary of_setting = propagation(group);
-    if (of_setting.recordings > 0) summary.propagation_by_setting[key] = of_setting;
+  for (const auto& [name, of_setting] :
+       GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation)[kSettingLabel]) {
+    if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
   }
   summary.mean = Mean(all, false);
   summary.frame_weighted = Mean(all, true);
-  for (const auto& [key, group] : magnitude) summary.by_magnitude[key] = Mean(group, false);
-  for (const auto& [key, group] : subject) summary.by_subject[key] = Mean(group, false);
-  for (const auto& [key, group] : setting) summary.by_setting[key] = Mean(group, false);
+  summary.by = GroupScores(recordings, summary.recordings, group_by,
+                           [](const Group& group) { return Mean(group, false); });
   return summary;
 }
 
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed) {
+                    int observed, const LabelKeys& group_by) {
   std::vector<RecordingScore> of_model, of_static, of_velocity, reanchored;
   for (const PendulumRecording& recording : recordings) {
     of_model.push_back(ScoreModel(model, recording, observed));
@@ -288,10 +261,12 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
         ScoreHip(recording, ConstantVelocityBaseline(recording, observed), observed));
     if (observed > 0) reanchored.push_back(ScoreReanchored(model, recording, observed));
   }
-  Evaluation evaluation{Summarize(recordings, std::move(of_model), observed, observed > 0),
-                        Summarize(recordings, std::move(of_static), observed),
-                        Summarize(recordings, std::move(of_velocity), observed)};
-  if (observed > 0) evaluation.reanchored = Summarize(recordings, std::move(reanchored), observed);
+  const auto summary = [&](std::vector<RecordingScore>& scores, bool bands) {
+    return Summarize(recordings, std::move(scores), observed, bands, group_by);
+  };
+  Evaluation evaluation{summary(of_model, observed > 0), summary(of_static, false),
+                        summary(of_velocity, false)};
+  if (observed > 0) evaluation.reanchored = summary(reanchored, false);
   return evaluation;
 }
 

@@ -21,7 +21,7 @@
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/propagation.h"
-#include "ident/prediction/score_clusters.h"
+#include "ident/prediction/score_groups.h"
 
 namespace pushid {
 
@@ -76,7 +76,7 @@ struct RecordingScore : HipMetrics {
 
 struct MeanScore : HipMetrics {
   int recordings = 0;
-  HipMetrics error;  // standard error of the mean (score_clusters.h)
+  HipMetrics error;  // standard error of the mean (score_groups.h)
   ClusterBy clustered_by = ClusterBy::kRecording;
   int clusters = 0;
 };
@@ -84,7 +84,7 @@ struct MeanScore : HipMetrics {
 struct ScoreSummary {
   std::vector<RecordingScore> recordings;
   MeanScore mean, frame_weighted;
-  std::map<std::string, MeanScore> by_magnitude, by_subject, by_setting;
+  ByLabel<MeanScore> by;
   PropagationSummary propagation;  // over recordings of more than one person
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
   StepScore steps;     // unknown where the model says nothing of them
@@ -112,15 +112,15 @@ RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecor
 // Whether anybody falls with every push times 1.4, until 40 frames past the recording's end.
 bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording& recording);
 
-// `by subject` uses the pushed person.
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
-                       std::vector<RecordingScore> scores, int observed = 0, bool bands = false);
+                       std::vector<RecordingScore> scores, int observed = 0, bool bands = false,
+                       const LabelKeys& group_by = UsualGroups());
 
 struct Evaluation {
   ScoreSummary model, static_baseline, constant_velocity;
   std::optional<ScoreSummary> reanchored = {};  // where first frames were seen
 };
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed = 0);
+                    int observed = 0, const LabelKeys& group_by = UsualGroups());
 
 }  // namespace pushid

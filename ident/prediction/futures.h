@@ -65,7 +65,7 @@ inline constexpr FuturesMetric kFuturesMetrics[] = {
     {{"deviance", "1"}, [](const FuturesScore& s) { return s.deviance; }},
 };
 
-// Means over recordings with standard errors over their clusters (score_clusters.h), in the order
+// Means over recordings with standard errors over their clusters (score_groups.h), in the order
 // of kFuturesMetrics.
 struct FuturesSummary {
   std::string name;  // of the model, where there are several

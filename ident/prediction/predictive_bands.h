@@ -80,7 +80,7 @@ PredictiveBands ComputeBands(const FitResult& result,
                              const PendulumRecording& recording, uint64_t seed);
 
 // Share of frames whose measured hip lies within a band, of the pushed person, by axis x and y;
-// means over recordings with standard errors over their clusters (score_clusters.h).
+// means over recordings with standard errors over their clusters (score_groups.h).
 struct BandCoverage {
   bool model_error = false;
   int recordings = 0;

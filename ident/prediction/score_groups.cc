@@ -1,9 +1,14 @@
-// ident: clusters of scores.
-#include "ident/prediction/score_clusters.h"
+// ident: groups and clusters of scores.
+#include "ident/prediction/score_groups.h"
 
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
+#include <sstream>
+
+#include "datasets/files/number_text.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 
@@ -37,6 +42,47 @@ std::string ClustersText(ClusterBy by, int count) {
   const char* const what =
       people ? (count == 1 ? " person" : " people") : (count == 1 ? " recording" : " recordings");
   return std::to_string(count) + what;
+}
+
+LabelKeys UsualGroups() { return {kMagnitudeLabel, kSubjectUnit, kSettingLabel}; }
+
+LabelKeys ParseLabelKeys(const std::string& list) {
+  LabelKeys keys;
+  std::stringstream words(list);
+  for (std::string key; std::getline(words, key, ',');) keys.emplace_back(Trimmed(key));
+  return keys;
+}
+
+std::string LabelKeysText(const LabelKeys& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "" : ",") + key;
+  return text;
+}
+
+MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys) {
+  if (keys == UsualGroups()) return std::nullopt;  // any of these may be absent
+  for (const std::string& key : keys) {
+    if (MaybeError error = CheckLabel(recordings, "group_by", key, kSubjectUnit)) return error;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
+                                    const std::string& key) {
+  std::vector<std::string> names;
+  if (key != kSubjectUnit) {
+    for (const PendulumRecording& r : recordings) names.push_back(r.labels.Of(key));
+    return names;
+  }
+  std::map<std::string, std::set<std::string>> people;
+  for (const PendulumRecording& r : recordings) {
+    people[r.subject_ids[r.pushed_person]].insert(PersonKey(r, r.pushed_person));
+  }
+  for (const PendulumRecording& r : recordings) {
+    const std::string& name = r.subject_ids[r.pushed_person];
+    names.push_back(people[name].size() > 1 ? PersonKey(r, r.pushed_person) + " kg" : name);
+  }
+  return names;
 }
 
 }  // namespace pushid

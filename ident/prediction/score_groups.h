@@ -1,4 +1,5 @@
-// ident: whose scores are independent of each other, and the standard errors of their means.
+// ident: scores by label, and whose scores are independent of each other: the standard errors of
+// their means.
 //
 // A person answers every push with the same body and habits, and a model misses one person's
 // recordings alike. So where people were pushed more than once the clusters of a mean's error are
@@ -9,9 +10,13 @@
 // fit's).
 #pragma once
 
+#include <map>
+#include <nlohmann/ordered_map.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
 
 namespace pushid {
@@ -30,5 +35,42 @@ ScoreClusters ClustersOf(const std::vector<std::string>& pushed);
 
 // "4 people", "32 recordings"
 std::string ClustersText(ClusterBy by, int count);
+
+// What scores are grouped by: `subject`, who was pushed, or any label that a manifest gives.
+using LabelKeys = std::vector<std::string>;
+LabelKeys UsualGroups();  // magnitude, subject, setting
+// From "setting,footwear", and back.
+LabelKeys ParseLabelKeys(const std::string& list);
+std::string LabelKeysText(const LabelKeys& keys);
+
+// Error: a key that is not `subject` and that no recording has; not of the usual ones.
+MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys);
+
+// What recordings are called by a key, one text each; empty where they have no such label. People
+// of one name and two masses are two.
+std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
+                                    const std::string& key);
+
+// Something of each group: [key][text of the label], keys as they were asked for.
+template <typename T>
+using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
+
+// of: from a list of scores to what is said of them. Scores that failed are in no group.
+template <typename Score, typename Of>
+auto GroupScores(const std::vector<PendulumRecording>& recordings, const std::vector<Score>& scores,
+                 const LabelKeys& keys, Of of) {
+  using Group = std::vector<const Score*>;
+  ByLabel<decltype(of(Group()))> by;
+  for (const std::string& key : keys) {
+    const std::vector<std::string> names = GroupNames(recordings, key);
+    std::map<std::string, Group> groups;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (scores[i].failure.empty() && !names[i].empty()) groups[names[i]].push_back(&scores[i]);
+    }
+    auto& of_key = by[key];
+    for (const auto& [name, group] : groups) of_key[name] = of(group);
+  }
+  return by;
+}
 
 }  // namespace pushid

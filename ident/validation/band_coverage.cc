@@ -7,7 +7,7 @@
 #include "ident/fit/fit.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
-#include "ident/prediction/score_clusters.h"
+#include "ident/prediction/score_groups.h"
 #include "ident/problem/time_series.h"
 #include "ident/uncertainty/clusters.h"
 

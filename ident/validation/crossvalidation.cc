@@ -118,7 +118,7 @@ std::vector<PredictedGroup> GroupsOf(const std::vector<Fold>& folds,
 
 // Of the recordings that were held out, each averaged over its folds.
 ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
-                       Sums sums) {
+                       Sums sums, const LabelKeys& group_by) {
   std::vector<PendulumRecording> held;
   std::vector<RecordingScore> means;
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -133,7 +133,7 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
     means.push_back(mean);
   }
   PredictStepsWithoutThePerson(&means);
-  return Summarize(held, means, predictor.observed, predictor.bands);
+  return Summarize(held, means, predictor.observed, predictor.bands, group_by);
 }
 
 }  // namespace
@@ -141,7 +141,7 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress,
-                              const RecordedBodies& bodies) {
+                              const RecordedBodies& bodies, const LabelKeys& group_by) {
   const int total = static_cast<int>(recordings.size());
   std::vector<FoldPrediction> predictions(folds.size());
   ParallelFor(
@@ -157,7 +157,7 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
   for (size_t f = 0; f < folds.size(); ++f) {
     AddFold(ScoreOf(folds[f], predictions[f], &sums), &result);
   }
-  result.summary = SummaryOf(recordings, predictor, std::move(sums));
+  result.summary = SummaryOf(recordings, predictor, std::move(sums), group_by);
   result.groups = CompareHips(recordings, bodies, GroupsOf(folds, predictions));
   return result;
 }

@@ -1,7 +1,7 @@
 // ident: how well a configuration predicts recordings it has not seen.
 //
 // The standard error of a mean is over pushed people, or over recordings where nobody was pushed
-// twice (score_clusters.h), each recording's score averaged over the repeats: not over frames and
+// twice (score_groups.h), each recording's score averaged over the repeats: not over frames and
 // not over folds.
 #pragma once
 
@@ -64,7 +64,8 @@ struct CrossValidation {
 CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const std::vector<Fold>& folds, const Predictor& predictor,
                               int num_threads, const JobProgress& progress = nullptr,
-                              const RecordedBodies& bodies = {});
+                              const RecordedBodies& bodies = {},
+                              const LabelKeys& group_by = UsualGroups());
 
 // b minus a, recording by recording, with the standard error of its mean.
 struct PairedDifference : HipMetrics {

@@ -29,12 +29,6 @@ Json MeanJson(const MeanScore& mean, const ShownMetrics& shown) {
   return json;
 }
 
-Json GroupsJson(const std::map<std::string, MeanScore>& groups, const ShownMetrics& shown) {
-  Json json = Json::object();
-  for (const auto& [name, mean] : groups) json[name] = MeanJson(mean, shown);
-  return json;
-}
-
 // All null where the model has the person stand.
 void AddTiming(const StepTiming& timing, Json* json) {
   (*json)["lift_off_s"] = NumberOrNull(timing.lift_off);
@@ -80,9 +74,10 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
   }
   json["mean"] = MeanJson(summary.mean, shown);
   json["frame_weighted"] = MeanJson(summary.frame_weighted, shown);
-  json["by_magnitude"] = GroupsJson(summary.by_magnitude, shown);
-  json["by_subject"] = GroupsJson(summary.by_subject, shown);
-  json["by_setting"] = GroupsJson(summary.by_setting, shown);
+  for (const auto& [key, groups] : summary.by) {
+    Json& rows = json["by_" + key] = Json::object();
+    for (const auto& [name, mean] : groups) rows[name] = MeanJson(mean, shown);
+  }
   if (summary.propagation.recordings > 0) {
     json["propagation"] = ToJson(summary.propagation);
     for (const auto& [name, setting] : summary.propagation_by_setting) {
@@ -169,12 +164,6 @@ MeanScore MeanFrom(const Json& json) {
   return mean;
 }
 
-std::map<std::string, MeanScore> GroupsFrom(const Json& json) {
-  std::map<std::string, MeanScore> groups;
-  for (const auto& [name, mean] : json.items()) groups[name] = MeanFrom(mean);
-  return groups;
-}
-
 RecordingScore RecordingFrom(const Json& json) {
   RecordingScore score;
   score.id = json.at("id");
@@ -214,9 +203,11 @@ Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
     for (const Json& row : json.at("recordings")) summary.recordings.push_back(RecordingFrom(row));
     summary.mean = MeanFrom(json.at("mean"));
     summary.frame_weighted = MeanFrom(json.at("frame_weighted"));
-    summary.by_magnitude = GroupsFrom(json.at("by_magnitude"));
-    summary.by_subject = GroupsFrom(json.at("by_subject"));
-    summary.by_setting = GroupsFrom(json.at("by_setting"));
+    for (const auto& [key, groups] : json.items()) {
+      if (key.rfind("by_", 0) != 0) continue;
+      auto& means = summary.by[key.substr(3)];
+      for (const auto& [name, mean] : groups.items()) means[name] = MeanFrom(mean);
+    }
     if (json.contains("who_steps")) summary.steps = StepScoreFromJson(json.at("who_steps"));
     if (!json.contains("propagation")) return summary;
     const Json& propagation = json.at("propagation");

@@ -114,6 +114,13 @@ MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std:
   return found == groups.end() ? MeanScore() : found->second;
 }
 
+// Before the name of a group.
+std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
+  if (key == kMagnitudeLabel) return "strength ";
+  const bool one_of_several = key == kSubjectUnit && summary.propagation.recordings > 0;
+  return (one_of_several ? "pushed person" : key) + " ";
+}
+
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
@@ -159,17 +166,14 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   add("mean over recordings", [](const ScoreSummary& of) -> const MeanScore& { return of.mean; });
   add("frame-weighted",
       [](const ScoreSummary& of) -> const MeanScore& { return of.frame_weighted; });
-  const auto groups = [&](const char* what,
-                          const std::map<std::string, MeanScore> ScoreSummary::*by) {
-    for (const auto& of_group : m.*by) {
-      const std::string& name = of_group.first;
-      add(what + name, [&](const ScoreSummary& of) { return MeanOfGroup(of.*by, name); });
+  for (const auto& [key, groups] : m.by) {
+    if (groups.size() < 2) continue;
+    for (const auto& group : groups) {
+      const std::string &of_key = key, &name = group.first;
+      add(GroupTitle(of_key, m) + name,
+          [&](const ScoreSummary& of) { return MeanOfGroup(of.by.at(of_key), name); });
     }
-  };
-  if (m.by_magnitude.size() > 1) groups("strength ", &ScoreSummary::by_magnitude);
-  const char* subject = m.propagation.recordings > 0 ? "pushed person " : "subject ";
-  if (m.by_subject.size() > 1) groups(subject, &ScoreSummary::by_subject);
-  if (m.by_setting.size() > 1) groups("setting ", &ScoreSummary::by_setting);
+  }
   text += table.ToString() + ErrorsText(m) + ObservedText(m);
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;

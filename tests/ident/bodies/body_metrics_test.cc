@@ -102,8 +102,8 @@ TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
   EXPECT_NEAR(summary.mean.value[kMpjpe], 0.2, 1e-12);
   EXPECT_NEAR(summary.mean.error[kMpjpe], 0.1, 1e-12);  // 0.1414 / sqrt(2)
   EXPECT_NEAR(summary.frame_weighted.value[kMpjpe], 0.25, 1e-12);
-  EXPECT_EQ(summary.by_magnitude.at("weak").recordings, 2);
-  EXPECT_EQ(summary.by_subject.at("s").recordings, 2);
+  EXPECT_EQ(summary.by.at("magnitude").at("weak").recordings, 2);
+  EXPECT_EQ(summary.by.at("subject").at("s").recordings, 2);
 }
 
 TEST(BodyEvaluationTest, Baselines) {

@@ -131,12 +131,33 @@ TEST(Evaluation, BothMeansByHand) {
   EXPECT_NEAR(s.mean.error.hip_fde, 0.20, 1e-15);
   EXPECT_NEAR(s.frame_weighted.hip_ade, (3 * 0.1 + 10 * 0.4) / 13.0, 1e-15);
   EXPECT_NEAR(s.frame_weighted.hip_fde, (3 * 0.2 + 10 * 0.6) / 13.0, 1e-15);
-  EXPECT_EQ(s.by_magnitude.at("weak").recordings, 1);
-  EXPECT_NEAR(s.by_magnitude.at("strong").hip_ade, 0.4, 1e-15);
-  EXPECT_EQ(s.by_magnitude.at("strong").error.hip_ade, 0.0);
-  EXPECT_EQ(s.by_subject.count("Sc"), 0u);
-  EXPECT_NEAR(s.by_subject.at("Sa").hip_fde, 0.2, 1e-15);
-  EXPECT_EQ(s.by_setting.at("single").recordings, 2);
+  EXPECT_EQ(s.by.at("magnitude").at("weak").recordings, 1);
+  EXPECT_NEAR(s.by.at("magnitude").at("strong").hip_ade, 0.4, 1e-15);
+  EXPECT_EQ(s.by.at("magnitude").at("strong").error.hip_ade, 0.0);
+  EXPECT_EQ(s.by.at("subject").count("Sc"), 0u);
+  EXPECT_NEAR(s.by.at("subject").at("Sa").hip_fde, 0.2, 1e-15);
+  EXPECT_EQ(s.by.at("setting").at("single").recordings, 2);
+}
+
+// A label that no program knows groups as the usual ones do.
+TEST(Evaluation, AnyLabelGroupsScores) {
+  std::vector<PendulumRecording> recordings = {Parabola("a", 4), Parabola("b", 4),
+                                               Parabola("c", 4)};
+  recordings[0].labels.Set("footwear", "boots");
+  recordings[1].labels.Set("footwear", "boots");
+  RecordingScore a{{0.1, 0.2}, "a", 4, ""}, b{{0.4, 0.6}, "b", 4, ""}, c{{9.0, 9.0}, "c", 4, ""};
+  const ScoreSummary s =
+      Summarize(recordings, {a, b, c}, 0, false, ParseLabelKeys("footwear, subject"));
+  EXPECT_EQ(s.by.size(), 2u);
+  EXPECT_EQ(s.by.at("footwear").size(), 1u);  // c has none
+  EXPECT_NEAR(s.by.at("footwear").at("boots").hip_ade, 0.25, 1e-15);
+  EXPECT_EQ(s.by.at("subject").size(), 3u);
+  EXPECT_FALSE(CheckGroups(recordings, {"footwear", "subject"}));
+  const MaybeError error = CheckGroups(recordings, {"subject", "shoes"});
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->message,
+            "--group_by is 'shoes', a label that no recording has; there are "
+            "footwear, magnitude, setting, subject");
 }
 
 TEST(Evaluation, NothingScored) {
@@ -144,7 +165,7 @@ TEST(Evaluation, NothingScored) {
   const ScoreSummary s = Summarize({Parabola("a", 4)}, {failed});
   EXPECT_EQ(s.mean.recordings, 0);
   EXPECT_EQ(s.mean.hip_ade, 0.0);
-  EXPECT_TRUE(s.by_subject.empty());
+  EXPECT_TRUE(s.by.at("subject").empty());
 }
 
 TEST(Evaluation, TheTruthScoresZero) {
@@ -154,7 +175,7 @@ TEST(Evaluation, TheTruthScoresZero) {
   EXPECT_LT(e.model.mean.hip_ade, 1e-9);
   EXPECT_GT(e.static_baseline.mean.hip_ade, 0.05);
   EXPECT_GT(e.constant_velocity.mean.hip_ade, 0.0);
-  EXPECT_EQ(e.model.by_subject.size(), 4u);
+  EXPECT_EQ(e.model.by.at("subject").size(), 4u);
 }
 
 TEST(Evaluation, AFailedRolloutIsNamedAndInNoMean) {

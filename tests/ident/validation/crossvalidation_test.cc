@@ -295,7 +295,7 @@ TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
   EXPECT_TRUE(Contains(text, "95 % interval +- 13 m: 2 people, Student's t with 1 degree of"));
   EXPECT_TRUE(Contains(text, "+-: standard errors over 2 people"));
   // Of one person there are recordings only: 2 3 6 by hand.
-  const MeanScore& one = model.summary.by_subject.at("S1");
+  const MeanScore& one = model.summary.by.at("subject").at("S1");
   EXPECT_EQ(one.clustered_by, ClusterBy::kRecording);
   EXPECT_NEAR(one.error.hip_ade, std::sqrt(13.0 / 9.0), 1e-14);
   // A second mass behind the id is another person: 1 | 2 3 | 6.

@@ -31,9 +31,9 @@ ScoreSummary SampleScores() {
   s.mean.recordings = 2;
   s.frame_weighted = s.mean;
   s.frame_weighted.hip_ade = 0.21;
-  s.by_magnitude["weak"] = s.mean;
-  s.by_subject["Sa"].hip_fde = 0.5;
-  s.by_setting["row_1"].recordings = 1;
+  s.by["magnitude"]["weak"] = s.mean;
+  s.by["subject"]["Sa"].hip_fde = 0.5;
+  s.by["setting"]["row_1"].recordings = 1;
   s.propagation.recordings = 1;
   s.propagation.movers = 2.5;
   s.propagation.figures[kOnsetError] = {3.0, 0.5, 4.0};
