@@ -27,7 +27,7 @@ TextTable FullTable(const std::vector<JobResult>& rows) {
   const std::vector<JobColumn> columns = JobColumns(rows);
   std::vector<std::string> header;
   for (const JobColumn& column : columns) header.push_back(column.name);
-  TextTable table(header, AllWords(header.size()));
+  TextTable table(header);
   for (const JobResult& row : rows) {
     std::vector<std::string> cells;
     for (const JobColumn& column : columns) cells.push_back(column.cell(row).exact);

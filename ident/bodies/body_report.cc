@@ -51,9 +51,7 @@ std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
 TextTable NewTable(const std::string& first) {
   std::vector<std::string> header = {first, "recordings"};
   for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  return TextTable(header, left);
+  return TextTable::OfNumbers(header);
 }
 
 std::string Spaced(std::string name) {

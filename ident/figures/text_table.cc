@@ -3,14 +3,23 @@
 
 #include <algorithm>
 
-#include "datasets/files/number_text.h"
-
 namespace pushid {
 
 TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
     : rows_{std::move(header)}, left_(std::move(left)) {}
 
+TextTable TextTable::OfNumbers(std::vector<std::string> header) {
+  std::vector<bool> left(header.size(), false);
+  left[0] = true;
+  return TextTable(std::move(header), std::move(left));
+}
+
 void TextTable::Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+
+void TextTable::Add(std::initializer_list<TableCell> row) {
+  rows_.emplace_back();
+  for (const TableCell& cell : row) rows_.back().push_back(cell.text);
+}
 
 void TextTable::AddGap() { rows_.emplace_back(); }
 
@@ -38,6 +47,17 @@ std::string WithUnit(const std::string& name, const std::string& unit) {
 
 std::string WithError(double value, double error) {
   return Rounded(value, 3) + (error > 0.0 ? " +- " + Rounded(error, 2) : "");
+}
+
+std::string Metric::Title() const {
+  std::string title = std::string(name) + " " + unit;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  return title;
+}
+
+std::string Metric::Text(double value, int digits) const {
+  std::string text = Title();
+  return text.insert(text.rfind(' '), " " + Rounded(value, digits));
 }
 
 }  // namespace pushid

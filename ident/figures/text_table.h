@@ -1,20 +1,50 @@
-// ident: columns of text, padded; numbers to the right.
+// ident: tables of text, columns padded, numbers to the right; how a column and a metric are
+// called.
+//
+// One table serves a terminal (ToString), a page and a CSV file (report/page/document.h).
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 
 namespace pushid {
 
+// Words and counts as they are; other numbers at full precision, for files. Tables for readers
+// round (Rounded).
+struct TableCell {
+  TableCell(std::string words) : text(std::move(words)) {}
+  TableCell(const char* words) : text(words) {}
+  template <typename Number, typename = std::enable_if_t<std::is_arithmetic_v<Number>>>
+  TableCell(Number number) {
+    if constexpr (std::is_integral_v<Number>) {
+      text = std::to_string(number);
+    } else {
+      text = DoubleText(number);
+    }
+  }
+
+  std::string text;
+};
+
 class TextTable {
  public:
-  // left: which columns are words.
+  // left: which columns are words; all of them where not given.
+  explicit TextTable(std::vector<std::string> header)
+      : TextTable(header, std::vector<bool>(header.size(), true)) {}
   TextTable(std::vector<std::string> header, std::vector<bool> left);
+  // The first column is words, the others are numbers.
+  static TextTable OfNumbers(std::vector<std::string> header);
+
   void Add(std::vector<std::string> row);
+  void Add(std::initializer_list<TableCell> row);
   // A blank line between groups.
   void AddGap();
+  // Only a header: nothing to show.
+  bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;
 
   // The header first; a gap is an empty row.
@@ -26,17 +56,13 @@ class TextTable {
   std::vector<bool> left_;
 };
 
-// For `left`: every column is words.
-inline std::vector<bool> AllWords(size_t columns) { return std::vector<bool>(columns, true); }
-
 // "3.2 +- 0.3"; without the error where that is not known.
 std::string WithError(double value, double error);
 
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
 
-// How files and tables call a metric of a prediction.
-
+// What files and tables call a metric of a prediction.
 struct Metric {
   const char* name;  // "hipADE"
   const char* unit;  // "m"
@@ -45,17 +71,9 @@ struct Metric {
   std::string Key() const { return std::string(name) + "_" + unit; }
   std::string ErrorKey() const { return std::string(name) + "_standard_error_" + unit; }
   // At the head of a column: "hipADE m".
-  std::string Title() const {
-    std::string title = std::string(name) + " " + unit;
-    for (char& c : title) c = c == '_' ? ' ' : c;
-    return title;
-  }
+  std::string Title() const;
   // In a sentence: "hipADE 0.1 m".
-  std::string Text(double value, int digits) const {
-    std::string text = Title();
-    const std::size_t unit_at = text.rfind(' ');
-    return text.insert(unit_at, " " + Rounded(value, digits));
-  }
+  std::string Text(double value, int digits) const;
 };
 
 }  // namespace pushid

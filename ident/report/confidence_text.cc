@@ -68,8 +68,8 @@ std::string RecordingsText(const Diagnostics& d) {
                    "change without it (std errors)"},
                   {true, false, false, false, true});
   for (const RecordingDiagnostics* r : worst) {
-    table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3),
-               std::to_string(r->outliers.size()), LargestMove(d.leverage, r->id)});
+    table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3), r->outliers.size(),
+               LargestMove(d.leverage, r->id)});
   }
   return worst.empty() ? "" : table.ToString();
 }
@@ -196,7 +196,7 @@ TextTable AcrossStartsTable(const FitResult& result) {
 
 std::string AcrossStartsText(const FitResult& result) {
   const TextTable table = AcrossStartsTable(result);
-  return AcrossStartsNote(result) + (table.rows().size() > 1 ? table.ToString() : "");
+  return AcrossStartsNote(result) + (!table.empty() ? table.ToString() : "");
 }
 
 namespace {
@@ -209,8 +209,7 @@ void AddGroups(const RecordingEffect& effect, const char* title, Pick pick, Text
   if (groups.size() < 2) return;
   for (const auto& [name, effects] : groups) {
     const MeanAndError mean = MeanOf(effects);
-    table->Add({title + (name.empty() ? "none" : name), std::to_string(effects.size()),
-                Rounded(mean.mean, 2),
+    table->Add({title + (name.empty() ? "none" : name), effects.size(), Rounded(mean.mean, 2),
                 effects.size() > 1 ? "+- " + Rounded(mean.error, 2) : std::string(),
                 Rounded(std::exp(mean.mean), 3)});
   }
@@ -268,7 +267,7 @@ TextTable EffectsTable(const RecordingEffect& effect) {
 std::string PopulationText(const RecordingEffect& effect) {
   std::string text = PopulationSentence(effect) + "\n";
   for (const TextTable& table : {EffectGroupsTable(effect), EffectsTable(effect)}) {
-    if (table.rows().size() > 1) text += table.ToString();
+    if (!table.empty()) text += table.ToString();
   }
   return text;
 }

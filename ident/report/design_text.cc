@@ -33,9 +33,7 @@ TextTable EmptyTable(const std::optional<size_t>& index, const std::string& para
   std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg"};
   if (index) header.push_back("error of " + parameter);
   header.push_back("mean of all errors");
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  return TextTable(header, left);
+  return TextTable::OfNumbers(header);
 }
 
 std::vector<std::string> Cells(const DesignRow& row, const std::optional<size_t>& index) {
@@ -95,7 +93,7 @@ std::vector<size_t> Chosen(const StudyPlan& plan, const std::string& parameter) 
 }  // namespace
 
 TextTable SensorTable(const StudyPlan& plan, const std::string& parameter) {
-  TextTable table({"with the force measured", "its error"}, {true, false});
+  TextTable table = TextTable::OfNumbers({"with the force measured", "its error"});
   if (plan.sensor_ratio.empty()) return table;
   for (size_t i : Chosen(plan, parameter)) {
     const double ratio = plan.sensor_ratio[i];
@@ -142,9 +140,8 @@ std::string StudiesText(const StudyPlan& plan, const std::string& parameter) {
   if (!plan.no_sizes.empty()) return text + "\nmore people, more pushes: " + plan.no_sizes + "\n";
   text += "\nstandard errors with more people and more pushes of each\n" +
           StudySizesTable(plan, parameter).ToString();
-  TextTable spread(
-      {"standard deviation", "between people", "added by each push", "noise of one push"},
-      {true, false, false, false});
+  TextTable spread = TextTable::OfNumbers(
+      {"standard deviation", "between people", "added by each push", "noise of one push"});
   for (size_t i : Chosen(plan, parameter)) {
     spread.Add({WithUnit(plan.parameters[i], plan.units[i]), Rounded(plan.between_people[i], 3),
                 Rounded(plan.between_recordings[i], 3), Rounded(plan.noise[i], 3)});

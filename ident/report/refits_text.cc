@@ -24,7 +24,7 @@ TextTable SideBySide(const RefitTable& check, const std::string& refits, const s
   std::vector<std::string> header = {refits};
   for (const RefitRow& row : check.rows) header.push_back(row.name);
   header.insert(header.end(), {fit, "unit"});
-  TextTable table(header, AllWords(header.size()));
+  TextTable table(header);
   for (size_t i = 0; i < check.parameters.size(); ++i) {
     std::vector<std::string> cells = {check.parameters[i]};
     for (const RefitRow& row : check.rows) {

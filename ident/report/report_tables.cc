@@ -172,9 +172,9 @@ std::string BehaviourText(const FitResult& result) {
 }
 
 TextTable LinesTable(const FitResult& result) {
-  TextTable table({"line pushed forwards, " + WaitText() + " later", "mean advance, m",
-                   "advance of pushed person, m", "mean displacement, m"},
-                  {true, false, false, false});
+  TextTable table =
+      TextTable::OfNumbers({"line pushed forwards, " + WaitText() + " later", "mean advance, m",
+                            "advance of pushed person, m", "mean displacement, m"});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     if (d.people == 1) continue;

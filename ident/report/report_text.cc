@@ -117,7 +117,7 @@ std::string ReportText(const FittedModel& model) {
   for (const std::string& held : result.uncertainty.held_directions)
     text += "prior-dependent: " + held + "\n";
   const TextTable agreement = AgreementTable(model);
-  if (agreement.rows().size() > 1) {
+  if (!agreement.empty()) {
     text += agreement.ToString() + AgreementNote(model) + "\n";
   }
   if (model.push_check) text += PushCheckText(*model.push_check) + "\n";
@@ -126,12 +126,12 @@ std::string ReportText(const FittedModel& model) {
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
   const TextTable pooled = PooledTable(result);
-  if (pooled.rows().size() > 1) {
+  if (!pooled.empty()) {
     text += "\n" + pooled.ToString() + "\n" + SpreadTable(result).ToString() + "\n";
   }
   text += BehaviourText(result);
   const TextTable lines = LinesTable(result);
-  if (lines.rows().size() > 1) text += lines.ToString();
+  if (!lines.empty()) text += lines.ToString();
   if (result.step_probability) text += StepProbabilityText(*result.step_probability) + "\n";
   text += "\n";
   text += "cost " + Rounded(result.cost, 6) + " after " +

@@ -120,8 +120,8 @@ std::string HeldOutFuturesText(const std::vector<PendulumRecording>& recordings,
     std::vector<std::string> pushed;
     for (const PendulumRecording& r : both) pushed.push_back(PersonKey(r, r.pushed_person));
     const ScoreClusters clusters = ClustersOf(pushed);
-    TextTable table({all[k].summary.name + " less " + all[0].summary.name, "difference", "+-"},
-                    {true, false, false});
+    TextTable table = TextTable::OfNumbers(
+        {all[k].summary.name + " less " + all[0].summary.name, "difference", "+-"});
     for (const FuturesMetric& metric : kFuturesMetrics) {
       std::vector<double> apart, deviations;
       for (size_t i = 0; i < both.size(); ++i) {

@@ -194,17 +194,15 @@ TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows) {
   const std::vector<std::string> header = {"groups",         "SSCP",         "changes",
                                            "NDMS",           "pushed named", "onset order",
                                            "onset error, s", "false movers", "missed movers"};
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  TextTable table(header, left);
+  TextTable table = TextTable::OfNumbers(header);
   for (const GroupMetricsRow& row : rows) {
     const SocialMetrics& social = row.metrics->social;
     const OnsetMetrics& onsets = row.metrics->onsets;
     table.Add({row.predictor, Cell(social.sscp), Cell(social.sscp_changes), Cell(social.ndms),
                std::to_string(onsets.pushed_named) + " of " + std::to_string(onsets.recordings),
                Cell(Share(onsets.in_order, onsets.pairs)),
-               Cell(Share(onsets.error_sum, onsets.movers)), std::to_string(onsets.false_movers),
-               std::to_string(onsets.missed_movers)});
+               Cell(Share(onsets.error_sum, onsets.movers)), onsets.false_movers,
+               onsets.missed_movers});
   }
   return table;
 }

@@ -80,7 +80,7 @@ std::string SpeedText(const PropagationMean& slowness) {
 TextTable PropagationTable(const std::vector<PropagationColumn>& columns) {
   std::vector<std::string> header = {"propagation"};
   for (const PropagationColumn& column : columns) header.push_back(column.name);
-  TextTable table(header, AllWords(header.size()));
+  TextTable table(header);
   auto row = [&](const std::string& title, auto&& cell) {
     std::vector<std::string> cells = {title};
     for (const PropagationColumn& column : columns) cells.push_back(cell(*column.summary));
@@ -121,8 +121,7 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
 }
 
 std::string OnsetsText(const std::vector<RecordingScore>& scores) {
-  TextTable table({"onset frames", "measured / predicted, from the pushed person on"},
-                  {true, true});
+  TextTable table({"onset frames", "measured / predicted, from the pushed person on"});
   for (const RecordingScore& score : scores) {
     std::vector<std::string> by_rank(score.propagation.people.size());
     for (const PersonPropagation& person : score.propagation.people) {

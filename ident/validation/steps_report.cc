@@ -53,7 +53,7 @@ Json StepJson(const FootStep& step, double dt) {
 std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool per_recording) {
   std::string text;
   if (per_recording) {
-    TextTable table({"recording", "person", "steps"}, {true, true, true});
+    TextTable table({"recording", "person", "steps"});
     for (const PendulumRecording& recording : recordings) {
       for (size_t n = 0; n < recording.steps.size(); ++n) {
         table.Add({n == 0 ? recording.id : "", recording.subject_ids[n],
@@ -177,7 +177,7 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
 
 std::string StepScoresText(const NamedStepScores& scores) {
   const TextTable table = StepScoresTable(scores);
-  if (table.rows().size() < 2) return "";
+  if (table.empty()) return "";
   int people = 0;
   for (const auto& [name, score] : scores) people = std::max(people, score->people);
   return table.ToString() + "+-: standard errors by leaving out each of " + std::to_string(people) +

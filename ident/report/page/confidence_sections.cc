@@ -21,7 +21,7 @@ ReportFigure CorrelationFigure(const FitResult& result) {
   HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0};
   std::vector<std::string> header = {"parameter"};
   for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
-  TextTable numbers(header, AllWords(header.size()));
+  TextTable numbers(header);
   for (size_t i = 0; i < size; ++i) {
     map.rows.push_back(u.estimates[i].name);
     map.columns.push_back(u.estimates[i].name);
@@ -100,21 +100,20 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
 ReportSection IdentifiabilitySection(const ReportSource& source) {
   ReportSection section;
   const Diagnostics& d = source.fit.diagnostics;
-  section.paragraphs.push_back(
-      "Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
-      " at the start, " + Rounded(source.fit.uncertainty.condition_number, 3) + " at the optimum.");
+  section.Say("Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
+              " at the start, " + Rounded(source.fit.uncertainty.condition_number, 3) +
+              " at the optimum.");
   for (const NullDirection& n : source.fit.uncertainty.null_directions) {
-    section.paragraphs.push_back("Unidentifiable: " + n.sentence);
+    section.Say("Unidentifiable: " + n.sentence);
   }
   if (source.fit.uncertainty.null_directions.empty()) {
-    section.paragraphs.push_back("Data, priors and constraints together determine all directions.");
+    section.Say("Data, priors and constraints together determine all directions.");
   }
   for (const std::string& held : source.fit.uncertainty.held_directions) {
-    section.paragraphs.push_back("Prior-dependent: " + held);
+    section.Say("Prior-dependent: " + held);
   }
-  for (const std::string& note : d.start.notes) section.paragraphs.push_back("Start: " + note);
-  const std::string correlations = CorrelationText(source.fit);
-  if (!correlations.empty()) section.paragraphs.push_back(correlations);
+  for (const std::string& note : d.start.notes) section.Say("Start: " + note);
+  section.Say(CorrelationText(source.fit));
   section.figures.push_back(CorrelationFigure(source.fit));
   return section;
 }
@@ -126,22 +125,21 @@ ReportSection ProfileSection(const ReportSource& source) {
       "Each parameter is moved away from its estimate and everything else refitted. Where the "
       "curve crosses the dashed line the 95 % interval ends; a flat curve means that the data do "
       "not determine the parameter."};
-  section.paragraphs.push_back(AgreementNote(source.model));
-  section.tables.push_back({"three kinds of intervals", AgreementTable(source.model)});
+  section.Say(AgreementNote(source.model));
+  section.Show("three kinds of intervals", AgreementTable(source.model));
   std::vector<Chart> charts;
-  TextTable ends({"profile of", "why it ended below", "above"}, AllWords(3));
-  TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"}, AllWords(5));
+  TextTable ends({"profile of", "why it ended below", "above"});
+  TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"});
   for (const Profile& p : source.model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
     if (p.points.size() > 1 && !IsAlias(source.model, p)) charts.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
-      numbers.Add({p.name, p.unit, DoubleText(point.value), DoubleText(point.cost - p.cost),
-                   DoubleText(p.threshold)});
+      numbers.Add({p.name, p.unit, point.value, point.cost - p.cost, p.threshold});
     }
   }
-  section.tables.push_back({"profiles that ended elsewhere than at the threshold", ends});
+  section.Show("profiles that ended elsewhere than at the threshold", ends);
   section.figures.push_back(
       {"profiles",
        "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
@@ -156,8 +154,8 @@ ReportSection BootstrapSection(const ReportSource& source) {
   section.paragraphs = {"The fit was repeated on samples drawn with replacement, " +
                         ResamplingText(b) + "."};
   if (source.model.profiles.empty()) {
-    section.paragraphs.push_back(AgreementNote(source.model));
-    section.tables.push_back({"two kinds of intervals", AgreementTable(source.model)});
+    section.Say(AgreementNote(source.model));
+    section.Show("two kinds of intervals", AgreementTable(source.model));
   }
   std::vector<Chart> charts;
   std::vector<std::string> header;
@@ -172,7 +170,7 @@ ReportSection BootstrapSection(const ReportSource& source) {
     for (const auto& row : b.values) values.push_back(row[i]);
     charts.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
   }
-  TextTable numbers(header, AllWords(header.size()));
+  TextTable numbers(header);
   for (const auto& row : b.values) {
     std::vector<std::string> cells;
     for (double value : row) cells.push_back(DoubleText(value));
@@ -228,8 +226,8 @@ ReportFigure ForestFigure(const RecordingEffect& effect) {
   const std::vector<EffectOfRecording> effects = SortedEffects(effect);
   for (const EffectOfRecording& r : effects) {
     const double half = kNinetyFive * r.error;
-    numbers.Add({r.id, r.person, r.condition, DoubleText(r.mean), DoubleText(r.error),
-                 DoubleText(r.mean - half), DoubleText(r.mean + half), DoubleText(r.alone)});
+    numbers.Add(
+        {r.id, r.person, r.condition, r.mean, r.error, r.mean - half, r.mean + half, r.alone});
   }
   return {"recording_effects",
           "Effects with 95 % intervals (blue) and the estimate from each recording alone (orange; "
@@ -243,8 +241,8 @@ ReportSection PopulationSection(const ReportSource& source) {
   ReportSection section;
   const auto& effect = source.fit.recording_effect;
   if (!effect || effect->recordings.empty()) return section;
-  section.paragraphs.push_back(PopulationSentence(*effect));
-  section.tables.push_back({"", EffectGroupsTable(*effect)});
+  section.Say(PopulationSentence(*effect));
+  section.Show("", EffectGroupsTable(*effect));
   section.figures.push_back(ForestFigure(*effect));
   return section;
 }

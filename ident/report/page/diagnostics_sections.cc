@@ -77,9 +77,8 @@ TextTable OutlierTable(const Diagnostics& d) {
   const std::vector<OutlierRun> runs = RunsOf(d);
   for (size_t i = 0; i < std::min(kMostOutliers, runs.size()); ++i) {
     const OutlierRun& run = runs[i];
-    table.Add({run.recording, std::to_string(run.person),
-               std::to_string(run.from) + " - " + std::to_string(run.to), Rounded(run.worst, 3),
-               Rounded(run.weight, 2)});
+    table.Add({run.recording, run.person, std::to_string(run.from) + " - " + std::to_string(run.to),
+               Rounded(run.worst, 3), Rounded(run.weight, 2)});
   }
   return table;
 }
@@ -116,13 +115,10 @@ ReportSection RecordingSection(const ReportSource& source) {
   if (d.recordings.empty()) return section;
   std::vector<const RecordingDiagnostics*> sorted;
   TextTable numbers({"recording", "explained_percent", "cost", "lag1", "ljung_box", "ljung_box_p",
-                     "outlier_frames"},
-                    AllWords(7));
+                     "outlier_frames"});
   for (const RecordingDiagnostics& r : d.recordings) {
     sorted.push_back(&r);
-    numbers.Add({r.id, DoubleText(r.explained), DoubleText(r.cost), DoubleText(r.lag1),
-                 DoubleText(r.ljung_box), DoubleText(r.ljung_box_p),
-                 std::to_string(r.outliers.size())});
+    numbers.Add({r.id, r.explained, r.cost, r.lag1, r.ljung_box, r.ljung_box_p, r.outliers.size()});
   }
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto* a, const auto* b) { return a->explained > b->explained; });
@@ -131,7 +127,7 @@ ReportSection RecordingSection(const ReportSource& source) {
                              "zero it is worse than predicting no motion.",
                              ExplainedBars(sorted), numbers});
   const TextTable outliers = OutlierTable(d);
-  if (outliers.rows().size() > 1) {
+  if (!outliers.empty()) {
     section.tables.push_back(
         {"intervals that have less than half their weight in the robust loss (the 20 worst)",
          outliers});
@@ -158,7 +154,7 @@ ReportSection LeverageSection(const ReportSource& source) {
   for (size_t p = 0; p < l.parameters.size(); ++p) {
     header.push_back(l.parameters[p] + " (" + l.units[p] + ")");
   }
-  TextTable numbers(header, AllWords(header.size()));
+  TextTable numbers(header);
   for (size_t g : order) {
     map.rows.push_back(l.recordings[g]);
     map.values.push_back(l.in_errors[g]);
@@ -185,19 +181,17 @@ ReportSection ResidualSection(const ReportSource& source) {
       "errors are valid); residuals correlated with the push mean that the model misses part of "
       "the response to it."};
   std::vector<Chart> own, push;
-  TextTable numbers({"channel", "kind", "lag", "correlation", "standard_error", "white_band"},
-                    AllWords(6));
-  TextTable tests({"channel", "lag-1 correlation", "white +-", "Ljung-Box", "p"},
-                  {true, false, false, false, false});
+  TextTable numbers({"channel", "kind", "lag", "correlation", "standard_error", "white_band"});
+  TextTable tests =
+      TextTable::OfNumbers({"channel", "lag-1 correlation", "white +-", "Ljung-Box", "p"});
   for (const Whiteness& w : channels) {
     own.push_back(Correlogram(w.channel, w.autocorrelation, w.error, 1, w.mean_band));
     push.push_back(Correlogram(w.channel + " and the push", w.push, w.push_error, 0, w.mean_band));
     const auto add = [&](const char* kind, const std::vector<double>& values,
                          const std::vector<double>& errors, int first) {
       for (size_t k = 0; k < values.size(); ++k) {
-        numbers.Add({w.channel, kind, std::to_string(first + static_cast<int>(k)),
-                     DoubleText(values[k]), DoubleText(k < errors.size() ? errors[k] : 0.0),
-                     DoubleText(w.mean_band)});
+        numbers.Add({w.channel, kind, first + static_cast<int>(k), values[k],
+                     k < errors.size() ? errors[k] : 0.0, w.mean_band});
       }
     };
     add("own", w.autocorrelation, w.error, 1);
@@ -206,7 +200,7 @@ ReportSection ResidualSection(const ReportSource& source) {
                Rounded(w.mean_band, 1), Rounded(w.ljung_box, 3), Rounded(w.ljung_box_p, 2)});
   }
   own.insert(own.end(), push.begin(), push.end());
-  section.tables.push_back({"", tests});
+  section.Show("", tests);
   section.figures.push_back({"residual_correlations", "Correlations of the residuals.",
                              DrawCharts(own, "residual correlations", 3, 320, 170), numbers});
   return section;

@@ -29,7 +29,7 @@ std::string FigureText(const ReportFigure& figure) {
     return text + "  (" + std::to_string(rows.size() - 1) + " rows: --csv_dir writes them to " +
            figure.name + ".csv)\n";
   }
-  TextTable table(rows[0], AllWords(rows[0].size()));
+  TextTable table(rows[0]);
   for (size_t i = 1; i < rows.size(); ++i) {
     std::vector<std::string> cells;
     for (const std::string& cell : rows[i]) cells.push_back(ForReading(cell));
@@ -49,7 +49,7 @@ std::string SectionText(const ReportSection& section) {
     if (!command.empty()) text += "  " + command + "\n";
   }
   for (const ReportTable& table : section.tables) {
-    if (table.table.rows().size() < 2) continue;
+    if (table.table.empty()) continue;
     text += (text.empty() ? "" : "\n") + (table.caption.empty() ? "" : table.caption + "\n") +
             table.table.ToString();
   }

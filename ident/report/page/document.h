@@ -37,6 +37,14 @@ struct ReportSection {
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;
   std::string widget;  // HTML that only a page can show; empty elsewhere
+
+  // A further paragraph or table, unless there is nothing in it.
+  void Say(const std::string& text) {
+    if (!text.empty()) paragraphs.push_back(text);
+  }
+  void Show(const std::string& caption, const TextTable& table) {
+    if (!table.empty()) tables.push_back({caption, table});
+  }
 };
 
 struct Report {

@@ -122,8 +122,7 @@ TextTable PathNumbers(const RecordingView& view) {
                    "median_theta_rad",
                    "median_phi_rad",
                    "left_foot_stands",
-                   "right_foot_stands"},
-                  AllWords(25));
+                   "right_foot_stands"});
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -157,7 +156,7 @@ TextTable PathNumbers(const RecordingView& view) {
 }
 
 TextTable ForceNumbers(const FormationRun& run) {
-  TextTable table({"person", "frame", "part", "fx_N", "fy_N", "ftheta_Nm", "fphi_Nm"}, AllWords(7));
+  TextTable table({"person", "frame", "part", "fx_N", "fy_N", "ftheta_Nm", "fphi_Nm"});
   const std::vector<ForcePart> parts = ActingParts(run);
   for (int n = 0; n < run.num_people(); ++n) {
     for (int t = 0; t < run.num_frames(); ++t) {
@@ -258,9 +257,7 @@ ReportSection MotionSection(const ReportSource& source) {
       "parameters; for others only the uncertainty of the parameters. Bars under the hip show when "
       "a foot was off the ground. The forces explain the motion: balance, friction, interaction, "
       "push and all others add up to the net force (thick)."};
-  if (const std::string median = MedianText(source.views); !median.empty()) {
-    section.paragraphs.push_back(median);
-  }
+  section.Say(MedianText(source.views));
   for (const RecordingView& view : source.views) {
     ReportFold fold{FoldTitle(view), {}};
     const std::string& id = view.run.recording.id;

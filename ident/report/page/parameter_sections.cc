@@ -120,8 +120,7 @@ ReportFigure SharesFigure(const FitResult& result) {
   if (drawn(&Shares::settling)) legend.push_back({"settling", kSettlingLook});
   DrawLegend(legend, kForestLeft, 16, &svg);
   TextTable numbers(
-      {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"},
-      AllWords(8));
+      {"parameter", "data", "prior", "settling", "prior_pull", "settling_pull", "unit", "status"});
   double y = 32;
   for (const Estimate* e : shown) {
     svg.Text(kForestLeft - 12, y + kBarHeight - 3, e->name, "ink end");
@@ -138,8 +137,7 @@ ReportFigure SharesFigure(const FitResult& result) {
       x += width;
     }
     svg.Text(kForestRight + 8, y + kBarHeight - 3, NameOf(e->status), "faint small");
-    numbers.Add({e->name, DoubleText(s.data), DoubleText(s.prior), DoubleText(s.settling),
-                 DoubleText(s.prior_pull), DoubleText(s.settling_pull), e->unit,
+    numbers.Add({e->name, s.data, s.prior, s.settling, s.prior_pull, s.settling_pull, e->unit,
                  NameOf(e->status)});
     y += kBarRow;
   }
@@ -159,14 +157,13 @@ ReportSection ParameterSection(const ReportSource& source) {
   ReportSection section;
   section.paragraphs = {IdentifiedText(source.fit), SharesNote(), HowSure(source.fit),
                         ConventionText(source.fit)};
-  section.tables.push_back({"fitted and held", EstimateTable(source.fit)});
-  section.tables.push_back({"derived", DerivedTable(source.fit)});
+  section.Show("fitted and held", EstimateTable(source.fit));
+  section.Show("derived", DerivedTable(source.fit));
   const std::vector<Agreement> agreements = CompareIntervals(source.model);
   std::vector<ForestRow> rows;
-  TextTable numbers(
-      {"parameter", "unit", "value", "nominal", "clustered_lower95", "clustered_upper95",
-       "profile_lower95", "profile_upper95", "bootstrap_lower95", "bootstrap_upper95"},
-      AllWords(10));
+  TextTable numbers({"parameter", "unit", "value", "nominal", "clustered_lower95",
+                     "clustered_upper95", "profile_lower95", "profile_upper95", "bootstrap_lower95",
+                     "bootstrap_upper95"});
   for (const Estimate& e : source.fit.estimates) {
     const ParameterSpec* spec = source.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
@@ -193,7 +190,7 @@ ReportSection ParameterSection(const ReportSource& source) {
   if (source.model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});
   const ReportFigure shares = SharesFigure(source.fit);
-  if (shares.numbers.rows().size() > 1) section.figures.push_back(shares);
+  if (!shares.numbers.empty()) section.figures.push_back(shares);
   section.figures.push_back(
       {"forest",
        "Fitted values (dots) with their 95 % intervals against the nominal values (diamonds). "
@@ -207,7 +204,7 @@ ReportSection UnitSection(const ReportSource& source) {
   ReportSection section;
   section.title = "By " + by;
   const TextTable pooled = PooledTable(source.fit);
-  if (pooled.rows().size() < 2) return section;
+  if (pooled.empty()) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value (diamond) as far as its "
       "recordings require."};
@@ -228,18 +225,17 @@ ReportSection UnitSection(const ReportSource& source) {
   const std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook},
                                            {"shared value", kNominalLook}};
   for (const auto& [name, rows] : by_parameter) {
-    TextTable numbers({"unit", "value", "lower95", "upper95", "shared"}, AllWords(5));
+    TextTable numbers({"unit", "value", "lower95", "upper95", "shared"});
     for (const ForestRow& row : rows) {
       const Interval& interval = row.intervals[0].first;
-      numbers.Add({row.name, DoubleText(row.value), DoubleText(interval.lower),
-                   DoubleText(interval.upper), DoubleText(row.nominal)});
+      numbers.Add({row.name, row.value, interval.lower, interval.upper, row.nominal});
     }
     section.folds.push_back(
         {name,
          {{"units_" + name, name + " by " + by, Forest(rows, name, true).Draw(legend), numbers}}});
   }
-  section.tables.push_back({"", pooled});
-  section.tables.push_back({"spread of the values", SpreadTable(source.fit)});
+  section.Show("", pooled);
+  section.Show("spread of the values", SpreadTable(source.fit));
   return section;
 }
 

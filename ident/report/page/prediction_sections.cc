@@ -65,7 +65,7 @@ ReportSection StepSection(const ReportSource& source) {
   ReportSection section;
   const auto& probability = source.fit.step_probability;
   if (!probability) return section;
-  section.paragraphs.push_back(StepProbabilityText(*probability));
+  section.Say(StepProbabilityText(*probability));
   section.figures.push_back(MapFigure(ModelOf(source.fit)));
   const StepScore score = ScoreOf(source.views);
   if (!score.known()) return section;
@@ -150,16 +150,14 @@ Chart StratumChart(const CheckedStratum& stratum) {
 
 ReportFigure StrataFigure(const VisualCheck& check) {
   std::vector<Chart> charts;
-  TextTable numbers(
-      {"stratum", "time_s", "recordings", "percentile", "observed_s", "lower90_s", "upper90_s"},
-      {true, false, false, false, false, false, false});
+  TextTable numbers = TextTable::OfNumbers(
+      {"stratum", "time_s", "recordings", "percentile", "observed_s", "lower90_s", "upper90_s"});
   for (const CheckedStratum& stratum : check.strata) {
     charts.push_back(StratumChart(stratum));
     for (const CheckedFrame& frame : stratum.frames) {
       for (int q = 0; q < kNumCheckedShares; ++q) {
-        numbers.Add({stratum.name, DoubleText(frame.seconds), std::to_string(frame.recordings),
-                     DoubleText(100.0 * kCheckedShares[q]), DoubleText(frame.observed[q]),
-                     DoubleText(frame.lower90[q]), DoubleText(frame.upper90[q])});
+        numbers.Add({stratum.name, frame.seconds, frame.recordings, 100.0 * kCheckedShares[q],
+                     frame.observed[q], frame.lower90[q], frame.upper90[q]});
       }
     }
   }
@@ -172,11 +170,10 @@ ReportFigure StrataFigure(const VisualCheck& check) {
 }
 
 TextTable StrataTable(const VisualCheck& check) {
-  TextTable table({"stratum", "recordings", "observed percentiles within their 90 %"},
-                  {true, false, false});
+  TextTable table =
+      TextTable::OfNumbers({"stratum", "recordings", "observed percentiles within their 90 %"});
   for (const CheckedStratum& stratum : check.strata) {
-    table.Add({stratum.name, std::to_string(stratum.recordings),
-               Rounded(100.0 * stratum.Inside(), 2) + " %"});
+    table.Add({stratum.name, stratum.recordings, Rounded(100.0 * stratum.Inside(), 2) + " %"});
   }
   return table;
 }
@@ -204,16 +201,14 @@ Chart HistogramChart(const std::string& title, const UniformityTest& test) {
 }
 
 ReportFigure HistogramFigure(const VisualCheck& check) {
-  TextTable numbers({"axis", "from", "to", "share", "standard_error"},
-                    {true, false, false, false, false});
+  TextTable numbers = TextTable::OfNumbers({"axis", "from", "to", "share", "standard_error"});
   std::vector<Chart> charts;
   const auto add = [&](const std::string& axis, const UniformityTest& test) {
     charts.push_back(HistogramChart(axis + " the push", test));
     const double bins = static_cast<double>(test.shares.size());
     for (size_t b = 0; b < test.shares.size(); ++b) {
       const double from = static_cast<double>(b) / bins;
-      numbers.Add({axis, DoubleText(from), DoubleText(from + 1.0 / bins),
-                   DoubleText(test.shares[b]), DoubleText(test.errors[b])});
+      numbers.Add({axis, from, from + 1.0 / bins, test.shares[b], test.errors[b]});
     }
   };
   add("along", check.along);
@@ -246,7 +241,7 @@ ReportSection VisualCheckSection(const ReportSource& source) {
       "Uniformity " + TestText("along", check.along) + "; " + TestText("across", check.across) +
           ". Values 0.25 s apart, Hotelling's test of five bins, clustered by recording: a small p "
           "indicates that the distribution is wrong."};
-  section.tables.push_back({"", StrataTable(check)});
+  section.Show("", StrataTable(check));
   section.figures.push_back(StrataFigure(check));
   section.figures.push_back(HistogramFigure(check));
   return section;

@@ -44,7 +44,7 @@ Chart DriftChart(const RefitTable& check, size_t i, double all_frames) {
 }
 
 TextTable HorizonNumbers(const RefitTable& check) {
-  TextTable table({"parameter", "unit", "horizon", "value", "standard_error"}, AllWords(5));
+  TextTable table({"parameter", "unit", "horizon", "value", "standard_error"});
   for (size_t i = 0; i < check.parameters.size(); ++i) {
     const auto add = [&](const std::string& horizon, double value, double error) {
       table.Add(
@@ -81,7 +81,7 @@ ReportSection PriorCheckSection(const ReportSource& source) {
       "The fit was repeated with means and widths of all priors halved, and doubled. A parameter "
       "that the recordings determine keeps its value; profiles and bootstrap cannot show this, "
       "because they use the same priors."};
-  section.tables.push_back({"values under other priors", PriorTable(*source.model.prior_check)});
+  section.Show("values under other priors", PriorTable(*source.model.prior_check));
   return section;
 }
 
@@ -93,10 +93,8 @@ ReportSection HorizonCheckSection(const ReportSource& source) {
       "The fit was repeated on only the first frames of every recording. A parameter with physical "
       "meaning keeps its value; one that drifts compensates for something that the model omits.",
       DriftText(check)};
-  if (const std::string claims = HorizonClaims(check); !claims.empty()) {
-    section.paragraphs.push_back(claims);
-  }
-  section.tables.push_back({"values +- standard errors", HorizonTable(check)});
+  section.Say(HorizonClaims(check));
+  section.Show("values +- standard errors", HorizonTable(check));
   double all = 0.0;
   for (const FittedRecording& r : source.fit.recordings) all = std::max(all, r.frames - 1.0);
   std::vector<Chart> charts;
@@ -114,7 +112,7 @@ constexpr int kBestPushes = 8;
 
 // The best pushes to record next, over all and for each parameter.
 void AddPushes(const ExperimentDesign& design, ReportSection* section) {
-  section->paragraphs.push_back(
+  section->Say(
       "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
       "the estimate: for all parameters together (D-optimal) and for each (c-optimal).");
   section->tables.push_back(
@@ -128,7 +126,7 @@ void AddPushes(const ExperimentDesign& design, ReportSection* section) {
     row.resize(best.rows()[0].size());
     best.Add(row);
   }
-  section->tables.push_back({"for each parameter", best});
+  section->Show("for each parameter", best);
 }
 
 // The design needs the fit's own recordings, all of them and as they were.
@@ -160,13 +158,13 @@ void AddStudies(const StudyPlan& plan, ReportSection* section) {
     section->tables.push_back(
         {"a force sensor: the same study with the whole push known", SensorTable(plan, "all")});
   } else {
-    section->paragraphs.push_back("No force sensor is proposed: " + plan.no_sensor + ".");
+    section->Say("No force sensor is proposed: " + plan.no_sensor + ".");
   }
   if (plan.sizes.empty()) {
-    section->paragraphs.push_back("More people, more pushes: " + plan.no_sizes + ".");
+    section->Say("More people, more pushes: " + plan.no_sizes + ".");
     return;
   }
-  section->paragraphs.push_back(StudySizesNote(plan));
+  section->Say(StudySizesNote(plan));
   section->tables.push_back(
       {"standard errors with more people and more pushes of each (first row: this study)",
        StudySizesTable(plan, "all")});
@@ -211,8 +209,7 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
   TextTable numbers({"rank", "start", "cost", "failed_recordings"}, {false, true, false, false});
   for (size_t i = 0; i < ranked.size(); ++i) {
     const SolveStart& s = *ranked[i];
-    numbers.Add({std::to_string(i + 1), s.kind, s.usable ? DoubleText(s.cost) : "",
-                 std::to_string(s.failed.size())});
+    numbers.Add({i + 1, s.kind, s.usable ? DoubleText(s.cost) : "", s.failed.size()});
     if (!s.usable || !s.failed.empty()) continue;
     ended.emplace_back(static_cast<double>(i + 1), axis.At(s.cost));
   }
@@ -239,17 +236,14 @@ ReportSection SolveSection(const ReportSource& source) {
       {false, true, false, false, true, false, true});
   for (size_t i = 0; i < ranked.size(); ++i) {
     const SolveStart& s = *ranked[i];
-    starts.Add({std::to_string(i + 1), s.kind, s.usable ? Rounded(s.cost, 6) : "-",
-                std::to_string(s.iterations), s.converged ? "yes" : "no",
-                std::to_string(s.failed.size()), s.message});
+    starts.Add({i + 1, s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
+                s.converged ? "yes" : "no", s.failed.size(), s.message});
   }
-  section.tables.push_back({"starts, best first", starts});
-  if (source.fit.likelihood) section.paragraphs.push_back(LikelihoodText(source.fit));
-  const std::string across = AcrossStartsNote(source.fit);
-  if (!across.empty()) section.paragraphs.push_back(across);
+  section.Show("starts, best first", starts);
+  if (source.fit.likelihood) section.Say(LikelihoodText(source.fit));
+  section.Say(AcrossStartsNote(source.fit));
   if (ranked.size() > 1) section.figures.push_back(WaterfallFigure(ranked));
-  const TextTable spread = AcrossStartsTable(source.fit);
-  if (spread.rows().size() > 1) section.tables.push_back({"where the best starts ended", spread});
+  section.Show("where the best starts ended", AcrossStartsTable(source.fit));
   const std::vector<TracePoint>& trace = source.fit.diagnostics.trace;
   if (trace.size() < 2) return section;
   double lowest = HUGE_VAL;
@@ -259,14 +253,12 @@ ReportSection SolveSection(const ReportSource& source) {
   cost.title = axis.Title();
   gradient.title = "largest gradient component";
   ChartLine c{{}, kPredictedLook, false}, g = c;
-  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"}, AllWords(5));
+  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"});
   for (size_t i = 0; i < trace.size(); ++i) {
     const double step = static_cast<double>(i);
     c.points.emplace_back(step, axis.At(trace[i].cost));
     if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
-    numbers.Add({std::to_string(i), std::to_string(trace[i].horizon),
-                 std::to_string(trace[i].iteration), DoubleText(trace[i].cost),
-                 DoubleText(trace[i].gradient)});
+    numbers.Add({i, trace[i].horizon, trace[i].iteration, trace[i].cost, trace[i].gradient});
   }
   cost.lines = {c};
   gradient.lines = {g};

@@ -100,7 +100,7 @@ std::string Next(const FittedModel& model) {
 
 // Of the free parameters: what a reader of the pictures meets.
 TextTable Legend(const FitResult& result) {
-  TextTable table({"name", "unit", "meaning"}, {true, true, true});
+  TextTable table({"name", "unit", "meaning"});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
@@ -114,11 +114,9 @@ TextTable Legend(const FitResult& result) {
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
   section.paragraphs = {Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
-  if (const std::string travels = Travels(source.propagation); !travels.empty()) {
-    section.paragraphs.push_back(travels);
-  }
-  section.paragraphs.push_back(Next(source.model));
-  section.tables.push_back({"the parameters that were fitted", Legend(source.fit)});
+  section.Say(Travels(source.propagation));
+  section.Say(Next(source.model));
+  section.Show("the parameters that were fitted", Legend(source.fit));
   return section;
 }
 
@@ -143,9 +141,9 @@ double MeanExplained(const FitResult& result) {
 
 ReportSection SummarySection(const ReportSource& source) {
   ReportSection section;
-  section.paragraphs.push_back(VerdictText(source.fit));
+  section.Say(VerdictText(source.fit));
   const FitOptions& o = source.fit.options;
-  TextTable facts({"what", "value"}, {true, true});
+  TextTable facts({"what", "value"});
   facts.Add({"recordings", std::to_string(source.fit.recordings.size()) + " (" +
                                source.model.provenance.setting + ")"});
   facts.Add({"preset", o.preset});
@@ -160,17 +158,16 @@ ReportSection SummarySection(const ReportSource& source) {
     facts.Add({"hip motion explained, mean over recordings",
                Rounded(MeanExplained(source.fit), 3) + " %"});
   }
-  section.tables.push_back({"", facts});
+  section.Show("", facts);
   if (const std::string network = NetworkText(source.fit); !network.empty()) {
-    section.paragraphs.push_back("Learned terms: " + network + ".");
+    section.Say("Learned terms: " + network + ".");
   }
-  const std::string prepared = PreparationText(source.model.provenance.configuration);
-  if (!prepared.empty()) section.paragraphs.push_back(prepared);
+  section.Say(PreparationText(source.model.provenance.configuration));
   for (const std::string& warning : GroupedWarnings(source.fit.warnings)) {
-    section.paragraphs.push_back("Warning: " + warning);
+    section.Say("Warning: " + warning);
   }
   for (const std::string& warning : GroupedWarnings(source.fit.diagnostics.start.unit_warnings)) {
-    section.paragraphs.push_back("Units? " + warning);
+    section.Say("Units? " + warning);
   }
   return section;
 }
@@ -196,15 +193,15 @@ ReportSection ProvenanceSection(const ReportSource& source) {
   section.paragraphs = {"pushid " + source.model.provenance.version + ", manifest " +
                         source.model.provenance.manifest + " (hash " +
                         source.model.provenance.manifest_hash + ")"};
-  TextTable flags({"flag", "value"}, {true, true});
+  TextTable flags({"flag", "value"});
   for (const auto& [name, value] : source.model.provenance.configuration)
     flags.Add({"--" + name, value});
-  section.tables.push_back({"flags of the fit (empty: the preset's value)", flags});
+  section.Show("flags of the fit (empty: the preset's value)", flags);
   TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
   for (const FittedRecording& r : source.fit.recordings) {
-    files.Add({r.id, std::to_string(r.frames), r.content_hash});
+    files.Add({r.id, r.frames, r.content_hash});
   }
-  section.tables.push_back({"recordings", files});
+  section.Show("recordings", files);
   return section;
 }
 
