@@ -10,7 +10,7 @@
 #include "ident/figures/text_table.h"
 <<<<<<< HEAD
 #include "ident/fit/model_rollout.h"
-#include "ident/prediction/score_clusters.h"
+#include "ident/prediction/score_groups.h"
 =======
 #include "ident/prediction/score_groups.h"
 >>>>>>> d0a192c (--group_by: scores by any label of the manifest, by one function for pendulums and bodies)

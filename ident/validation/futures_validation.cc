@@ -8,7 +8,7 @@
 <<<<<<< HEAD
 #include "ident/fit/fit.h"
 #include "ident/model/json_pieces.h"
-#include "ident/prediction/score_clusters.h"
+#include "ident/prediction/score_groups.h"
 =======
 #include "ident/prediction/score_groups.h"
 >>>>>>> d0a192c (--group_by: scores by any label of the manifest, by one function for pendulums and bodies)
