@@ -8,12 +8,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"
-<<<<<<< HEAD
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/score_groups.h"
-=======
-#include "ident/prediction/score_groups.h"
->>>>>>> d0a192c (--group_by: scores by any label of the manifest, by one function for pendulums and bodies)
 #include "ident/problem/time_series.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/clusters.h"

@@ -5,13 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/figures/text_table.h"
-<<<<<<< HEAD
 #include "ident/fit/fit.h"
 #include "ident/model/json_pieces.h"
 #include "ident/prediction/score_groups.h"
-=======
-#include "ident/prediction/score_groups.h"
->>>>>>> d0a192c (--group_by: scores by any label of the manifest, by one function for pendulums and bodies)
 #include "ident/problem/time_series.h"
 #include "ident/uncertainty/clusters.h"
 
