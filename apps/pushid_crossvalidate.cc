@@ -26,7 +26,7 @@
 #include "ident/prediction/score_groups.h"
 #include "ident/problem/fold_file.h"
 #include "ident/problem/folds.h"
-#include "ident/validation/futures_validation.h"
+#include "ident/validation/held_out_spread.h"
 #include "ident/validation/predictors.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"

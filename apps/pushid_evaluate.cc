@@ -19,7 +19,7 @@
 #include "ident/peers/peer_files.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/score_groups.h"
-#include "ident/validation/futures_validation.h"
+#include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_json.h"
 #include "ident/validation/scores_text.h"
 #include "ident/validation/steps_report.h"

@@ -9,10 +9,7 @@
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/model_rollout.h"
-#include "ident/prediction/score_groups.h"
-#include "ident/problem/time_series.h"
 #include "ident/uncertainty/bootstrap.h"
-#include "ident/uncertainty/clusters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
@@ -97,6 +94,12 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   return futures;
 }
 
+std::vector<double> FuturesScore::Values() const {
+  std::vector<double> values;
+  for (const FuturesMetric& metric : kFuturesMetrics) values.push_back(metric.value(*this));
+  return values;
+}
+
 FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording& recording,
                           const Futures& futures) {
   FuturesScore score;
@@ -165,25 +168,19 @@ MaybeError WriteFuturesCsv(const std::string& file, const Futures& futures) {
 
 FuturesSummary SummarizeFutures(const std::string& name,
                                 const std::vector<PendulumRecording>& recordings,
-                                const std::vector<FuturesScore>& scores, int draws, int failed) {
+                                const std::vector<std::vector<double>>& values, int draws,
+                                int failed) {
   FuturesSummary summary;
   summary.name = name;
-  summary.recordings = static_cast<int>(scores.size());
+  summary.recordings = static_cast<int>(values.size());
   summary.draws = draws;
   summary.failed = failed;
-  std::vector<std::string> pushed;
-  for (const PendulumRecording& r : recordings) pushed.push_back(PersonKey(r, r.pushed_person));
-  const ScoreClusters clusters = ClustersOf(pushed);
+  const ScoreClusters clusters = ClustersOf(recordings);
   summary.clusters = ClustersText(clusters.by, clusters.count);
-  for (const FuturesMetric& metric : kFuturesMetrics) {
-    std::vector<double> values, deviations;
-    for (const FuturesScore& score : scores) values.push_back(metric.value(score));
-    const double mean = MeanOf(values).mean;
-    for (double value : values) {
-      deviations.push_back((value - mean) / static_cast<double>(values.size()));
-    }
-    summary.mean.push_back(mean);
-    summary.error.push_back(clusters.ErrorOfMean(deviations));
+  for (size_t k = 0; k < std::size(kFuturesMetrics); ++k) {
+    std::vector<double> column;
+    for (const std::vector<double>& of_recording : values) column.push_back(of_recording[k]);
+    summary.mean.push_back(clusters.Mean(column));
   }
   return summary;
 }
@@ -200,8 +197,8 @@ std::string FuturesText(const std::vector<FuturesSummary>& summaries) {
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
     std::vector<std::string> row = {kFuturesMetrics[i].Title()};
     for (const FuturesSummary& summary : summaries) {
-      row.push_back(Rounded(summary.mean[i], 3));
-      row.push_back(Rounded(summary.error[i], 2));
+      row.push_back(Rounded(summary.mean[i].mean, 3));
+      row.push_back(Rounded(summary.mean[i].error, 2));
     }
     table.Add(row);
   }
@@ -228,7 +225,7 @@ Result<FuturesSummary> EvaluateFutures(const IdentifiedModel& model,
                                        const std::vector<PendulumRecording>& recordings, int draws,
                                        uint64_t seed) {
   std::vector<PendulumRecording> scored;
-  std::vector<FuturesScore> scores;
+  std::vector<std::vector<double>> values;
   int failed = 0;
   for (size_t i = 0; i < recordings.size(); ++i) {
     const PendulumRecording& recording = recordings[i];
@@ -238,10 +235,10 @@ Result<FuturesSummary> EvaluateFutures(const IdentifiedModel& model,
     failed += futures.value().failed;
     if (futures.value().paths.size() < 2) continue;
     scored.push_back(recording);
-    scores.push_back(ScoreFutures(model, recording, futures.value()));
+    values.push_back(ScoreFutures(model, recording, futures.value()).Values());
   }
-  if (scores.empty()) return Error{"every drawn future leaves the model's domain"};
-  FuturesSummary summary = SummarizeFutures("", scored, scores, draws, failed);
+  if (values.empty()) return Error{"every drawn future leaves the model's domain"};
+  FuturesSummary summary = SummarizeFutures("", scored, values, draws, failed);
   summary.without = static_cast<int>(recordings.size() - scored.size());
   return summary;
 }

@@ -14,6 +14,7 @@
 
 #include "ident/figures/text_table.h"
 #include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/score_groups.h"
 
 namespace pushid {
 
@@ -44,6 +45,8 @@ struct FuturesScore {
   double inside50[4] = {}, inside90[4] = {}, crps[4] = {};
   double energy = 0.0;    // m, of the hip's horizontal place
   double deviance = 0.0;  // -2 log innovation likelihood, of one measured number
+
+  std::vector<double> Values() const;  // of the metrics below
 };
 FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording& recording,
                           const Futures& futures);
@@ -65,18 +68,19 @@ inline constexpr FuturesMetric kFuturesMetrics[] = {
     {{"deviance", "1"}, [](const FuturesScore& s) { return s.deviance; }},
 };
 
-// Means over recordings with standard errors over their clusters (score_groups.h), in the order
-// of kFuturesMetrics.
+// Means over recordings with standard errors over their clusters (score_groups.h). Values and means
+// in the order of kFuturesMetrics.
 struct FuturesSummary {
   std::string name;  // of the model, where there are several
   int recordings = 0, draws = 0, failed = 0;
   int without = 0;  // recordings with fewer than two draws that stay in the domain
   std::string clusters;
-  std::vector<double> mean, error;
+  std::vector<MeanAndError> mean;
 };
 FuturesSummary SummarizeFutures(const std::string& name,
                                 const std::vector<PendulumRecording>& recordings,
-                                const std::vector<FuturesScore>& scores, int draws, int failed);
+                                const std::vector<std::vector<double>>& values, int draws,
+                                int failed);
 
 // The hip of everybody at the last frame: median and central 90 % of the draws.
 std::string LastFrameText(const Futures& futures);

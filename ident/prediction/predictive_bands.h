@@ -19,8 +19,6 @@
 
 #include "ident/model/fitted_model.h"
 #include "ident/prediction/prediction.h"
-#include "ident/problem/folds.h"
-#include "ident/problem/parallel.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
@@ -78,28 +76,5 @@ PredictiveBands ComputeBands(const FitResult& result,
                              const std::vector<ParameterSet<double>>& samples,
                              const std::vector<ErrorPath>& errors,
                              const PendulumRecording& recording, uint64_t seed);
-
-// Share of frames whose measured hip lies within a band, of the pushed person, by axis x and y;
-// means over recordings with standard errors over their clusters (score_groups.h).
-struct BandCoverage {
-  bool model_error = false;
-  int recordings = 0;
-  std::string clusters;  // "4 people"
-  double inside50[2] = {0.0, 0.0}, inside50_error[2] = {0.0, 0.0};
-  double inside90[2] = {0.0, 0.0}, inside90_error[2] = {0.0, 0.0};
-  double width90[2] = {0.0, 0.0};  // mean, m
-  // hipADE of the bands' median, and of the rollout at the estimate, m.
-  double median_ade = 0.0, median_ade_error = 0.0;
-  double rollout_ade = 0.0, rollout_ade_error = 0.0;
-};
-
-// Of recordings that were not fitted, with and without model error.
-std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording>& recordings,
-                                             const std::vector<Fold>& folds,
-                                             const FitOptions& options, const BandOptions& bands,
-                                             int num_threads,
-                                             const JobProgress& progress = nullptr);
-
-std::string BandCoverageText(const std::vector<BandCoverage>& coverage);
 
 }  // namespace pushid

@@ -21,6 +21,13 @@ double ScoreClusters::ErrorOfMean(const std::vector<double>& deviations) const {
   return std::sqrt(squares * count / (count - 1.0));
 }
 
+MeanAndError ScoreClusters::Mean(const std::vector<double>& values) const {
+  const double mean = MeanOf(values).mean, n = static_cast<double>(values.size());
+  std::vector<double> deviations;
+  for (double value : values) deviations.push_back((value - mean) / n);
+  return {mean, ErrorOfMean(deviations)};
+}
+
 ScoreClusters ClustersOf(const std::vector<std::string>& pushed) {
   ScoreClusters clusters;
   std::map<std::string, int> people;
@@ -35,6 +42,12 @@ ScoreClusters ClustersOf(const std::vector<std::string>& pushed) {
   clusters.count = static_cast<int>(pushed.size());
   std::iota(clusters.of.begin(), clusters.of.end(), 0);
   return clusters;
+}
+
+ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::string> pushed;
+  for (const PendulumRecording& r : recordings) pushed.push_back(PersonKey(r, r.pushed_person));
+  return ClustersOf(pushed);
 }
 
 std::string ClustersText(ClusterBy by, int count) {

@@ -18,6 +18,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
+#include "ident/problem/time_series.h"
 
 namespace pushid {
 
@@ -28,10 +29,13 @@ struct ScoreClusters {
 
   // deviations: w (score - mean) of each. 0 of a single cluster.
   double ErrorOfMean(const std::vector<double>& deviations) const;
+  // Of one value for each score, all of one weight.
+  MeanAndError Mean(const std::vector<double>& values) const;
 };
 
 // pushed: who was pushed, for each score (PersonKey, clusters.h).
 ScoreClusters ClustersOf(const std::vector<std::string>& pushed);
+ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings);
 
 // "4 people", "32 recordings"
 std::string ClustersText(ClusterBy by, int count);

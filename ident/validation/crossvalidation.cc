@@ -185,14 +185,12 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   difference.clustered_by = clusters.by;
   difference.clusters = clusters.count;
   difference.recordings = static_cast<int>(pairs.size());
-  const double n = static_cast<double>(pairs.size());
   for (const HipMetric& metric : AllHipMetrics()) {
-    double mean = 0.0;
-    for (const HipMetrics& pair : pairs) mean += pair.*metric.value / n;
-    std::vector<double> deviations;
-    for (const HipMetrics& pair : pairs) deviations.push_back((pair.*metric.value - mean) / n);
-    difference.*metric.value = mean;
-    difference.error.*metric.value = clusters.ErrorOfMean(deviations);
+    std::vector<double> values;
+    for (const HipMetrics& pair : pairs) values.push_back(pair.*metric.value);
+    const MeanAndError mean = clusters.Mean(values);
+    difference.*metric.value = mean.mean;
+    difference.error.*metric.value = mean.error;
   }
   return difference;
 }

@@ -5,6 +5,7 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/validation/held_out_spread.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -124,14 +125,15 @@ TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
       CrossValidateBands(recordings, folds, UnbiasedFit(VaryingStudy()), BandOptions(), 2);
   ASSERT_EQ(coverage.size(), 2u);
   EXPECT_EQ(coverage[1].recordings, 24);
-  EXPECT_LT(coverage[0].inside90[0], 0.7);  // where the mean person goes
-  EXPECT_NEAR(coverage[1].inside90[0], 0.9, 0.1);
-  EXPECT_NEAR(coverage[1].inside50[0], 0.5, 0.2);
+  EXPECT_LT(coverage[0].inside90[0].mean, 0.7);  // where the mean person goes
+  EXPECT_NEAR(coverage[1].inside90[0].mean, 0.9, 0.1);
+  EXPECT_NEAR(coverage[1].inside50[0].mean, 0.5, 0.2);
   EXPECT_TRUE(Contains(BandCoverageText(coverage), "parameters alone"));
   EXPECT_TRUE(Contains(BandCoverageText(coverage), "of their median"));
   // No model error that all share here: median and rollout are about as good.
-  EXPECT_GT(coverage[1].median_ade, 0.0);
-  EXPECT_NEAR(coverage[1].median_ade, coverage[1].rollout_ade, 0.25 * coverage[1].rollout_ade);
+  EXPECT_GT(coverage[1].median_ade.mean, 0.0);
+  EXPECT_NEAR(coverage[1].median_ade.mean, coverage[1].rollout_ade.mean,
+              0.25 * coverage[1].rollout_ade.mean);
 }
 
 }  // namespace
