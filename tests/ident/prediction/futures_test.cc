@@ -85,8 +85,8 @@ TEST(Futures, TheTruthScoresBest) {
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
     const std::string name = kFuturesMetrics[i].name;
     if (name != "energy" && name != "crps_x" && name != "deviance") continue;
-    EXPECT_LT(truth.mean[i], narrow.mean[i]) << name;
-    EXPECT_LT(truth.mean[i], wide.mean[i]) << name;
+    EXPECT_LT(truth.mean[i].mean, narrow.mean[i].mean) << name;
+    EXPECT_LT(truth.mean[i].mean, wide.mean[i].mean) << name;
   }
 }
 
