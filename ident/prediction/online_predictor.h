@@ -24,9 +24,9 @@
 namespace pushid {
 
 // Where hips will be, as mixtures of normal distributions: one component for each node of
-// the recording's effect (results/recording_effect.h).
-
-// Of the standard normal distribution.
+// the recording's effect (fit/recording_effect.h).
+//
+// NormalCdf: of the standard normal distribution.
 double NormalCdf(double x);
 
 class HipDistribution {

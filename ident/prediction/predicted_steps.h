@@ -44,7 +44,7 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
 // make all of a person's tracks.
 
 // When somebody steps, and how far, s from frame 0: the first phase that a model with step states
-// predicts (predicted_steps.h), and the first lift-off that was recorded.
+// predicts, and the first lift-off that was recorded.
 struct StepTiming {
   std::optional<double> lift_off, landing;           // no landing: still stepping in the last frame
   Eigen::Vector2d travel = Eigen::Vector2d::Zero();  // of the cart, m
@@ -53,7 +53,7 @@ struct StepTiming {
 
 // One person in one recording.
 struct StepPrediction {
-  double margin = 0.0;       // m (results/step_probability.h)
+  double margin = 0.0;       // m (fit/step_probability.h)
   double probability = 0.0;  // of a step
   bool stepped = false;
   std::string person = {};  // PersonKey

@@ -13,7 +13,7 @@
 
 namespace pushid {
 
-// What is predicted of one person's steps (results/step_probability.h).
+// What is predicted of one person's steps (fit/step_probability.h).
 struct PredictedStep {
   double margin = 0.0;  // m
   double probability = 0.0, error = 0.0;
@@ -50,7 +50,7 @@ struct Prediction {
 };
 
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has. effect: the
-// recording's own (results/recording_effect.h).
+// recording's own (fit/recording_effect.h).
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0, double effect = 0.0);
 
