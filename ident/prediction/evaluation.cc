@@ -240,8 +240,8 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
     return SummarizePropagation(of_group);
   };
   summary.propagation = propagation(all);
-  for (const auto& [name, of_setting] :
-       GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation)[kSettingLabel]) {
+  const auto by_setting = GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation);
+  for (const auto& [name, of_setting] : by_setting.at(kSettingLabel)) {
     if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
   }
   summary.mean = Mean(all, false);
