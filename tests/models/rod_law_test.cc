@@ -100,13 +100,13 @@ RolloutPath<double> RollStanding(const Scene& scene, const ModelOptions& options
   return path;
 }
 
-const NetworkShape kNoNetwork, kBlind{NetworkKind::kGru, 3}, kSeeing{NetworkKind::kMlp, 3, 0, true};
+const NetworkShape kNoNetwork, kBlind{NetworkKind::kGru, 3}, kMotionMlp{NetworkKind::kMlp, 3};
 
 TEST(RodLaw, IsSilentAtRest) {
   Random random(72);
   const Scene scene = TwoPeople(0.0);
   for (const RodShape& shape : EveryLaw()) {
-    for (const NetworkShape& self : {kNoNetwork, kSeeing}) {
+    for (const NetworkShape& self : {kNoNetwork, kMotionMlp}) {
       const auto path = RollStanding(scene, WithRod(shape, self, 3.0, &random), 100);
       for (int n = 0; n < 2; ++n) {
         EXPECT_LT(std::abs(path.At(99, n).rod), 1e-12) << RodName(shape);
@@ -119,7 +119,7 @@ TEST(RodLaw, IsSilentAtRest) {
 TEST(RodLaw, ZeroWeightsAreAConstantRodToTheLastBit) {
   Random random(73);
   const Scene scene = TwoPeople(40.0);
-  for (const NetworkShape& self : {kNoNetwork, kBlind, kSeeing}) {
+  for (const NetworkShape& self : {kNoNetwork, kBlind, kMotionMlp}) {
     for (const RodShape& shape : EveryLaw()) {
       const ModelOptions moving = WithRod(shape, self, 0.0, &random);
       auto network = std::make_shared<LearnedTerms>(*moving.learned);
@@ -153,7 +153,7 @@ TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
 TEST(RodLaw, LdpsSizeRunsInARollout) {
   Random random(75);
   const RodShape ldp{RodKind::kMlp, {256, 128, 256}};
-  const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kSeeing, 0.05, &random), 60);
+  const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kMotionMlp, 0.05, &random), 60);
   EXPECT_NE(path.At(59, 0).rod, 0.0);
 }
 
@@ -161,7 +161,7 @@ TEST(RodLaw, LdpsSizeRunsInARollout) {
 TEST(RodLaw, CrowdsHaveRodsToo) {
   Random random(76);
   const Scene scene = TwoPeople(40.0);
-  const ModelOptions options = WithRod({RodKind::kMlp, {4}}, kSeeing, 0.8, &random);
+  const ModelOptions options = WithRod({RodKind::kMlp, {4}}, kMotionMlp, 0.8, &random);
   const auto path = RollStanding(scene, options, 50);
   Crowd crowd(scene, options, {RodParameters()}, 2);
   for (int t = 1; t < 50; ++t) {
