@@ -12,7 +12,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/model/json_pieces.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/report/page/document.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
-#include "ident/model/json_pieces.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
 #include "ident/report/design_text.h"

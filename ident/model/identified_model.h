@@ -51,17 +51,6 @@ struct PushRange {
   }
 };
 
-// Under `push_range` in a model's JSON, each a pair.
-struct PushRangeRow {
-  const char* key;
-  ValueRange PushRange::*range;
-};
-inline constexpr PushRangeRow kPushRangeRows[] = {
-    {"external_duration_s", &PushRange::external_s},
-    {"net_duration_s", &PushRange::net_s},
-    {"impulse_per_mass_m_s", &PushRange::impulse_per_mass},
-};
-
 // How probable it is that a pushed person steps (fit/step_probability.h).
 struct StepProbability {
   // a, and 1 / w in 1/m.

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <string>
 
 #include "ident/parameters/fit_options.h"
-#include "ident/parameters/option_names.h"
+#include "ident/parameters/json_archive.h"
 
 namespace pushid {
 
@@ -23,15 +21,5 @@ nlohmann::ordered_json SettingsJson(const FitOptions& options);
 FitOptions OptionsFrom(const nlohmann::ordered_json& json);
 // known: every parameter there is; those that the JSON does not name stay.
 ParameterTable TableFrom(const nlohmann::ordered_json& json, const ParameterTable& known);
-
-// The value of an option by its name in option_names.h.
-template <typename E>
-E EnumFrom(const nlohmann::ordered_json& json, const char* key) {
-  E value{};
-  if (MaybeError error = ParseName(key, json.at(key).get<std::string>(), &value)) {
-    throw std::runtime_error(error->ToString());
-  }
-  return value;
-}
 
 }  // namespace pushid

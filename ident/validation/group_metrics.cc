@@ -8,7 +8,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
-#include "ident/model/json_pieces.h"
+#include "ident/parameters/json_archive.h"
 #include "models/restoration/cvae_features.h"
 #include "models/restoration/motion_words.h"
 

@@ -6,7 +6,7 @@
 
 #include "ident/figures/text_table.h"
 #include "ident/fit/fit.h"
-#include "ident/model/json_pieces.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/prediction/evaluation.h"
 
 namespace pushid {

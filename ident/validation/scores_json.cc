@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "ident/model/json_pieces.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
 #include "ident/validation/steps_report.h"
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "ident/model/recording_effect_json.h"
+#include "ident/model/model_fields.h"
 #include "tests/ident/effect_samples.h"
 
 namespace pushid {
@@ -120,14 +120,14 @@ TEST(RecordingEffect, SurvivesAFile) {
   const auto effect =
       FitRecordingEffect(model, PlantEffects(model, MakePendulums(study), {0.4, 0.1, 7}));
   ASSERT_TRUE(effect.has_value());
-  const auto json = ToJson(*effect);
-  EXPECT_EQ(ToJson(RecordingEffectFromJson(json)), json);
+  const auto json = JsonOf(*effect);
+  EXPECT_EQ(JsonOf(FromJson<RecordingEffect>(json)), json);
   auto damaged = json;
   damaged["error_scale_m"] = 0.0;
-  EXPECT_THROW(RecordingEffectFromJson(damaged), std::runtime_error);
+  EXPECT_THROW(FromJson<RecordingEffect>(damaged), std::runtime_error);
   damaged = json;
   damaged.erase("spread");
-  EXPECT_ANY_THROW(RecordingEffectFromJson(damaged));
+  EXPECT_ANY_THROW(FromJson<RecordingEffect>(damaged));
 }
 
 }  // namespace

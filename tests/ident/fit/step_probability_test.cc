@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/random.h"
-#include "ident/model/step_probability_json.h"
+#include "ident/model/model_fields.h"
 
 namespace pushid {
 namespace {
@@ -67,14 +67,14 @@ TEST(StepProbability, IsFiniteWhereAllDoTheSame) {
 TEST(StepProbability, SurvivesAFile) {
   const auto fitted = FitStepProbability(Drawn(-0.3, 20.0, 100, 3));
   ASSERT_TRUE(fitted.has_value());
-  const StepProbability back = StepProbabilityFromJson(ToJson(*fitted));
+  const StepProbability back = FromJson<StepProbability>(JsonOf(*fitted));
   EXPECT_EQ(back.coefficients, fitted->coefficients);
   EXPECT_EQ(back.covariance, fitted->covariance);
   EXPECT_EQ(back.tracks, 100);
   EXPECT_EQ(back.clusters, 12);
-  auto damaged = ToJson(*fitted);
+  auto damaged = JsonOf(*fitted);
   damaged["stepped"] = 101;
-  EXPECT_THROW(StepProbabilityFromJson(damaged), std::runtime_error);
+  EXPECT_THROW(FromJson<StepProbability>(damaged), std::runtime_error);
 }
 
 // At rest the margin is the support in front; a lean forwards moves it by the hip's way.

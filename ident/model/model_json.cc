@@ -1,0 +1,276 @@
+// ident: a fitted model to JSON and back.
+#include "ident/model/model_json.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "datasets/files/json_file.h"
+#include "ident/model/confidence_fields.h"
+#include "ident/model/model_fields.h"
+#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/network_json.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
+  Json values = Json::object();
+  for (const ParameterSpec& spec : table.specs) values[spec.name] = set[spec.id];
+  return values;
+}
+
+Json EnsembleJson(const FitResult& fit) {
+  Json members = Json::array();
+  for (const EnsembleMember& member : fit.others) {
+    members.push_back({{"values", ValuesJson(fit.options.table, member.parameters)},
+                       {"self_network", ToJson(*member.network)}});
+  }
+  return members;
+}
+
+// The file from top to bottom. Entries that are only written are read by ModelReader first: the
+// others are of a model whose options and parameters are known.
+template <class Archive>
+void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
+  FitResult& fit = model.fit;
+  Provenance& from = model.provenance;
+  const ModelOptions& options = fit.options.model;
+  a("version", from.version);
+  a.Written("model", [&] { return OptionsJson(fit.options); });
+  a("parameters", fit.estimates);
+  a("derived", fit.derived);
+  a("nuisance", fit.nuisance);
+  a("subjects", fit.subjects);
+  a("settings", fit.settings);
+  a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
+  a("behaviour", fit.behaviour);
+  a("uncertainty", fit.uncertainty);
+  if (a.Has("diagnostics")) {
+    a.Group("diagnostics", [&](auto& g) {
+      Fields(g, fit.diagnostics);
+      g("advice", model.advice);
+    });
+  }
+  a("warnings", fit.warnings);
+  a.Group("fit", [&](auto& g) {
+    g("converged", fit.converged);
+    g("cost", fit.cost);
+    g("message", fit.message);
+    g("best_start", fit.best_start);
+    g("starts", fit.starts);
+  });
+  a.Written("table", [&] { return TableJson(fit.options.table); });
+  a.Group("data", [&](auto& g) {
+    g("manifest_hash", from.manifest_hash);
+    g("setting", from.setting);
+    g("recordings", fit.recordings);
+  });
+  a("configuration", from.configuration);
+  if (a.Has("changed_flags")) a("changed_flags", from.changed_flags);
+  a.Group("run", [&](auto& g) {
+    g.Written("date", [&] { return run.date; });
+    g.Written("host", [&] { return run.host; });
+    g("manifest", from.manifest);
+    g.Written("model_out", [&] { return run.model_path; });
+    g("solve_seconds", fit.solve_seconds);
+    g.Written("total_seconds", [&] { return run.total_seconds; });
+    g.Written("num_threads", [&] { return run.num_threads; });
+  });
+  a.Optional("push_range", fit.push_range);
+  a.Optional("step_probability", fit.step_probability);
+  a.Optional("likelihood", fit.likelihood);
+  a.Optional("recording_effect", fit.recording_effect);
+  if (options.learned != nullptr) {
+    a.Written("self_network", [&] { return ToJson(*options.learned); });
+  }
+  a.Optional("network_takeover", fit.takeover);
+  a.Optional("contact_takeover", fit.contact_takeover);
+  if (!fit.others.empty()) a.Written("ensemble", [&] { return EnsembleJson(fit); });
+  if (const auto laws = LawNames(options); !laws.empty()) {
+    a.Written("force_laws", [&] { return laws; });
+  }
+  if (options.interaction_network != nullptr) {
+    a.Written("interaction_network", [&] { return ToJson(*options.interaction_network); });
+  }
+  if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
+  a.Optional("bootstrap", model.bootstrap);
+  a.Optional("push_check", model.push_check);
+  a.Optional("prior_check", model.prior_check);
+  a.Optional("horizon_check", model.horizon_check);
+}
+
+// What the types alone do not ensure and readers of a result rely on.
+void CheckConsistent(const FitResult& result) {
+  if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
+    throw std::runtime_error("best_start is not one of the starts");
+  }
+  const Uncertainty& u = result.uncertainty;
+  const auto fits = [&u](const Eigen::MatrixXd& matrix) {
+    const int size = static_cast<int>(u.estimates.size());
+    return matrix.rows() == size && matrix.cols() == size;
+  };
+  if (!fits(u.covariance) || !fits(u.correlation)) {
+    throw std::runtime_error("sizes of covariance, correlation and parameters do not match");
+  }
+  if (!(result.parameters[kTailTime] > 0.0)) {
+    throw std::runtime_error("tail_time must be positive");
+  }
+  const auto check = [&result](const std::string& unit, const auto& pooled) {
+    for (const auto& [name, estimate] : pooled) {
+      if (result.options.table.Find(name) == nullptr) {
+        throw std::runtime_error(unit + " has an unknown parameter '" + name + "'");
+      }
+    }
+  };
+  for (const auto& [id, subject] : result.subjects) check("subject " + id, subject.pooled);
+  for (const auto& [setting, pooled] : result.settings) check("setting " + setting, pooled);
+}
+
+// Reads a model part by part, and knows which one it is at.
+class ModelReader {
+ public:
+  explicit ModelReader(const Json& json) : json_(json), reader_(json) {}
+
+  // Errors: a law that is not here. Everything else that is wrong is thrown, and part() says where.
+  MaybeError Read(const ForceLaws& laws) {
+    if (MaybeError error = ReadOptions(laws)) return error;
+    ReadLearned();
+    ReadValues();
+    ModelFields(reader_, model_, RunInfo{});
+    Uncertainty& u = result_.uncertainty;
+    for (const Estimate& e : result_.estimates) {
+      if (e.status != EstimateStatus::kFixed) u.estimates.push_back(e);
+    }
+    u.estimates.insert(u.estimates.end(), result_.nuisance.begin(), result_.nuisance.end());
+    CheckConsistent(result_);
+    return std::nullopt;
+  }
+
+  std::string part() const { return parameter_.empty() ? reader_.part() : "values/" + parameter_; }
+  FittedModel& model() { return model_; }
+
+ private:
+  const Json& At(const char* key) { return reader_.At(key); }
+
+  MaybeError ReadOptions(const ForceLaws& laws) {
+    ParameterTable known = BaseTable();
+    result_.options = OptionsFrom(At("model"));
+    if (json_.contains("force_laws")) {
+      const auto names = At("force_laws").get<std::vector<std::string>>();
+      if (MaybeError error = AddNamedLaws(names, laws, &result_.options.model, &known)) {
+        return error;
+      }
+    }
+    result_.options.table = TableFrom(At("table"), known);
+    return std::nullopt;
+  }
+
+  void ReadLearned() {
+    ModelOptions& options = result_.options.model;
+    if (json_.contains("self_network")) {
+      options.learned = LearnedFromJson(At("self_network"));
+      result_.options.hold_network = true;  // what is read is not fitted on
+    }
+    const std::string learned = At("model").at("self_force");
+    if (SelfForceText(result_.options.self_force, options.learned.get()) != learned) {
+      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+    }
+    const std::string interaction = At("model").at("interaction");
+    const auto named = ParseInteraction("interaction", interaction);
+    const PairShape pair = options.learned != nullptr ? options.learned->pair : PairShape{};
+    if (!named.ok() || named.value().pair.hidden != pair.hidden) {
+      throw std::runtime_error("interaction is " + interaction + ", which self_network is not");
+    }
+    if (json_.contains("interaction_network")) {
+      options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));
+    }
+  }
+
+  // A model written before there was such a parameter, which its table does not name then, has its
+  // nominal value: nothing it did used it.
+  ParameterSet<double> ValuesFrom(const Json& values) {
+    const Json& rows = json_.at("table");
+    ParameterSet<double> set{};
+    for (const ParameterSpec& spec : result_.options.table.specs) {
+      parameter_ = spec.name;
+      const bool known = std::any_of(rows.begin(), rows.end(), [&spec](const Json& row) {
+        return row.at("name") == spec.name;
+      });
+      set[spec.id] = known ? values.at(spec.name).get<double>() : spec.nominal;
+    }
+    parameter_.clear();
+    return set;
+  }
+
+  void ReadValues() {
+    result_.parameters = ValuesFrom(At("values"));
+    if (!json_.contains("ensemble")) return;
+    const auto& network = result_.options.model.learned;
+    for (const Json& one : At("ensemble")) {
+      result_.others.push_back(
+          {ValuesFrom(one.at("values")), LearnedFromJson(one.at("self_network"))});
+      if (network == nullptr ||
+          LearnedName(*result_.others.back().network) != LearnedName(*network)) {
+        throw std::runtime_error("a member's network is not that of self_network");
+      }
+    }
+  }
+
+  const Json& json_;
+  JsonReader reader_;
+  std::string parameter_;  // of `values`, while they are read
+  FittedModel model_;
+  FitResult& result_ = model_.fit;
+};
+
+// "[json.exception.type_error.302] type must be number, but is string": the end is for people.
+std::string Reason(const std::exception& exception) {
+  const std::string text = exception.what();
+  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
+
+}  // namespace
+
+nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
+  Json json = {{"format", "pushid model"}, {"format_version", kModelFormat}};
+  JsonWriter writer(&json);
+  ModelFields(writer, const_cast<FittedModel&>(model), run);
+  return json;
+}
+
+nlohmann::ordered_json ToJson(const Behaviour& behaviour) { return JsonOf(behaviour); }
+
+Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
+                                        const ForceLaws& laws) {
+  if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
+      !json.contains("format_version") || !json["format_version"].is_number()) {
+    return Error{"this is not a pushid model (pushid-fit --model_out writes one)", file};
+  }
+  if (json["format_version"] > kModelFormat) {
+    return Error{"written by a newer pushid; update pushid to read it", file};
+  }
+  ModelReader reader(json);
+  try {
+    if (MaybeError error = reader.Read(laws)) {
+      error->file = file;
+      return *error;
+    }
+    return std::move(reader.model());
+  } catch (const std::exception& exception) {
+    return Error{"incomplete or damaged model, at '" + reader.part() + "': " + Reason(exception) +
+                     "; use another copy or fit again",
+                 file};
+  }
+}
+
+Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws) {
+  Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  return FittedModelFromJson(document.value().content, path, laws);
+}
+
+}  // namespace pushid
