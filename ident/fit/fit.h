@@ -26,13 +26,9 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress = nullptr);
 
-// A fit that is not judged: for folds, whose models only predict. It prepares the options itself.
-// Errors: those of PrepareFit; no usable optimum.
-struct SolvedModel {
-  IdentifiedModel model;
-  Behaviour behaviour;
-};
-Result<SolvedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
-                               FitOptions options);
+// The same solve without a judgement: for folds, whose models only predict. It prepares the options
+// itself. Errors: those of PrepareFit; no usable optimum.
+Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
+                                   FitOptions options);
 
 }  // namespace pushid

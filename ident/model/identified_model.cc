@@ -34,6 +34,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.push_range = result.push_range;
   model.step_probability = result.step_probability;
   model.recording_effect = result.recording_effect;
+  model.behaviour = result.behaviour;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
     ParameterSet<double>& own = model.by_unit[unit] = result.parameters;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "ident/parameters/fit_options.h"
+#include "ident/problem/behaviour.h"
 #include "models/ipm.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
@@ -101,6 +102,7 @@ struct IdentifiedModel {
   std::optional<PushRange> push_range;                  // that it was fitted to
   std::optional<StepProbability> step_probability;      // of the people it was fitted to
   std::optional<RecordingEffect> recording_effect;      // for what first frames tell
+  Behaviour behaviour;                                  // whether its people settle
 
   // A unit the model does not know gets the shared values.
   const ParameterSet<double>& For(const std::string& unit) const {

@@ -187,9 +187,9 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
 
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
                                      const std::vector<int>& train, const FitOptions& options) {
-  Result<SolvedModel> solved = SolveModel(Picked(recordings, train), options);
-  if (!solved.ok()) return std::nullopt;
-  return std::move(solved.value().model);
+  Result<IdentifiedModel> model = SolveModel(Picked(recordings, train), options);
+  if (!model.ok()) return std::nullopt;
+  return std::move(model.value());
 }
 
 std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,

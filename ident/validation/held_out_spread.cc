@@ -70,10 +70,10 @@ HeldOutFutures CrossValidateFutures(const std::string& name,
   ForEachFold(
       recordings, folds, options, num_threads, progress,
       [&](int f, const std::vector<PendulumRecording>& training, const FitOptions& alone) {
-        const Result<SolvedModel> solved = SolveModel(training, alone);
+        const Result<IdentifiedModel> solved = SolveModel(training, alone);
         if (!solved.ok()) return;
         fitted[f] = 1;
-        const IdentifiedModel& model = solved.value().model;
+        const IdentifiedModel& model = solved.value();
         for (int i : folds[f].held_out) {
           const Result<Futures> futures =
               DrawFutures(model, recordings[i], draws, SeedOfRecording(seed, i));

@@ -22,9 +22,9 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
                                            const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
-  Result<SolvedModel> solved = SolveModel(training, options_);
+  Result<IdentifiedModel> solved = SolveModel(training, options_);
   if (solved.ok() && bands) {
-    IdentifiedModel& model = solved.value().model;
+    IdentifiedModel& model = solved.value();
     model.recording_effect = FitRecordingEffect(model, training);
     if (!model.recording_effect) solved = Error{"no recording stays in the model's domain"};
   }
@@ -39,7 +39,7 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
       prediction.scores.push_back(failed);
       continue;
     }
-    const IdentifiedModel& model = solved.value().model;
+    const IdentifiedModel& model = solved.value();
     prediction.scores.push_back(use_ == FirstFrames::kReanchored
                                     ? ScoreReanchored(model, recordings[i], observed)
                                     : ScoreModel(model, recordings[i], observed));

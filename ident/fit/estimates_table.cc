@@ -1,0 +1,135 @@
+// ident: rows of a fit's tables.
+#include "ident/fit/estimates_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "models/self_terms.h"
+
+namespace pushid {
+namespace {
+
+std::string Describe(const RolloutStatus& status) {
+  return std::string(status.quantity) + " of person " + std::to_string(status.person) +
+         " leaves the model's domain at frame " + std::to_string(status.frame);
+}
+
+// The pooled parameters of every unit: shared value and deviation together.
+std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitProblem& problem,
+                                                                    const FitPoint& point,
+                                                                    const Uncertainty& u) {
+  std::map<std::string, std::map<std::string, Estimate>> pooled;
+  const auto& fitted = problem.map().fitted;
+  int first = static_cast<int>(point.shared.size());
+  for (const auto& [unit, deviations] : point.unit) {
+    const ParameterSet<double> values = problem.Parameters(point, unit);
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].deviation < 0) continue;
+      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+      const int a = static_cast<int>(i), b = first + fitted[i].deviation;
+      const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
+      const double error = std::sqrt(std::max(0.0, variance));
+      Estimate e;
+      e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
+      e.standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
+      // No better known than the shared value and its own deviation.
+      const Estimate& worse =
+          u.estimates[i].shares.data < u.estimates[b].shares.data ? u.estimates[i] : u.estimates[b];
+      e.status = std::max(u.estimates[i].status, u.estimates[b].status);
+      e.shares = worse.shares;
+      e.shares.prior_pull = e.shares.settling_pull = 0.0;
+      const double quantile = StudentQuantile95(e.freedom);
+      e.name = spec.name;
+      e.unit = spec.unit;
+      e.value = values[spec.id];
+      const double center = ToFitted(spec.transform, e.value);
+      e.standard_error = error * TransformSlope(spec.transform, e.value);
+      e.lower95 = ToNatural(spec.transform, center - quantile * error);
+      e.upper95 = ToNatural(spec.transform, center + quantile * error);
+      pooled[unit][spec.name] = e;
+    }
+    first += static_cast<int>(deviations.size());
+  }
+  return pooled;
+}
+
+}  // namespace
+
+std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
+                                       const ParameterSet<double>& values,
+                                       const Uncertainty& uncertainty) {
+  std::vector<Estimate> rows;
+  const FitOptions& options = problem.options();
+  for (const ParameterSpec& spec : options.table.specs) {
+    const auto& fitted = problem.map().fitted;
+    const auto at = std::find_if(fitted.begin(), fitted.end(), [&spec](const FittedParameter& f) {
+      return f.parameter == spec.id;
+    });
+    if (at != fitted.end()) {
+      rows.push_back(uncertainty.estimates[static_cast<size_t>(at - fitted.begin())]);
+      continue;
+    }
+    // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
+    const bool convention = HeldByConvention(spec.id);
+    const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
+    const bool acts = Acts(spec.id, options.model) && (!zero || convention);
+    if (!acts) continue;
+    Estimate fixed;
+    fixed.name = spec.name;
+    fixed.unit = spec.unit;
+    fixed.value = fixed.lower95 = fixed.upper95 = values[spec.id];
+    fixed.status = EstimateStatus::kFixed;
+    rows.push_back(fixed);
+  }
+  return rows;
+}
+
+std::vector<Combination> TableOfCombinations(const FitProblem& problem, const FitPoint& point,
+                                             const Uncertainty& u) {
+  std::vector<Combination> derived;
+  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+    derived.push_back(Combine(problem, point, u, spec));
+  }
+  return derived;
+}
+
+void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result) {
+  for (const PendulumRecording& recording : problem.recordings()) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      result->subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
+    }
+  }
+  const auto pooled = PooledByUnit(problem, point, result->uncertainty);
+  if (HoldsForRecording(problem.options().pool_by)) {
+    result->settings = pooled;
+  } else {
+    for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
+  }
+}
+
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best) {
+  std::vector<FittedRecording> fitted;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    FittedRecording one;
+    one.id = recording.id;
+    one.content_hash = recording.content_hash;
+    one.frames = recording.num_frames();
+    one.people = recording.num_people();
+    fitted.push_back(one);
+  }
+  for (const FailedRollout& failed : best.failed) {
+    fitted[failed.recording].failure = Describe(failed.status);
+  }
+  FitPoint copy = best.to;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  for (const FitProblem::Built::Block& block : built.blocks) {
+    if (block.cluster < 0) continue;
+    double cost = 0.0;
+    built.problem->EvaluateResidualBlock(block.id, false, &cost, nullptr, nullptr);
+    fitted[block.cluster].cost = cost - built.OffsetOf(block.cluster);
+  }
+  return fitted;
+}
+
+}  // namespace pushid

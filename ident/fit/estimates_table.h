@@ -1,0 +1,27 @@
+// ident: the numbers of a solved fit as rows: parameters, combinations, units, recordings.
+#pragma once
+
+#include <vector>
+
+#include "ident/model/fitted_model.h"
+#include "ident/problem/fit_problem.h"
+
+namespace pushid {
+
+// Every free parameter, and every fixed one that acts.
+std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
+                                       const ParameterSet<double>& values,
+                                       const Uncertainty& uncertainty);
+
+// DerivedCombinations of the model, with errors.
+std::vector<Combination> TableOfCombinations(const FitProblem& problem, const FitPoint& point,
+                                             const Uncertainty& uncertainty);
+
+// Masses of the people, and the pooled parameters of every unit: shared value and deviation
+// together. The result's uncertainty must be known.
+void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* result);
+
+// Cost of every recording at the optimum, and where its rollout failed.
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best);
+
+}  // namespace pushid

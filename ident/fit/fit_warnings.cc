@@ -1,0 +1,103 @@
+// ident: warnings of a fit, in words.
+#include "ident/fit/fit_warnings.h"
+
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/problem/behaviour_text.h"
+#include "ident/uncertainty/few_clusters.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kPullToTell = 0.5;  // standard errors
+
+void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
+  const ModelOptions& model = result.options.model;
+  const Verdict verdict = VerdictOf(result.behaviour, model);
+  if (verdict == Verdict::kSettles) return;
+  const bool slow = verdict == Verdict::kSlowToSettle;
+  // Holding it harder was tried, and dropped.
+  const bool tried = slow && result.uncertainty.settling.dropped();
+  warnings->push_back(
+      VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
+      (slow ? "" : "; such a fit may score well but cannot be trusted beyond the data") +
+      (tried ? "" : " (" + VerdictRemedy(verdict, model) + ")"));
+}
+
+void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
+  const std::string unit = u.clustered_by == ClusterBy::kSubject ? "person" : "recording";
+  if (!u.clustered) {
+    warnings->push_back("a single " + unit + ": errors cannot be clustered and are too small");
+  } else if (u.num_clusters < kFewClusters) {
+    const std::string many = unit == "person" ? "people" : "recordings";
+    warnings->push_back("the independent units are " + std::to_string(u.num_clusters) + " " + many +
+                        ", fewer than ten: the standard errors are themselves uncertain");
+  }
+}
+
+// What the demand to settle did, if anything.
+void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::string>* warnings) {
+  const SettlingDemand& s = u.settling;
+  if (!s.binds) return;
+  const std::string wanted =
+      "without the settling constraint the model " +
+      (std::isfinite(s.free_seconds) ? "settles after " + Rounded(s.free_seconds, 2) + " s"
+                                     : std::string("does not settle within 10 s"));
+  if (s.unmet) {
+    warnings->push_back(wanted + ", and no fit that settles within " + Rounded(kWaitSeconds, 2) +
+                        " s was found: the constraint was dropped");
+    return;
+  }
+  if (s.contradicted) {
+    warnings->push_back(wanted + "; settling within " + Rounded(kWaitSeconds, 2) +
+                        " s contradicts the data (twice the log likelihood would fall by " +
+                        Rounded(s.rise, 2) + "), and the constraint was dropped");
+    return;
+  }
+  std::string moved;
+  for (size_t i = 0; i < shared; ++i) {
+    const Estimate& e = u.estimates[i];
+    const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
+    if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
+    moved +=
+        (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
+  }
+  warnings->push_back(
+      wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) + " s moved " +
+      (moved.empty() ? "no parameter by half a standard error" : moved + " standard errors"));
+}
+
+}  // namespace
+
+std::vector<std::string> FitWarnings(const FitProblem& problem, const FitResult& result) {
+  std::vector<std::string> warnings;
+  for (const FittedRecording& recording : result.recordings) {
+    if (!recording.failure.empty()) {
+      warnings.push_back("recording " + recording.id + ": " + recording.failure +
+                         "; only the frames before it were fitted");
+    }
+  }
+  if (!result.converged) warnings.push_back("the solver stopped before it converged");
+  AddVerdict(result, &warnings);
+  if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
+    warnings.push_back("pushed forwards by " + Rounded(d->impulse, 4) + " N s, the pushed person" +
+                       (d->people > 1 ? " of the line" : "") + " ends " +
+                       Rounded(-d->pushed_advance, 2) + " m behind the start (" +
+                       SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
+  }
+  AddClusterWarning(result.uncertainty, &warnings);
+  AddSettlingWarning(result.uncertainty, problem.map().fitted.size(), &warnings);
+  for (const Estimate& e : result.estimates) {
+    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
+  }
+  const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
+  if (has_tail && TailCannotAct(problem.recordings())) {
+    warnings.push_back(
+        "every push is external (measured completely): the push tail has no effect; set push_kind "
+        "to net in the manifest for pushes that were measured only in part");
+  }
+  return warnings;
+}
+
+}  // namespace pushid
