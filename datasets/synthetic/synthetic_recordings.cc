@@ -16,10 +16,17 @@ struct Subject {
   ParameterSet<double> parameters;
 };
 
+// A parameter for each of so many draws, or none: with another number of them every recording of a
+// known seed would change.
+constexpr int kSpreadDraws = 35;
+
+// The rod's lift and those behind it are not spread.
 ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Random* random) {
-  // The rod's lift and a user's own are not spread: more draws would change every recording of a
-  // known seed.
-  for (int i = 0; i < kRodLift; ++i) parameters[i] *= std::exp(sigma * random->Normal());
+  static_assert(kRodLift <= kSpreadDraws);
+  for (int i = 0; i < kSpreadDraws; ++i) {
+    const double factor = std::exp(sigma * random->Normal());
+    if (i < kRodLift) parameters[i] *= factor;
+  }
   return parameters;
 }
 

@@ -93,7 +93,7 @@ TEST_F(TrajectoryCsv, ColumnsAndValues) {
   std::string line;
   std::getline(file, line);
   const std::vector<std::string> header = Split(line);
-  ASSERT_EQ(header.size(), 47u);
+  ASSERT_EQ(header.size(), 43u);
   EXPECT_EQ(line.find("frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s"), 0u);
   EXPECT_EQ(header[15], "friction_x_N");
   EXPECT_EQ(header.back(), "network_phi_Nm");
@@ -142,8 +142,8 @@ TEST_F(TrajectoryCsv, ARodThatMoves) {
   double shortest = body.rod_length;
   for (int t = 0; std::getline(file, line); ++t) {
     const std::vector<std::string> row = Split(line);
-    ASSERT_EQ(row.size(), 49u);
-    const double rod = std::stod(row[47]), height = std::stod(row[48]);
+    ASSERT_EQ(row.size(), 45u);
+    const double rod = std::stod(row[43]), height = std::stod(row[44]);
     const Vector4<double>& q = p.path.At(t, 0).q;
     EXPECT_NEAR(rod, body.rod_length + p.path.At(t, 0).rod, 1e-8);
     EXPECT_NEAR(height, body.cart_height + 0.6 * (body.rod_length - rod), 1e-8);
