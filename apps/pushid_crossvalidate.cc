@@ -24,7 +24,6 @@
 #include "ident/parameters/option_names.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/score_groups.h"
-#include "ident/problem/fold_file.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/held_out_spread.h"
 #include "ident/validation/predictors.h"

@@ -16,7 +16,7 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/parameter_glossary.h"
+#include "ident/parameters/parameter_table.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"

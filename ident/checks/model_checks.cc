@@ -11,8 +11,7 @@
 #include "ident/report/confidence_text.h"
 #include "ident/report/design_text.h"
 #include "ident/solver/solver.h"
-#include "ident/uncertainty/horizon_check.h"
-#include "ident/uncertainty/prior_check.h"
+#include "ident/uncertainty/refit_checks.h"
 
 namespace pushid {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
-#include "ident/uncertainty/few_clusters.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 namespace {

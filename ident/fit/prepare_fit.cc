@@ -9,7 +9,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/large_network_stage.h"
-#include "ident/uncertainty/median.h"
+#include "ident/uncertainty/statistics.h"
 #include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {

@@ -11,11 +11,10 @@
 #include "ident/model/identified_model.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
-#include "ident/solver/likelihood_score.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/profile.h"
-#include "ident/uncertainty/refit_table.h"
+#include "ident/uncertainty/refit_checks.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/takeover.h"
 
@@ -86,7 +85,7 @@ struct FittedModel {
   std::vector<Advice> advice;          // report/advice.h
   Provenance provenance;
   // Absent unless asked for: refits with other pushes (push_check.h), and of fewer frames
-  // (horizon_check.h).
+  // (refit_checks.h).
   std::optional<RefitTable> push_check{}, horizon_check{}, prior_check{};
 };
 

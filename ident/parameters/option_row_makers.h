@@ -71,5 +71,7 @@ FitOptionRow MayBeAbsent(FitOptionRow row);  // in older files
 
 // What the model is: the rows with rules of their own.
 std::vector<FitOptionRow> ModelOptionRows();
+// Edits of the parameter table.
+std::vector<FitOptionRow> TableOptionRows();
 
 }  // namespace pushid

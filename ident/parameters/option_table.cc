@@ -142,14 +142,6 @@ Row Rare(Row row) {
   return row;
 }
 
-Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
-  return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
-    TableEdits edits;
-    edits.*list = text;
-    return EditTable(edits, &o->table);
-  });
-}
-
 // How the recordings, the priors and the demands on the person weigh.
 std::vector<Row> WeightRows() {
   using O = FitOptions;
@@ -266,28 +258,6 @@ std::vector<Row> SolverRows() {
   };
 }
 
-// Which parameters are fitted.
-std::vector<Row> TableRows() {
-  return {
-      WordsRow("self_from", OptionStage::kOtherModel,
-               "a model whose self parameters (all but those between people) are used and held "
-               "fixed, such as a model of single people",
-               nullptr),
-      EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
-      EditRow("fix", &TableEdits::fix,
-              "parameters held fixed: name or name=value, comma-separated"),
-      EditRow("prior", &TableEdits::prior,
-              "priors: name:mean:sigma in the parameter's unit, comma-separated"),
-      Decided(WordsRow("pool", OptionStage::kModel,
-                       "parameters that may differ by unit, comma-separated, or all, or none; "
-                       "all,-mu: all but mu",
-                       [](const std::string& text, FitOptions* o) -> MaybeError {
-                         o->pool = text;
-                         return std::nullopt;
-                       })),
-  };
-}
-
 }  // namespace
 
 const std::vector<FitOptionRow>& FitOptionRows() {
@@ -302,7 +272,7 @@ const std::vector<FitOptionRow>& FitOptionRows() {
     add("model", ModelOptionRows());
     add("fit", WeightRows());
     add(kRarelyChanged, SolverRows());
-    add("model", TableRows());
+    add("model", TableOptionRows());
     return all;
   }();
   return rows;

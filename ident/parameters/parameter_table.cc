@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "models/parameters.h"
 
 namespace pushid {
@@ -71,6 +74,182 @@ double PoolingSigma(const ParameterSpec& spec) {
 bool AnyPooled(const ParameterTable& table) {
   return std::any_of(table.specs.begin(), table.specs.end(),
                      [](const ParameterSpec& spec) { return spec.free && spec.pooled; });
+}
+
+TextTable ParameterGlossary() {
+  TextTable table(
+      {"name", "symbol", "unit", "without preset", "bounds", "meaning", "when to free it"},
+      {true, true, true, false, true, true, true});
+  for (const ParameterFacts& facts : AllParameterFacts()) {
+    table.Add({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),
+               Rounded(facts.nominal), Rounded(facts.lower) + " to " + Rounded(facts.upper),
+               std::string(facts.meaning), std::string(facts.when_to_free)});
+  }
+  return table;
+}
+
+std::string ParameterGlossaryMarkdown() {
+  const TextTable table = ParameterGlossary();
+  std::string text;
+  for (size_t i = 0; i < table.rows().size(); ++i) {
+    for (const std::string& cell : table.rows()[i]) text += "| " + cell + " ";
+    text += "|\n";
+    if (i > 0) continue;
+    for (size_t column = 0; column < table.rows()[0].size(); ++column) {
+      text += table.IsWords(column) ? "|---" : "|--:";
+    }
+    text += "|\n";
+  }
+  return text;
+}
+
+namespace {
+
+std::vector<std::string> NonEmptyParts(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::stringstream stream(text);
+  for (std::string part; std::getline(stream, part, separator);) {
+    if (!part.empty()) parts.push_back(part);
+  }
+  return parts;
+}
+
+bool ParseNumber(const std::string& text, double* value) {
+  char* end = nullptr;
+  *value = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0' && std::isfinite(*value);
+}
+
+Error UnknownName(const std::string& name, const std::string& flag, const ParameterTable& table) {
+  std::string known;
+  std::vector<std::string> names;
+  for (const ParameterSpec& spec : table.specs) {
+    known += (known.empty() ? "" : ", ") + spec.name;
+    names.push_back(spec.name);
+  }
+  return Error{flag + " names '" + name + "', which is not a parameter" + MeantText(name, names) +
+               "; there are " + known};
+}
+
+// "name" or "name=value": has_value says which.
+struct Item {
+  std::string name;
+  bool has_value = false;
+  double value = 0.0;
+};
+Result<Item> ParseItem(const std::string& text, const std::string& flag) {
+  const size_t equals = text.find('=');
+  Item item{text.substr(0, equals)};
+  if (equals == std::string::npos) return item;
+  item.has_value = true;
+  if (!ParseNumber(text.substr(equals + 1), &item.value)) {
+    return Error{flag + ": '" + text + "' has no number after '='"};
+  }
+  return item;
+}
+
+MaybeError CheckInBounds(const ParameterSpec& spec, double value, const std::string& flag) {
+  if (value >= spec.lower && value <= spec.upper) return std::nullopt;
+  std::ostringstream text;
+  text << flag << ": " << spec.name << " = " << value << " lies outside its bounds [" << spec.lower
+       << ", " << spec.upper << "] " << spec.unit;
+  return Error{text.str()};
+}
+
+MaybeError Assign(const std::string& list, const std::string& flag, std::optional<bool> make_free,
+                  bool value_needed, ParameterTable* table) {
+  for (const std::string& text : NonEmptyParts(list, ',')) {
+    const Result<Item> item = ParseItem(text, flag);
+    if (!item.ok()) return item.error();
+    ParameterSpec* spec = table->Find(item.value().name);
+    if (spec == nullptr) return UnknownName(item.value().name, flag, *table);
+    if (value_needed && !item.value().has_value) {
+      return Error{flag + ": '" + text + "' needs a value, as in " + text + "=1"};
+    }
+    if (item.value().has_value) {
+      // A fixed parameter may sit on zero, where a log scale has no place for a free one; not
+      // those that divide: the tail's time, and those of feet that stand.
+      const bool free_after = make_free.value_or(spec->free);
+      const bool may_be_zero =
+          !free_after && spec->transform == Transform::kLog && spec->id != kTailTime &&
+          !(spec->id >= kSupportFront && spec->id <= kStaticFriction && spec->id != kStepGain);
+      if (!may_be_zero || item.value().value != 0.0) {
+        if (MaybeError error = CheckInBounds(*spec, item.value().value, flag)) return error;
+      }
+      spec->nominal = item.value().value;
+    }
+    if (make_free.has_value()) spec->free = *make_free;
+  }
+  return std::nullopt;
+}
+
+MaybeError AddPriors(const std::string& list, ParameterTable* table) {
+  for (const std::string& text : NonEmptyParts(list, ',')) {
+    const std::vector<std::string> parts = NonEmptyParts(text, ':');
+    Prior prior{};
+    if (parts.size() != 3 || !ParseNumber(parts[1], &prior.mean) ||
+        !ParseNumber(parts[2], &prior.sigma) || prior.sigma <= 0.0) {
+      return Error{"--prior: '" + text +
+                   "' is not name:mean:sigma with sigma > 0, as in mu:100:30"};
+    }
+    ParameterSpec* spec = table->Find(parts[0]);
+    if (spec == nullptr) return UnknownName(parts[0], "--prior", *table);
+    if (MaybeError error = CheckInBounds(*spec, prior.mean, "--prior")) return error;
+    spec->prior = prior;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag) {
+  std::vector<NamedValue> values;
+  for (const std::string& part : NonEmptyParts(text, ',')) {
+    const Result<Item> item = ParseItem(part, flag);
+    if (!item.ok()) return item.error();
+    if (!item.value().has_value) {
+      return Error{flag + ": '" + part + "' is not name=value"};
+    }
+    values.push_back({item.value().name, item.value().value});
+  }
+  return values;
+}
+
+bool PoolsAllOrNone(const std::string& pool) {
+  return pool == "none" || pool.substr(0, pool.find(',')) == "all";
+}
+
+MaybeError EditTable(const TableEdits& edits, ParameterTable* table) {
+  if (MaybeError error = Assign(edits.set, "--set", std::nullopt, true, table)) return error;
+  if (MaybeError error = Assign(edits.free, "--free", true, false, table)) return error;
+  if (MaybeError error = Assign(edits.fix, "--fix", false, false, table)) return error;
+  if (MaybeError error = AddPriors(edits.prior, table)) return error;
+  const auto may_differ = [&edits](const ParameterSpec& spec) {
+    return HoldsForRecording(edits.pool_by) || !IsPairParameter(spec.id);
+  };
+  for (const std::string& entry : NonEmptyParts(edits.pool, ',')) {
+    if (entry == "none") continue;
+    const bool left_out = entry[0] == '-';
+    const std::string name = entry.substr(left_out ? 1 : 0);
+    if (name == "all") {
+      for (ParameterSpec& spec : table->specs) spec.pooled = spec.free && may_differ(spec);
+      continue;
+    }
+    ParameterSpec* spec = table->Find(name);
+    if (spec == nullptr) return UnknownName(name, "--pool", *table);
+    if (left_out) {
+      spec->pooled = false;
+      continue;
+    }
+    if (!spec->free) return Error{"--pool names " + name + ", which is fixed; free it first"};
+    if (!may_differ(*spec)) {
+      return Error{"--pool names " + spec->name +
+                   ", which two people share: it may differ by setting (--pool_by=setting), not by "
+                   "subject"};
+    }
+    spec->pooled = true;
+  }
+  return std::nullopt;
 }
 
 }  // namespace pushid

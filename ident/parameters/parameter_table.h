@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/figures/text_table.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -92,5 +93,14 @@ struct NamedValue {
   double value;
 };
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag);
+
+// Every parameter in words, from its row (models/model_rows.h).
+
+// Name, symbol (in the equation that heads the file of its term), unit, value where no preset sets
+// one, bounds, meaning, and when to free it; a row each.
+TextTable ParameterGlossary();
+
+// The same as a table in Markdown.
+std::string ParameterGlossaryMarkdown();
 
 }  // namespace pushid

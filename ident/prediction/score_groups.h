@@ -6,7 +6,7 @@
 // the pushed people, otherwise the recordings; within one person they are recordings, which says
 // nothing about anybody else. With G clusters and scores of weights w that sum to 1,
 //   error = sqrt(G / (G - 1) * sum over clusters of (sum of w (score - mean))^2)
-// with Student's t of G - 1 degrees of freedom behind it (CR1; clustered_covariance.h has the
+// with Student's t of G - 1 degrees of freedom behind it (CR1; clusters.h has the
 // fit's).
 #pragma once
 

@@ -39,4 +39,16 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
 // The indices below `total` that are not held out, ascending.
 std::vector<int> Others(const std::vector<int>& held_out, int total);
 
+// Folds that a file gives, such as a published split or quarters of the recordings.
+//
+//   {"folds": [{"name": "1", "held_out": ["single_X05_00", ...]}, ...]}
+//
+// Each fold is fitted to all recordings that it does not hold out; the same recording may be held
+// out by several folds, or by none.
+
+// Errors: those of ReadJsonDocument; at its place (file:line) what is no fold, a name given twice,
+// a recording that is not there, and a fold that holds out nothing or everything.
+Result<std::vector<Fold>> ReadFolds(const std::string& path,
+                                    const std::vector<PendulumRecording>& recordings);
+
 }  // namespace pushid

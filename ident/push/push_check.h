@@ -9,7 +9,7 @@
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/fitted_model.h"
-#include "ident/uncertainty/refit_table.h"
+#include "ident/uncertainty/refit_checks.h"
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/push/push_check.h"
-#include "ident/uncertainty/horizon_check.h"
+#include "ident/uncertainty/refit_checks.h"
 
 namespace pushid {
 namespace {

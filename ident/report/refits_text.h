@@ -4,7 +4,7 @@
 #include <string>
 
 #include "ident/figures/text_table.h"
-#include "ident/uncertainty/refit_table.h"
+#include "ident/uncertainty/refit_checks.h"
 
 namespace pushid {
 

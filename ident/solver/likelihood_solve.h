@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "ident/solver/likelihood_score.h"
+#include "ident/solver/solution.h"
 #include "ident/solver/solver.h"
 
 namespace pushid {

@@ -1,6 +1,9 @@
-// ident: what a solve went through, start by start, and where it ended.
+// ident: what a solve went through, start by start, where it ended, and how well a likelihood
+// explains the recordings there.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -49,5 +52,18 @@ struct Solution {
 
 // phase: "start 2/8, horizon 32"; called after every accepted iteration.
 using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
+
+// How well a fit by a likelihood explains the recordings, to compare with other models by the same
+// likelihood of the same recordings.
+struct LikelihoodScore {
+  double deviance = 0.0;  // -2 log likelihood
+  int measured = 0;       // numbers
+  int parameters = 0;     // free ones, units' deviations not counted
+
+  double Aic() const { return deviance + 2.0 * parameters; }
+  double Bic() const {
+    return deviance + std::log(static_cast<double>(std::max(1, measured))) * parameters;
+  }
+};
 
 }  // namespace pushid

@@ -8,7 +8,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
-#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_problem.h"
 
 namespace pushid {

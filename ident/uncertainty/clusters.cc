@@ -1,9 +1,11 @@
 // ident: people and recordings as clusters.
 #include "ident/uncertainty/clusters.h"
 
+#include <algorithm>
 #include <map>
 
 #include "datasets/files/number_text.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 
@@ -57,6 +59,115 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
   }
   if (clusters.two_way) rows.second = ClusterByRecording(score);
   return rows;
+}
+
+namespace {
+
+constexpr double kLeastKept = 0.01;
+constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
+
+Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
+  return columns.colwise() - columns.rowwise().mean().eval();
+}
+
+// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
+// that one cluster alone determines is counted as ten times what its score says, no more: with
+// second derivatives in H leverages may pass one.
+Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
+
+// F of J base, with F'F that of all its rows.
+Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
+  std::vector<Eigen::Index> used;
+  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
+    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
+  }
+  if (used.empty()) return Eigen::MatrixXd(0, base.cols());
+  const Eigen::MatrixXd packed = jacobian(Eigen::all, used), own = base(used, Eigen::all);
+  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
+  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.vectors.transpose() * own);
+}
+
+// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
+struct Leverage {
+  Eigen::ArrayXd m;
+  Eigen::MatrixXd v;  // a column each
+
+  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
+    if (w.rows() == 0) return;
+    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.values.array();
+    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
+    m = values.tail(some);
+    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
+  }
+};
+
+}  // namespace
+
+RowClusters ClusterByRecording(const JacobianBlocks& score) {
+  RowClusters clusters;
+  for (int cluster : score.cluster_of_row) {
+    clusters.of_row.push_back(std::max(-1, cluster));
+    clusters.count = std::max(clusters.count, cluster + 1);
+  }
+  return clusters;
+}
+
+ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clusters,
+                           const Eigen::MatrixXd& base) {
+  std::vector<std::vector<int>> rows(clusters.count);
+  for (int row = 0; row < static_cast<int>(clusters.of_row.size()); ++row) {
+    if (clusters.of_row[row] >= 0) rows[clusters.of_row[row]].push_back(row);
+  }
+  ClusterScores gathered;
+  gathered.scores.resize(base.cols(), 0);
+  for (const std::vector<int>& of_cluster : rows) {
+    if (of_cluster.empty()) continue;
+    const bool robust = score.robust_jacobian.size() > 0;
+    const Eigen::MatrixXd own =
+        (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all);
+    gathered.factors.push_back(FewRows(own, base));
+    gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
+    gathered.scores.rightCols(1) =
+        base.transpose() *
+        (score.jacobian(of_cluster, Eigen::all).transpose() * score.residuals(of_cluster));
+  }
+  return gathered;
+}
+
+ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
+                        const Eigen::MatrixXd& coefficients) {
+  const Eigen::MatrixXd root = DecomposeSymmetric(hessian).InverseSqrt();
+  const Eigen::MatrixXd b = root * coefficients.transpose();  // H^-1/2 c
+  const Eigen::Index groups = scores.scores.cols(), size = b.cols();
+  Eigen::MatrixXd moves(hessian.rows(), groups);
+  Eigen::MatrixXd own(size, groups);  // |p_g|^2
+  std::vector<Eigen::MatrixXd> u;     // J_g' p_g over H^1/2, a column a coefficient
+  for (Eigen::Index g = 0; g < groups; ++g) {
+    const auto [m, v] = Leverage(scores.factors[static_cast<size_t>(g)] * root);
+    const Eigen::ArrayXd kept = Kept(m);
+    const Eigen::VectorXd score = root * scores.scores.col(g);
+    const Eigen::ArrayXd along_v = (v.transpose() * score).array();
+    moves.col(g) = root * (score + v * (along_v * (kept.rsqrt() - 1.0)).matrix());
+    const Eigen::MatrixXd along = v.transpose() * b;
+    own.col(g) = along.cwiseAbs2().transpose() * (m / kept).matrix();
+    u.push_back((m / kept.sqrt()).matrix().asDiagonal() * along);
+    u.back() = v * u.back();
+  }
+  ClusteredCovariance result;
+  const Eigen::MatrixXd centred = Centred(moves);
+  result.covariance = centred * centred.transpose();
+  result.freedom.resize(size);
+  for (Eigen::Index c = 0; c < size; ++c) {
+    Eigen::MatrixXd at(hessian.rows(), groups);
+    for (Eigen::Index g = 0; g < groups; ++g) at.col(g) = u[static_cast<size_t>(g)].col(c);
+    Eigen::MatrixXd w = -at.transpose() * at;
+    w.diagonal() += own.row(c).transpose();
+    const double squares = w.squaredNorm();
+    result.freedom[c] = squares > 0.0 ? std::max(1.0, w.trace() * w.trace() / squares) : 1.0;
+  }
+  return result;
 }
 
 }  // namespace pushid

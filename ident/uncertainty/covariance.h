@@ -4,7 +4,7 @@
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
 // it was computed, jacobian_blocks.h):
 //   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
-//   clustered  CR2 over clusters of rows (clustered_covariance.h). Where rows are clustered two
+//   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two
 //   ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
 //              scatter is added, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what a
@@ -21,7 +21,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/uncertainty/clustered_covariance.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 
@@ -55,13 +55,6 @@ struct Covariance {
   // so that they can be compared.
   Eigen::MatrixXd by_data, by_prior, by_settling, by_pooling, inverse_of_parts;
   Eigen::VectorXd prior_gradient, settling_gradient;
-};
-
-// How the rows of data are clustered: one way, or two.
-struct Clustering {
-  RowClusters first, second;
-  int pooled_units = 0;         // whose deviations are draws
-  bool priors_scatter = false;  // centres of priors are draws too, by their own width
 };
 
 // unit: the size of one step in each column, for judging what counts as null; 0 holds a column.

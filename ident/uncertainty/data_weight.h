@@ -14,7 +14,7 @@
 //
 //   lambda = tr(H^-1 V_s) / tr(H^-1 H_data),   V_s = sum over recordings g of A_g s_g (A_g s_g)'
 //
-// with A_g s_g the leverage-adjusted scores of CR2 (clustered_covariance.h). Data rows are divided
+// with A_g s_g the leverage-adjusted scores of CR2 (clusters.h). Data rows are divided
 // by sqrt(lambda): then a frame counts as `weight` of an independent one. One factor for all leaves
 // an unpenalized optimum where it was, gives priors their true share, and lets exact data outweigh
 // any prior. Where sigmas are estimated no frame counts as more than one. It assumes that

@@ -6,7 +6,7 @@
 
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/uncertainty/profile_plan.h"
+#include "ident/uncertainty/profile_search.h"
 #include "residuals/cost_functions/prior_residual.h"
 
 namespace pushid {

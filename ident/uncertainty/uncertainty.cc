@@ -8,8 +8,8 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
-#include "ident/uncertainty/held_directions.h"
-#include "ident/uncertainty/null_directions.h"
+#include "ident/uncertainty/directions.h"
+#include "ident/uncertainty/fitted_columns.h"
 #include "models/decompositions.h"
 #include "models/self_terms.h"
 
@@ -21,68 +21,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Eigen::Index kMostColumnsWithCurvature = 60;
 constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
 
-// What is known of each fitted number besides its estimate.
-struct Column {
-  std::string name, unit;
-  Transform transform = Transform::kIdentity;
-  double scale = 1.0;   // typical size, natural unit
-  double fitted = 0.0;  // value on the fitted scale
-  double natural = 0.0;
-  bool at_bound = false;
-};
-
-std::vector<Column> Columns(const FitProblem& problem, const FitPoint& point) {
-  std::vector<Column> columns;
-  const ParameterTable& table = problem.options().table;
-  const auto& fitted = problem.map().fitted;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    const ParameterSpec& spec = table[fitted[i].parameter];
-    Column c{spec.name, spec.unit, spec.transform, spec.scale, point.shared[i], 0.0, false};
-    c.natural = ToNatural(spec.transform, c.fitted);
-    const double lower = ToFitted(spec.transform, spec.lower);
-    const double upper = ToFitted(spec.transform, spec.upper);
-    const double margin = 1e-6 * (upper - lower);
-    c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
-    columns.push_back(c);
-  }
-  for (const auto& [unit, values] : point.unit) {
-    for (const FittedParameter& f : fitted) {
-      if (f.deviation < 0) continue;
-      const ParameterSpec& spec = table[f.parameter];
-      const bool plain = f.transform == Transform::kIdentity;
-      Column c{spec.name + "[" + unit + "] deviation", plain ? spec.unit : "1"};
-      c.scale = plain ? spec.scale : 1.0;
-      c.fitted = c.natural = values[f.deviation];
-      columns.push_back(c);
-    }
-  }
-  static const char* const kVelocityNames[] = {"xd", "yd", "thetad", "phid"};
-  for (const auto& [recording, values] : point.velocity) {
-    for (size_t k = 0; k < values.size(); ++k) {
-      Column c{"initial " + std::string(kVelocityNames[k % 4]) + "[" +
-                   problem.recordings()[recording].id +
-                   (values.size() > 4 ? ":" + std::to_string(k / 4) : "") + "]",
-               k % 4 < 2 ? "m/s" : "rad/s"};
-      c.scale = 0.1;
-      c.fitted = c.natural = values[k];
-      columns.push_back(c);
-    }
-  }
-  for (size_t i = 0; i < point.weights.size(); ++i) {
-    Column c{"network weight " + std::to_string(i), "1"};
-    c.fitted = c.natural = point.weights[i];
-    columns.push_back(c);
-  }
-  return columns;
-}
-
-// d fitted / d (natural / scale): the change of variables to physical units.
-double PhysicalUnit(const Column& c) { return c.scale / TransformSlope(c.transform, c.natural); }
-
 // Directions that the recordings say nothing about, whatever priors and settling simulations say: a
 // number that only its prior holds is not identified.
 Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd& scaled,
-                              const std::vector<Column>& columns) {
+                              const std::vector<FittedColumn>& columns) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
     const int cluster = score.cluster_of_row[row];
@@ -112,7 +54,7 @@ constexpr double kIdentifiedShare = 0.8;
 constexpr double kMostPull = 0.5;       // standard errors
 constexpr double kMostHalfWidth = 0.5;  // of the value
 
-EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
+EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
@@ -123,7 +65,7 @@ EstimateStatus Judge(const Column& c, const Estimate& e, bool touched) {
   return leads && (narrow || sign) ? EstimateStatus::kIdentified : EstimateStatus::kWeak;
 }
 
-Estimate MakeEstimate(const Column& c, double variance, double naive_variance, double freedom,
+Estimate MakeEstimate(const FittedColumn& c, double variance, double naive_variance, double freedom,
                       const Shares& shares, bool touched) {
   const double quantile = StudentQuantile95(freedom);
   Estimate e;
@@ -155,15 +97,6 @@ Eigen::MatrixXd Correlation(const Eigen::MatrixXd& covariance) {
     }
   }
   return correlation;
-}
-
-// To physical units; a parameter on its bound does not move.
-Eigen::VectorXd Units(const std::vector<Column>& columns) {
-  Eigen::VectorXd unit(columns.size());
-  for (size_t i = 0; i < columns.size(); ++i) {
-    unit[static_cast<Eigen::Index>(i)] = columns[i].at_bound ? 0.0 : PhysicalUnit(columns[i]);
-  }
-  return unit;
 }
 
 // Shares of every column, pulls on the fitted scale. What ties units to each other or a network's
@@ -209,7 +142,7 @@ Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit
 // Residuals, Jacobian and, unless there are too many columns, second derivatives.
 struct Evaluated {
   JacobianBlocks score;
-  std::vector<Column> columns;
+  std::vector<FittedColumn> columns;
   Eigen::VectorXd unit;
   Clusters clusters;
   Clustering clustering;
@@ -224,7 +157,7 @@ double CurvatureStep(const FitProblem& problem) {
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateJacobianBlocks(built, true), Columns(problem, point), {}, {}, {}};
+  Evaluated e{EvaluateJacobianBlocks(built, true), FittedColumns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), problem.options().cluster);
   e.clustering = ClusterRows(problem, e.clusters, e.score);
@@ -321,68 +254,9 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
   std::vector<bool> at_bound;
-  for (const Column& column : columns) at_bound.push_back(column.at_bound);
+  for (const FittedColumn& column : columns) at_bound.push_back(column.at_bound);
   u.held_directions = HeldDirections(problem, point, c, at_bound);
   return u;
-}
-
-Combination Combine(const FitProblem& problem, const FitPoint& point,
-                    const Uncertainty& uncertainty, const CombinationSpec& spec) {
-  const std::vector<Term>& terms = spec.terms;
-  const ParameterSet<double> values = problem.Parameters(point, "");
-  const auto& fitted = problem.map().fitted;
-  Combination result{spec.name, spec.unit};
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
-  for (const Term& term : terms) {
-    result.value += term.coefficient * values[term.parameter];
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      if (fitted[i].parameter != term.parameter) continue;
-      gradient[static_cast<Eigen::Index>(i)] +=
-          term.coefficient * TransformSlope(fitted[i].transform, values[term.parameter]);
-    }
-  }
-  // That of the term which is known least: a lower bound for the sum.
-  double freedom = kInfinity;
-  for (size_t i = 0; i < std::min(fitted.size(), uncertainty.estimates.size()); ++i) {
-    if (gradient[static_cast<Eigen::Index>(i)] == 0.0) continue;
-    freedom = std::min(freedom, uncertainty.estimates[i].freedom);
-  }
-  result.freedom = std::max(1.0, std::isfinite(freedom) ? freedom : uncertainty.freedom);
-  const double quantile = StudentQuantile95(result.freedom);
-  const double variance = gradient.dot(uncertainty.covariance * gradient);
-  result.standard_error = std::sqrt(std::max(0.0, variance));
-  result.lower95 = result.value - quantile * result.standard_error;
-  result.upper95 = result.value + quantile * result.standard_error;
-  if (terms.size() == 1) {
-    // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
-    // log.
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      if (fitted[i].parameter != terms[0].parameter) continue;
-      result.lower95 = terms[0].coefficient * uncertainty.estimates[i].lower95;
-      result.upper95 = terms[0].coefficient * uncertainty.estimates[i].upper95;
-    }
-  }
-  return result;
-}
-
-std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
-  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
-  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
-  const double by_mass = 1.0 / kReferenceMass;
-  std::vector<CombinationSpec> combinations;
-  const auto cart = [&](const char* over, const char* unit, double factor) {
-    for (const CartDamping& c : CartDampings(model.friction)) {
-      combinations.push_back(
-          {std::string(c.name) + over, unit, {{c.friction, factor}, {c.gain, factor}}});
-    }
-  };
-  cart("", "N s/m", 1.0);
-  cart("/M", "1/s", by_mass);
-  combinations.insert(combinations.end(), {{"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
-                                           {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
-                                           {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
-                                           {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}});
-  return combinations;
 }
 
 }  // namespace pushid

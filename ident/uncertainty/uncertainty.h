@@ -21,6 +21,7 @@
 
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_point.h"
+#include "ident/uncertainty/statistics.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -116,7 +117,7 @@ struct Uncertainty {
   Eigen::MatrixXd moves;
   std::vector<int> left_out;
   std::vector<NullDirection> null_directions;
-  // Sentences of directions in which priors and demands decide (held_directions.h).
+  // Sentences of directions in which priors and demands decide (directions.h).
   std::vector<std::string> held_directions;
   SettlingDemand settling;
 };
@@ -155,10 +156,5 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 // What every result reports beside its parameters: c = mu + Kp, and gains per mass of the reference
 // person.
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
-
-// Two-sided 95 % quantile of Student's t.
-double StudentQuantile95(double degrees_of_freedom);
-// Probability that |T| exceeds |t|.
-double StudentTail(double t, double degrees_of_freedom);
 
 }  // namespace pushid

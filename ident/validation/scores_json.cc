@@ -5,7 +5,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
 #include "ident/validation/steps_report.h"

@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/uncertainty/median.h"
+#include "ident/uncertainty/statistics.h"
 
 namespace pushid {
 namespace {

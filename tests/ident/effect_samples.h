@@ -24,7 +24,7 @@ struct PlantedEffects {
   uint64_t seed = 1;
 };
 
-// The law of fit/error_process.h drawn step by step, on the scale of a recording: along the
+// The law of fit/recording_filter.h drawn step by step, on the scale of a recording: along the
 // push, across and upwards.
 inline std::vector<Vector3<double>> DrawnErrors(int frames, double dt, double scale,
                                                 Random* random) {

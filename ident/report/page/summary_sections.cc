@@ -12,7 +12,7 @@
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
-#include "ident/uncertainty/few_clusters.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/validation/scores_text.h"
 
 namespace pushid {

@@ -1,12 +1,11 @@
 // The filter of a rollout's error against the covariance that it stands for.
-#include "ident/fit/error_process.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "ident/fit/recording_filter.h"
 
 namespace pushid {
 namespace {

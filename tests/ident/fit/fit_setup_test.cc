@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "ident/fit/fit.h"
-#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/option_table.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "ident/parameters/fit_options_json.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 #include "tests/test_support.h"
 

@@ -1,10 +1,9 @@
 // The glossary of parameters: every row, in words and in Markdown.
-#include "ident/parameters/parameter_glossary.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "ident/parameters/parameter_table.h"
 #include "models/parameters.h"
 #include "tests/test_support.h"
 

@@ -1,8 +1,7 @@
 // Folds that a file gives, and files that give none.
-#include "ident/problem/fold_file.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/problem/folds.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 
-#include "ident/uncertainty/clustered_covariance.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -1,7 +1,5 @@
 // Estimates from fewer frames: what means something keeps its value, what stands for something that
 // the model leaves out drifts.
-#include "ident/uncertainty/horizon_check.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,7 +7,7 @@
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/report/refits_text.h"
-#include "ident/uncertainty/prior_check.h"
+#include "ident/uncertainty/refit_checks.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -1,5 +1,5 @@
-// ident: fits of fewer frames.
-#include "ident/uncertainty/horizon_check.h"
+// ident: what refits are compared with.
+#include "ident/uncertainty/refit_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,41 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/likelihood_solve.h"
+#include "ident/solver/solution.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
+
+std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& point) {
+  const ParameterSet<double> parameters = problem.Parameters(point, "");
+  std::vector<double> values;
+  for (const FittedParameter& f : problem.map().fitted) values.push_back(parameters[f.parameter]);
+  return values;
+}
+
+void Take(const FitProblem& problem, const SolveStart& refit, RefitRow* row) {
+  if (!refit.usable && refit.failed.empty()) {
+    row->failure = "the refit did not converge: " + refit.message;
+  } else if (!refit.failed.empty()) {
+    row->failure = "some rollouts leave the model's domain";
+  } else {
+    row->value = SharedValues(problem, refit.to);
+  }
+}
+
+RefitTable RefitTableOf(const FitProblem& problem, const FitPoint& estimate,
+                        const Uncertainty& uncertainty) {
+  RefitTable table;
+  table.value = SharedValues(problem, estimate);
+  for (size_t i = 0; i < table.value.size(); ++i) {
+    table.parameters.push_back(uncertainty.estimates[i].name);
+    table.units.push_back(uncertainty.estimates[i].unit);
+    table.standard_error.push_back(uncertainty.estimates[i].standard_error);
+  }
+  return table;
+}
+
 namespace {
 
 template <typename T>
@@ -114,6 +145,66 @@ RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
       },
       progress);
   return table;
+}
+
+namespace {
+
+constexpr double kDriftErrors = 2.0;
+
+}  // namespace
+
+std::vector<Drift> Drifts(const RefitTable& horizons) {
+  std::vector<Drift> drifts;
+  for (size_t p = 0; p < horizons.parameters.size(); ++p) {
+    Drift drift{p, 0, 0.0};
+    for (size_t r = 0; r < horizons.rows.size(); ++r) {
+      const RefitRow& row = horizons.rows[r];
+      if (row.value.empty()) continue;
+      const double error = std::max(row.standard_error[p], horizons.standard_error[p]);
+      const double move = std::abs(row.value[p] - horizons.value[p]) / error;
+      if (!std::isfinite(move) || move <= drift.in_errors) continue;
+      drift.row = r;
+      drift.in_errors = move;
+    }
+    if (drift.in_errors > kDriftErrors) drifts.push_back(drift);
+  }
+  return drifts;
+}
+
+namespace {
+
+RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const std::string& name,
+                   double factor) {
+  RefitRow row{"priors", name, {}, {}, "", 0};
+  FitOptions options = problem.options();
+  for (ParameterSpec& spec : options.table.specs) {
+    if (spec.prior) spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
+  }
+  const FitProblem other(problem.recordings(), options, problem.counts());
+  Take(other, Refit(other, estimate), &row);
+  return row;
+}
+
+}  // namespace
+
+RefitTable CheckPriors(const FitProblem& problem, const FitPoint& estimate,
+                       const Uncertainty& uncertainty) {
+  RefitTable table = RefitTableOf(problem, estimate, uncertainty);
+  const auto& fitted = problem.map().fitted;
+  const bool any = std::any_of(fitted.begin(), fitted.end(), [&problem](const FittedParameter& f) {
+    return problem.options().table[f.parameter].prior.has_value();
+  });
+  if (!any) return table;
+  table.rows = {RefitWith(problem, estimate, "halved", 0.5),
+                RefitWith(problem, estimate, "doubled", 2.0)};
+  return table;
+}
+
+bool PriorsLeaveInside(const RefitTable& check, size_t index, const Uncertainty& uncertainty) {
+  const Estimate& e = uncertainty.estimates[index];
+  return std::all_of(check.rows.begin(), check.rows.end(), [&](const RefitRow& row) {
+    return !row.value.empty() && e.lower95 <= row.value[index] && row.value[index] <= e.upper95;
+  });
 }
 
 }  // namespace pushid

@@ -1,8 +1,8 @@
 // ident: Student's t, from the regularized incomplete beta function that Eigen brings.
+#include "ident/uncertainty/statistics.h"
+
 #include <cmath>
 #include <unsupported/Eigen/SpecialFunctions>
-
-#include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 

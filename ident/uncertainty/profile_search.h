@@ -1,4 +1,5 @@
-// ident: which numbers of a fit have a profile, and which of them share one.
+// ident: which numbers of a fit have a profile, which of them share one, and the search for its
+// ends.
 #pragma once
 
 #include <cstddef>
