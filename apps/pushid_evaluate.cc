@@ -15,7 +15,7 @@
 #include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/peers/peer_files.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/score_groups.h"

@@ -9,7 +9,7 @@
 #include "apps/generate.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/random.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/generators/push_particles.h"
 #include "ident/problem/parallel.h"
 

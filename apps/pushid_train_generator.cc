@@ -10,7 +10,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_json.h"

@@ -12,7 +12,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_chain.h"
 #include "ident/training/training_run.h"

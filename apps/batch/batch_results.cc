@@ -7,7 +7,7 @@
 
 #include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
 #include "ident/validation/scores_json.h"
 

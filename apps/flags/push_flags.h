@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ident/push/push_estimation.h"
-#include "ident/push/sensor_push.h"
+#include "ident/push/push_from_sensor.h"
 
 namespace pushid {
 

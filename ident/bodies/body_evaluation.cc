@@ -2,7 +2,11 @@
 #include "ident/bodies/body_evaluation.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "ident/figures/text_table.h"
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 
@@ -96,6 +100,156 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
     for (const auto& [name, score] : scores) all[name].push_back(score);
   }
   return SummarizeAll(recordings, all);
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json MetricsJson(const BodyMetrics& value) {
+  Json json;
+  for (int m = 0; m < kNumBodyMetrics; ++m) json[kBodyMetrics[m].Key()] = value[m];
+  return json;
+}
+
+// Keys of `more` into `json`, objects into objects, lists entry by entry.
+void Merge(const Json& more, Json* json) {
+  if (more.is_object()) {
+    if (!json->is_object()) *json = Json::object();
+    for (const auto& [key, value] : more.items()) Merge(value, &(*json)[key]);
+  } else if (more.is_array() && json->is_array() && more.size() == json->size()) {
+    for (size_t i = 0; i < more.size(); ++i) Merge(more[i], &(*json)[i]);
+  } else {
+    *json = more;
+  }
+}
+
+std::string Cell(double value, double error = 0.0) {
+  char text[64];
+  if (error > 0.0) {
+    std::snprintf(text, sizeof text, "%.3f +- %.3f", value, error);
+  } else {
+    std::snprintf(text, sizeof text, "%.3f", value);
+  }
+  return text;
+}
+
+std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
+  std::vector<std::string> row = {name, std::to_string(mean.recordings)};
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    row.push_back(Cell(mean.value[m], kBodyMetrics[m].with_error ? mean.error[m] : 0.0));
+  }
+  return row;
+}
+
+TextTable NewTable(const std::string& first) {
+  std::vector<std::string> header = {first, "recordings"};
+  for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
+  return TextTable::OfNumbers(header);
+}
+
+std::string Spaced(std::string name) {
+  for (char& c : name) c = c == '_' ? ' ' : c;
+  return name;
+}
+
+// How groups move, where there are any.
+std::string GroupsText(const BodyEvaluation& evaluation) {
+  std::vector<GroupMetricsRow> rows;
+  for (const auto& [name, summary] : evaluation) {
+    if (summary.groups) rows.push_back({Spaced(name), &*summary.groups});
+  }
+  return rows.empty() ? "" : "\n" + GroupMetricsText(rows);
+}
+
+}  // namespace
+
+Json MeanJson(const BodyMean& mean) {
+  Json json = MetricsJson(mean.value);
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    if (kBodyMetrics[m].with_error) json[kBodyMetrics[m].ErrorKey()] = mean.error[m];
+  }
+  json["recordings"] = mean.recordings;
+  return json;
+}
+
+Json ToJson(const BodySummary& summary, bool with_recordings) {
+  Json json;
+  if (with_recordings) {
+    json["recordings"] = Json::array();
+    for (const BodyScore& score : summary.recordings) {
+      Json row = {{"id", score.id}, {"frames", score.frames}};
+      if (score.failure.empty()) {
+        row.update(MetricsJson(score.value));
+      } else {
+        row["failure"] = score.failure;
+      }
+      json["recordings"].push_back(row);
+    }
+  }
+  json["mean"] = MeanJson(summary.mean);
+  json["frame_weighted"] = MeanJson(summary.frame_weighted);
+  for (const auto& [key, groups] : summary.by) {
+    Json& rows = json["by_" + key] = Json::object();
+    for (const auto& [name, mean] : groups) rows[name] = MeanJson(mean);
+  }
+  if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
+  return json;
+}
+
+void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
+  static const std::set<std::string> kAtTop = {"true_pendulum", "recorded"};
+  for (const auto& [name, summary] : evaluation) {
+    if (name == "restoration" || name == "generator") {
+      Merge(ToJson(summary, true), json);
+    } else if (kAtTop.count(name) == 1) {
+      Merge(ToJson(summary, false), &(*json)[name]);
+    } else {
+      Merge(ToJson(summary, false), &(*json)["baselines"][name]);
+    }
+  }
+}
+
+Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
+  try {
+    BodyMetrics metrics{};
+    for (int m = 0; m < kNumBodyMetrics; ++m)
+      metrics[m] = json.at("mean").at(kBodyMetrics[m].Key());
+    return metrics;
+  } catch (const Json::exception& error) {
+    return Error{
+        "this is not a file of body scores from pushid-evaluate --restoration --json_out: " +
+            std::string(error.what()),
+        file};
+  }
+}
+
+std::string BodyText(const BodyEvaluation& evaluation) {
+  std::string text = "bodies, means over recordings\n";
+  TextTable table = NewTable("");
+  const auto found = evaluation.find("restoration");
+  const bool restores = found != evaluation.end();
+  if (restores) {
+    table.Add(Row("restoration", found->second.mean));
+    table.Add(Row("  frame-weighted", found->second.frame_weighted));
+  }
+  for (const auto& [name, summary] : evaluation) {
+    if (name != "restoration") table.Add(Row(Spaced(name), summary.mean));
+  }
+  text += table.ToString() + GroupsText(evaluation);
+  if (!restores) return text;
+  text += "\n";
+  TextTable groups = NewTable("restoration by");
+  const BodySummary& restored = found->second;
+  const std::map by_key(restored.by.begin(), restored.by.end());
+  for (const auto& [key, means] : by_key) {
+    for (const auto& [name, mean] : means) groups.Add(Row(name, mean));
+  }
+  text += groups.ToString();
+  for (const BodyScore& score : restored.recordings) {
+    if (!score.failure.empty()) text += score.id + ": " + score.failure + "\n";
+  }
+  return text;
 }
 
 }  // namespace pushid

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
+#include "ident/push/sensor_offset.h"
 
 namespace pushid {
 namespace {
@@ -137,6 +138,143 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
     push.force.push_back(GeneralizedForce(body, q, force, fraction));
   }
   return push;
+}
+
+namespace {
+
+constexpr double kCutShort = 0.2;  // of the peak
+constexpr double kOddGain = 3.0;   // beyond what friction and recovery blur
+
+// Rows of several pushes on one person, added frame by frame.
+void AddPush(const Push& more, Push* sum) {
+  if (sum->force.empty()) {
+    *sum = more;
+    return;
+  }
+  const int start = std::min(sum->start_frame, more.start_frame);
+  const int end = std::max(sum->EndFrame(), more.EndFrame());
+  std::vector<Eigen::Vector4d> force(end - start, Eigen::Vector4d::Zero());
+  for (const Push* push : {static_cast<const Push*>(sum), &more}) {
+    for (std::size_t i = 0; i < push->force.size(); ++i) {
+      force[push->start_frame - start + i] += push->force[i];
+    }
+  }
+  sum->force = std::move(force);
+  sum->start_frame = start;
+}
+
+// As PushFromSensor takes it, but for the offset: vectors along the direction.
+TimedRecord AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
+  TimedRecord timed{record, sensor.start_s.value_or(0.0)};
+  if (record.is_vector) return timed;
+  const Eigen::Vector3d along = sensor.direction.normalized();
+  for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
+  return timed;
+}
+
+// A warning for a record that begins or ends while it measures a push: the rest of it is lost.
+std::string CutShort(const SensorRecord& record) {
+  double peak = 0.0;
+  for (const Eigen::Vector3d& force : record.force) peak = std::max(peak, force.norm());
+  for (const bool first : {true, false}) {
+    const double force = (first ? record.force.front() : record.force.back()).norm();
+    if (!(force > kCutShort * peak)) continue;
+    return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
+           Rounded(force, 3) + " N, with a maximum of " + Rounded(peak, 3) +
+           " N: part of the push is missing, or the sensor has an offset (--sensor_zero)";
+  }
+  return "";
+}
+
+struct ReadSensors {
+  std::vector<SensorChoice> choices;  // with what the motion's file says of them
+  std::vector<SensorRecord> records;
+};
+
+Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded) {
+  ReadSensors read;
+  for (SensorChoice sensor : setup.sensors) {
+    for (const RecordedPerson& person : recorded.people) FillFromMotion(person, &sensor);
+    Result<SensorRecord> record = ReadSensor(sensor);
+    if (!record.ok()) return record.error();
+    read.choices.push_back(sensor);
+    read.records.push_back(std::move(record.value()));
+  }
+  return read;
+}
+
+std::string HowRead(const SensorSetup& setup, const ReadSensors& read) {
+  const std::size_t count = read.records.size();
+  std::string how =
+      count == 1 ? "from the sensor, averaged over the frames"
+                 : "from " + std::to_string(count) + " sensors together, averaged over the frames";
+  for (const SensorChoice& sensor : read.choices) {
+    if (!sensor.start_s || setup.start_given) continue;
+    how +=
+        "; recorded with the motion, its clock at frame 0 is " + Rounded(*sensor.start_s, 4) + " s";
+  }
+  return how;
+}
+
+// How far the sensors' clocks are off by the motion; zero unless that is asked for.
+Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
+                            const PendulumRecording& recording, int person, SensorPush* result) {
+  if (!setup.estimate_offset) return SensorOffset();
+  std::vector<TimedRecord> timed;
+  for (std::size_t i = 0; i < read.records.size(); ++i) {
+    timed.push_back(AsVectors(read.records[i], read.choices[i]));
+  }
+  const Result<SensorOffset> offset =
+      EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
+  if (!offset.ok()) return offset;
+  const double gain = offset.value().gain;
+  if (gain < 1.0 / kOddGain || gain > kOddGain) {
+    result->warnings.push_back("the motion fits best with " + Rounded(gain, 2) +
+                               " times the force: check its unit and gain, and the mass");
+  }
+  result->how += "; clock at frame 0 moved by " + Rounded(offset.value().offset_s, 4) + " +- " +
+                 Rounded(offset.value().standard_error_s, 2) + " s (estimated)";
+  return offset;
+}
+
+}  // namespace
+
+Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
+                                   const PendulumRecording& recording, int person) {
+  const Result<ReadSensors> read = ReadAll(setup, recorded);
+  if (!read.ok()) return read.error();
+  SensorPush result;
+  result.how = HowRead(setup, read.value());
+  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
+  if (!offset.ok()) return offset.error();
+  SensorPushOptions options;
+  options.person = person;
+  if (setup.estimate_offset) {
+    options.clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
+  }
+  for (std::size_t i = 0; i < read.value().records.size(); ++i) {
+    const SensorChoice& sensor = read.value().choices[i];
+    const SensorRecord& record = read.value().records[i];
+    options.direction = sensor.direction;
+    options.height_fraction = sensor.height_fraction;
+    options.height_m = sensor.height_m ? sensor.height_m : record.height_m;
+    options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
+    options.idle_force = sensor.idle_force;
+    if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
+      result.how += "; contact at the hip's height (--height and --height_m change it)";
+    }
+    const Result<Push> push = PushFromSensor(record, recording, options);
+    if (!push.ok()) return push.error();
+    const std::string cut_short = CutShort(record);
+    if (!cut_short.empty()) result.warnings.push_back(cut_short);
+    if (record.height_m && *record.height_m < 0.1) {
+      result.warnings.push_back(sensor.file + ": " + sensor.column +
+                                " lies on the floor: it measures the ground reaction force of the "
+                                "person standing there, not a push");
+    }
+    AddPush(push.value(), &result.push);
+  }
+  return result;
 }
 
 }  // namespace pushid

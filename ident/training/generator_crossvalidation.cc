@@ -6,7 +6,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/bodies/body_report.h"
+#include "ident/bodies/body_evaluation.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/online_predictor.h"

@@ -20,8 +20,8 @@
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_features.h"
-#include "models/restoration/regression_trainer.h"
 #include "models/restoration/restoration.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 

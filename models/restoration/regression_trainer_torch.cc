@@ -1,8 +1,8 @@
 // models: the trainer of dense networks, in LibTorch.
 #include <vector>
 
-#include "models/restoration/regression_trainer.h"
 #include "models/restoration/support_torch.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
 namespace {

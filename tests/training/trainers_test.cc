@@ -4,7 +4,7 @@
 
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/cvae_trainer.h"
-#include "models/restoration/regression_trainer.h"
+#include "models/restoration/trainer.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

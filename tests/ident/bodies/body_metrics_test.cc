@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/bodies/body_evaluation.h"
-#include "ident/bodies/body_report.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/generators/trained_networks.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 
