@@ -103,6 +103,18 @@ TEST(RoomsTest, FloorsIncludeOnlyWhatStandsAboveThem) {
   }
 }
 
+// A file is read at one go.
+TEST(RoomsTest, NoSourceIsLongerThan300Lines) {
+  for (const auto& [room, allowed] : kMayInclude) {
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      std::ifstream stream(file);
+      int lines = 0;
+      for (std::string line; std::getline(stream, line);) ++lines;
+      EXPECT_LE(lines, 300) << file;
+    }
+  }
+}
+
 // The maths stays free of the solver, the log, JSON and files.
 TEST(RoomsTest, ModelsArePlainMaths) {
   const std::vector<std::string> forbidden = {"ceres/",  "glog/",  "gflags/",    "nlohmann/",
