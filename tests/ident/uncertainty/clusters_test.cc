@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 
+#include "ident/uncertainty/covariance.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
