@@ -16,7 +16,7 @@
 namespace pushid {
 namespace {
 
-// A solve, the options as they were estimated on the way, and the problem they make.
+// A solve, with the options as they were estimated on the way.
 struct SolvedFit {
   FitOptions options;
   WeightedSolution solved;
@@ -129,9 +129,10 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   // 2. The parameters as they act, at the optimum of the problem as it was weighed last.
   const FitProblem problem(recordings, result.options);
   const FitPoint& optimum = fit.Best().to;
+  result.options.model = problem.ModelAt(optimum);
   result.parameters = problem.Parameters(optimum, "");
   result.others = fit.others;
-  AddTakeover(recordings, problem.ModelAt(optimum), &result);
+  AddTakeover(recordings, result.options.model, &result);
 
   // 3. Errors clustered by person, and whose word each number is (uncertainty.h).
   const std::optional<FitPoint>& free = fit.solved.free;
@@ -157,9 +158,8 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   if (ScoresSingleSteps(options.likelihood))
     result.likelihood = ScoreByLikelihood(problem, optimum);
 
-  // 8. Warnings; and what a model keeps of the problem.
+  // 8. Warnings; and what a model keeps of its covariance.
   AddWarnings(problem, fit, &result);
-  result.options.model = problem.ModelAt(optimum);
   ForgetWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
   return result;
 }

@@ -7,6 +7,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/fit/recording_effect.h"
 #include "ident/model/model_json.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/early_stopping.h"
@@ -45,6 +46,20 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
   EXPECT_LT(std::abs(result.takeover->kp_theta), 70.0);
   EXPECT_NEAR(result.parameters[kKpTheta], synthetic.parameters[kKpTheta],
               0.1 * synthetic.parameters[kKpTheta]);
+}
+
+// The effect of recordings was once estimated with the network's first weights, before the fit.
+TEST(NetworkFit, EffectsOfRecordingsAreThoseOfTheFittedNetwork) {
+  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
+  FitOptions options = study.options;
+  options.model.push_tail = PushTail::kExponential;
+  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
+  const FitResult result = Fit(study.training, options);
+  ASSERT_TRUE(result.recording_effect.has_value());
+  const auto again = FitRecordingEffect(ModelOf(result), study.training);
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(result.recording_effect->spread, again->spread);
+  EXPECT_EQ(result.recording_effect->error_scale, again->error_scale);
 }
 
 TEST(NetworkFit, ThreadsDoNotMatter) {
