@@ -15,8 +15,8 @@
 //   residuals: 6; blocks: the shared parameters and, of_unit, the deviations of a unit.
 // Settling alone leaves an unstable mode that the simulations do not excite, such as one to the
 // side. Rejected: a hinge on the eigenvalues themselves, whose derivatives are infinite where two
-// of them meet, which is where a person stops swinging; and recordings rolled out past their end
-// (`--stability_weight`), which are non-zero at the truth of synthetic data and bias a fit.
+// of them meet, which is where a person stops swinging; and recordings rolled out past their end,
+// which are non-zero at the truth of synthetic data and bias a fit.
 #pragma once
 
 #include <ceres/cost_function.h>
