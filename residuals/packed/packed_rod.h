@@ -1,5 +1,5 @@
-// residuals: a law of the rod (models/learned_terms.h) for many people at once, step by step, and back:
-// d(cost)/d(weights) of whole rollouts by the adjoint, as packed_network.h has it for self
+// residuals: a law of the rod (models/learned_terms.h) for many people at once, step by step, and
+// back: d(cost)/d(weights) of whole rollouts by the adjoint, as packed_network.h has it for self
 // forces.
 //
 // Everybody is a column of U. Forwards, layer by layer,
