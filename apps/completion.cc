@@ -91,9 +91,7 @@ _pushid() {
     return
   fi
   COMPREPLY=($(compgen -W "$(_pushid_flags "$program")" -- "$cur"))
-  if [[ ${COMPREPLY[0]} == *= ]];
-then compopt - o nospace;
-fi
+  [[ ${COMPREPLY[0]} != *= ]] || compopt -o nospace
 }
 )bash";
 

@@ -58,7 +58,8 @@ TEST_F(FrontTest, BashCompletes) {
     const std::string script = "source <(\"" + std::string(PUSHID_BIN_DIR) +
                                "/pushid\" completion bash)\nCOMP_WORDS=(" + words +
                                ")\nCOMP_CWORD=" + std::to_string(at) +
-                               "\ncompopt() { :; }\n_pushid\necho \"${COMPREPLY[@]}\"\n";
+                               "\ncompopt() { [[ \"$1 $#\" == \"-o 2\" ]] || echo compopt $*; "
+                               "}\n_pushid\necho \"${COMPREPLY[@]}\"\n";
     return RunProgram("/bin/bash", {WriteText("complete.sh", script)});
   };
   EXPECT_EQ(completed("pushid fi", 1).out, "fit\n");
