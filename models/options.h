@@ -75,8 +75,8 @@ inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
     {"speed", &ProcessNoiseTerms::speed},
     {"push", &ProcessNoiseTerms::push}};
 
-// The parts of the net force, in the order of the CSV's columns. The last two are told of only
-// where there are any (ReportedParts).
+// The parts of the net force, in the order of the CSV's columns. The last two are reported
+// only where they act (ReportedParts).
 #define PUSHID_FORCE_PARTS(X)                             \
   X(kFriction, "friction")       /* of the ground */      \
   X(kBalance, "balance")         /* PD control */         \

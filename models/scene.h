@@ -27,7 +27,7 @@ struct Scene {
     for (const ScenePush& push : pushes) end = std::max(end, push.EndFrame());
     return end;
   }
-  // The frame at which whoever settles has settled.
+  // The frame at which people who settle have settled.
   int SettledFrame() const;
 };
 

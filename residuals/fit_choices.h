@@ -23,8 +23,8 @@ constexpr EnumNames<Likelihood, 4> Names(Likelihood) {
 // The two ways to the Jacobian of a recording's residuals (cost_functions/condensed_rollout.h).
 enum class JacobianMethod {
   kSensitivities,  // chained step by step (rollout_sensitivities.h)
-  kAutodiff        // Jets through the whole rollout by Ceres: the oracle, at a user's hand, to rule
-                   // out an error in the chain; slower, and slower still with many parameters
+  kAutodiff        // Jets through the whole rollout by Ceres: a user's check of the chain; slower,
+                   // and slower still with many parameters
 };
 constexpr EnumNames<JacobianMethod, 2> Names(JacobianMethod) {
   return {

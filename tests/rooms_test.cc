@@ -37,7 +37,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 
-// The floor that a file "room/folder/file.h" stands on; -1: none.
+// The floor that "room/folder/NAME.h" stands on; -1: none.
 int FloorOf(const std::string& file) {
   const size_t slash = file.find('/'), last = file.rfind('/');
   const auto& floors = kFloors.at(file.substr(0, slash));
@@ -113,6 +113,41 @@ TEST(RoomsTest, NoSourceIsLongerThan300Lines) {
       EXPECT_LE(lines, 300) << file;
     }
   }
+}
+
+// What comments and READMEs call a file is one, by its name or the end of its path.
+TEST(RoomsTest, NamedFilesExist) {
+  std::vector<fs::path> texts = {fs::path(PUSHID_SOURCE_DIR) / "README.md"};
+  std::set<std::string> names;
+  for (const char* room : {"models", "datasets", "residuals", "ident", "apps", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      if (entry.path().filename() == "README.md") texts.push_back(entry.path());
+    }
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      texts.push_back(file);
+      std::string name = fs::relative(file, PUSHID_SOURCE_DIR).generic_string();
+      names.insert(name);
+      for (size_t slash; (slash = name.find('/')) != std::string::npos;) {
+        names.insert(name = name.substr(slash + 1));
+      }
+    }
+  }
+  const std::regex file_name(R"((^|[^\w*/])([a-z][a-z0-9_/]*\.(h|cc))\b)");
+  int found = 0;
+  for (const fs::path& text : texts) {
+    std::ifstream stream(text);
+    int number = 0;
+    for (std::string line; std::getline(stream, line);) {
+      ++number;
+      const size_t start = text.extension() == ".md" ? 0 : line.find("//");
+      if (start == std::string::npos) continue;
+      for (std::sregex_iterator it(line.begin() + start, line.end(), file_name), end; it != end;
+           ++it, ++found) {
+        EXPECT_EQ(names.count((*it)[2]), 1u) << text << ":" << number << ": no file " << (*it)[2];
+      }
+    }
+  }
+  EXPECT_GT(found, 50) << "the comments were not read";
 }
 
 // The maths stays free of the solver, the log, JSON and files.

@@ -28,7 +28,7 @@ class KindFlags {
     return std::nullopt;
   }
 
-  // Those of other kinds, which say nothing to this one, with the kind that each belongs to.
+  // The flags of other kinds, which do not apply to this one, each with its kind.
   struct Foreign {
     const char* flag;
     GeneratorKind of;

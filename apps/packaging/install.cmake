@@ -1,6 +1,6 @@
 # What `cmake --install` and cpack put where: programs (bin), the libraries with their headers and
-# find_package(pushid), the workflow. Components become Debian packages, so that whoever only fits
-# recordings gets neither headers nor LibTorch.
+# find_package(pushid), the workflow. Components become Debian packages, so that fitting
+# recordings needs neither headers nor LibTorch.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

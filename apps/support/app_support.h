@@ -68,7 +68,7 @@ void SayWhenInterrupted(const std::string& what);
 // many cores a machine has.
 void SetBlasThreads(int num_threads);
 
-// What Ctrl-C is told of a training into this folder.
+// The message of a training into this folder that Ctrl-C stops.
 std::string KeptCheckpoints(const std::string& folder);
 
 // How far a training has come: "window, epoch 12: 43 %, 12 s left"; the time left from the share

@@ -44,8 +44,8 @@ class AtomicFile {
 
 MaybeError WriteFileAtomically(const std::string& path, std::string_view contents);
 
-// Whether `path` could be written now, found out by creating and removing a temporary beside it.
-// For use before a long computation whose result shall go there; leaves the target untouched.
+// Whether `path` could be written now, checked by creating and removing a temporary file beside it.
+// For use before a long computation whose result goes there; leaves the target untouched.
 MaybeError CheckWritable(const std::string& path);
 
 // Folders that outputs need.

@@ -173,7 +173,7 @@ std::string Box(const std::string& id, const std::string& text, const std::strin
          EscapeXml(text) + "</label>\n";
 }
 
-// Of what there is to see, and no more.
+// Check boxes of what the animation contains.
 std::string Choices(const Animation& animation, const std::vector<std::string>& whats) {
   const auto any = [&animation](auto has) {
     return std::any_of(animation.people.begin(), animation.people.end(), has);

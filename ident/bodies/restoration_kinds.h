@@ -3,7 +3,7 @@
 // its own.
 //
 // The tables are three, because nothing but the programs that train needs LibTorch, and nothing but
-// those that compare with peers needs these: whoever reads a table links what stands in it.
+// those that compare with peers needs these: a program links everything in the tables it reads.
 #pragma once
 
 #include <cstddef>

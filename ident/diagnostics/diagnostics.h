@@ -101,7 +101,7 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
                                                      const FitPoint& point);
 std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoint& point);
 
-// Checked against real refits in tests/ident/leverage_test.cc.
+// Checked against real refits in tests/ident/diagnostics/diagnostics_test.cc.
 Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
                          const Uncertainty& uncertainty);
 

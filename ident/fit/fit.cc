@@ -134,7 +134,7 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   result.others = fit.others;
   AddTakeover(recordings, result.options.model, &result);
 
-  // 3. Errors clustered by person, and whose word each number is (uncertainty.h).
+  // 3. Errors clustered by person, and the shares of data and priors (uncertainty.h).
   const std::optional<FitPoint>& free = fit.solved.free;
   result.uncertainty = ComputeUncertainty(problem, optimum, free ? &*free : nullptr);
   result.uncertainty.settling = fit.solved.settling;

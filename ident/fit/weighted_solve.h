@@ -3,7 +3,7 @@
 //
 // 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/data_weight.h)
 //    and the spread of pooled units (problem/pooling_spread.h) are estimated at its optimum and the
-//    fit solved on from there, until none changes by more than 1 %: the demand shall not make the
+//    fit solved on from there, until none changes by more than 1 %: the demand must not make the
 //    data look worse than they are.
 // 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
 //    on with the demand, by the same weights. Twice what the rest of the cost rises by is a

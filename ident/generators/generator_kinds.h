@@ -5,8 +5,8 @@
 // (the trainer's in ident/training/), and its flags (apps/flags/kind_flags.h). Both programs then
 // accept it as --kind.
 //
-// The tables are two, because nothing but pushid-train-generator needs LibTorch: whoever reads a
-// table links what stands in it.
+// The tables are two, because nothing but pushid-train-generator needs LibTorch, and a program
+// links everything in the tables it reads.
 #pragma once
 
 #include <functional>

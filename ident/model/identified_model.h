@@ -20,7 +20,7 @@
 namespace pushid {
 
 // What one seed of an ensemble found. Predictions are put together by their median
-// (prediction/median_prediction.h), so that one bad seed does no harm; members that leave the
+// (prediction/prediction.h), so that one bad seed does no harm; members that leave the
 // model's domain do not count while most of them stay in it.
 struct EnsembleMember {
   ParameterSet<double> parameters{};

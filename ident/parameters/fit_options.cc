@@ -123,7 +123,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of earlier versions. A model that did without them is as good as ever.
+// Of earlier versions. A model that did not use them can still be read.
 constexpr const char* kRetiredWeights[] = {"stability_weight", "takeover_weight"};
 // The parameters of the interaction term `drive`, which `interaction` would name.
 constexpr const char* kRetiredParameters[] = {"drive_gain", "drive_torque", "drive_time"};

@@ -61,7 +61,7 @@ constexpr EnumNames<SupportSource, 2> Names(SupportSource) {
 enum class ClusterBy {
   kAuto,      // people where some were recorded more than once, otherwise recordings
   kSubject,   // people; where several share a recording, people and recordings (two-way)
-  kRecording  // recordings, whoever is in them
+  kRecording  // recordings
 };
 constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
   return {{{"auto", ClusterBy::kAuto},

@@ -6,8 +6,7 @@
 // the pushed people, otherwise the recordings; within one person they are recordings, which says
 // nothing about anybody else. With G clusters and scores of weights w that sum to 1,
 //   error = sqrt(G / (G - 1) * sum over clusters of (sum of w (score - mean))^2)
-// with Student's t of G - 1 degrees of freedom behind it (CR1; clusters.h has the
-// fit's).
+// with Student's t of G - 1 degrees of freedom (CR1; clusters.h has the fit's).
 #pragma once
 
 #include <map>
@@ -55,11 +54,11 @@ MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const L
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key);
 
-// Something of each group: [key][text of the label], keys as they were asked for.
+// A value for each group: [key][text of the label], keys in the order of the list.
 template <typename T>
 using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
 
-// of: from a list of scores to what is said of them. Scores that failed are in no group.
+// of: the value of a list of scores. Scores that failed are in no group.
 template <typename Score, typename Of>
 auto GroupScores(const std::vector<PendulumRecording>& recordings, const std::vector<Score>& scores,
                  const LabelKeys& keys, Of of) {

@@ -47,9 +47,9 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
                                                    const GeneratorValidationOptions& validation,
                                                    const RunProgress& progress = nullptr);
 
-// Whatever forecasts groups best. Physics, restored bodies and diffusion are trained in
-// every fold and judged on the recordings held out; the nearest in the mean joint error is the
-// choice, and all three are then trained on all recordings, for whoever wants another.
+// The kind that forecasts groups best. Physics, restored bodies and diffusion are trained in every
+// fold and judged on the recordings held out; the one with the smallest mean joint error is chosen,
+// and all three are then trained on all recordings, so that another can be used instead.
 
 struct BestForecastOptions {
   RestorationRunOptions chain;  // physics in its fit, and the restoration

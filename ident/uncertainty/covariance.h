@@ -4,8 +4,7 @@
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
 // it was computed, jacobian_blocks.h):
 //   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
-//   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two
-//   ways,
+//   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
 //              scatter is added, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what a
 //              prior's centre scatters: where data say little the error is the prior's width, where

@@ -1,5 +1,5 @@
-// ident: how sure, and whose word it is: standard errors naive and clustered, what data, priors and
-// settling contribute to each number, null directions, correlations.
+// ident: standard errors, naive and clustered, what data, priors and settling contribute to each
+// number, null directions, correlations.
 //
 // Covariances as covariance.h defines them, with Student's t of Satterthwaite's degrees of freedom,
 // parameter by parameter. Naive errors are up to 20 times too small here. A null direction of the
@@ -51,7 +51,7 @@ constexpr EnumNames<EstimateStatus, 6> Names(EstimateStatus) {
            {"fixed", EstimateStatus::kFixed}}};
 }
 
-// Whose word a number is: fractions of its variance, and what it was moved by, natural unit.
+// What determines a number: fractions of its variance, and what moved it, natural unit.
 struct Shares {
   double data = 1.0, prior = 0.0, settling = 0.0;
   double prior_pull = 0.0, settling_pull = 0.0;

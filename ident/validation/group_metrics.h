@@ -94,7 +94,7 @@ const char* GroupMetricsLegend();
 
 // What groups do where hips alone are predicted, as pendulums do.
 //
-// Who begins to move when is told by the hips. The measures of what people do (sscp, sscp_changes,
+// The hips show who begins to move when. The measures of what people do (sscp, sscp_changes,
 // ndms) need bodies: each recorded first pose is carried by the predicted hip and never steps, as
 // `rigid` bodies do (bodies/body_evaluation.h). Where recordings have no bodies they have no value.
 

@@ -5,7 +5,7 @@
 //            1 lean: the line from between the ankles to the hip has turned by more than 5 degrees
 //              since frame 0; else
 //            0 stand
-//   push     1: a wrist is within 0.35 m of the upper spine of whoever stands in front, and the
+//   push     1: a wrist is within 0.35 m of the upper spine of the person in front, and the
 //            own hip goes forwards (+x) faster than 0.08 m/s
 //
 // Speeds are backward differences; frame 0 has the symbol of frame 1. In front stands the nearest

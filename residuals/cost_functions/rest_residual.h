@@ -1,4 +1,4 @@
-// residuals: people shall come to rest: pushed people in time, and small deviations at all.
+// residuals: people must come to rest: within a time after a push, and from small deviations.
 //
 // Settling, for the people of the settling simulations (models/scene.h), from two seconds after the
 // push for a second, n = frames times people:
@@ -8,7 +8,7 @@
 // what counts as settled, so that a finite weight suffices: people who settle are not moved at all,
 // and need no derivatives, which are rolled out only up to the last frame that has any.
 //
-// Modal stability: the free modes of a person at rest shall decay, by a hinge on the three
+// Modal stability: the free modes of a person at rest must decay, by a hinge on the three
 // Routh-Hurwitz conditions (models/modal_stability.h) of each plane, of the polynomial shifted by
 // `margin`: zero (to eps^2) where every mode decays faster than `margin` 1/s.
 //   r = weight * hinge(-condition / scale),   hinge(x) = (x + sqrt(x^2 + eps^2)) / 2

@@ -51,9 +51,7 @@ class PackedMatrix {
 void AddProduct(const PackedMatrix& left, const PackedMatrix& right, double* c,
                 std::ptrdiff_t stride);
 
-// One dense layer [W b] of a packed network, laid out for products with many
-// columns.
-
+// One dense layer [W b] of a packed network, laid out for products with many columns.
 struct PackedLayer {
   int rows, width;  // of W
   int at;           // its first weight

@@ -120,7 +120,7 @@ def load(manifest_path):
 
 
 def rollout(parameters, data):
-    """Hip positions [recording, frame, 3] and angles; whoever passes 1.4 rad stays where they are."""
+    """Hip positions [recording, frame, 3] and angles; people who pass 1.4 rad stay where they are."""
     mass, l = data["mass"], data["length"]
     m = 0.9 * mass
     scale = mass / REFERENCE_MASS

@@ -17,7 +17,7 @@ from scipy_pd_fit import G, NAMES, REFERENCE_MASS, STARTS, load
 
 
 def rollout(parameters, data):
-    """Hip positions [recording, frame, 3]; whoever passes 1.4 rad stays where they are."""
+    """Hip positions [recording, frame, 3]; people who pass 1.4 rad stay where they are."""
     mass, l = data["mass"], data["length"]
     m = 0.9 * mass
     scale = mass / REFERENCE_MASS

@@ -89,7 +89,7 @@ TEST(WeightedSolve, ADemandThatIsNotContradictedHolds) {
   EXPECT_NEAR(error / mu->standard_error, 1.0, 0.05);
 }
 
-// Feet that drive the person: whoever is fitted to them falls. The demand is met, or it is dropped
+// Feet that drive the person: a model fitted to them falls. The demand is met, or it is dropped
 // and the result says so; and nobody knows mu to a hundredth.
 TEST(WeightedSolve, ADemandThatCannotBeMetIsNotCalledHeld) {
   for (double mu : {-100.0, -50.0}) {

@@ -1,5 +1,5 @@
 // People side by side: the sums of every recording are those of its rows, at every width of
-// vectors and whoever else is there.
+// vectors and whatever other people are there.
 #include "residuals/cost_functions/lane_group.h"
 
 #include <cmath>
@@ -147,7 +147,7 @@ TEST(LaneGroup, WhoElseIsThereChangesNoBit) {
   }
 }
 
-TEST(LaneGroup, NamesWhoeverLeavesTheDomainAndKeepsTheOthers) {
+TEST(LaneGroup, NamesWhoLeavesTheDomainAndKeepsTheOthers) {
   Crowd crowd(kRegimes[0]);
   const auto before = crowd.Sums(0, 2, BestPersonLanes(), LaneSums::kPlain);
   // No balance left, and pushed the other way by the lean.

@@ -47,8 +47,8 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
   }
 }
 
-// A demand, no pull: exactly zero for whoever settles, and not for one who keeps walking.
-TEST(Settling, IsZeroForWhoeverSettlesInTime) {
+// A demand, no pull: exactly zero for people who settle, and not for one who keeps walking.
+TEST(Settling, IsZeroForPeopleWhoSettleInTime) {
   ParameterMap map = EveryParameterMap({});
   for (FittedParameter& f : map.fitted) f.transform = Transform::kIdentity;
   for (double mass : {80.0, 100.0}) {
