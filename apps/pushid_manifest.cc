@@ -54,9 +54,7 @@ MaybeError CheckManifestFlags() {
        {Require("folder", FLAGS_folder, "name the folder of the recordings"),
         Require("pattern", FLAGS_pattern,
                 "give the pattern of the file names, as in {subject}_{take}.bvh"),
-        Require("out", FLAGS_out, "name the manifest to write"),
-        CheckExcludes({"length_scale"}, "length_unit",
-                      "--length_scale is given together with --length_unit; give one of them")}) {
+        Require("out", FLAGS_out, "name the manifest to write")}) {
     if (missing) return missing;
   }
   if (!(FLAGS_mass_kg >= 0.0 && FLAGS_mass_kg <= 400.0)) {
@@ -84,13 +82,8 @@ MaybeError ReadNamed(ManifestOptions* options) {
   if (MaybeError error = ParseName("--push_kind", FLAGS_push_kind, &options->push_kind)) {
     return error;
   }
-  if (FLAGS_length_scale != 0.0) {
-    const std::string problem = LengthScaleProblem(FLAGS_length_scale);
-    if (!problem.empty()) return Error{"--length_scale " + problem};
-    options->length_scale = FLAGS_length_scale;
-  }
-  if (FLAGS_length_unit.empty()) return std::nullopt;
-  return ParseName("--length_unit", FLAGS_length_unit, &options->length_unit.emplace());
+  return TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options->length_unit,
+                    &options->length_scale);
 }
 
 Result<ManifestOptions> OptionsFromFlags() {

@@ -49,6 +49,11 @@ bool Changed(const FlagInfo& flag) {
   return numbers ? now != before : flag.current_value != flag.default_value;
 }
 
+// A switch that is off by default, and given as off.
+bool IsOff(const FlagInfo& flag) {
+  return flag.type == "bool" && flag.current_value == "false" && !Changed(flag);
+}
+
 bool HasEffect(const std::string& name) {
   FlagInfo flag;
   return gflags::GetCommandLineFlagInfo(name.c_str(), &flag) && Changed(flag);
@@ -114,7 +119,7 @@ std::string HeadingOf(const FlagInfo& flag) {
 MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
   for (const FlagRule& rule : rules) {
     const FlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(rule.flag.c_str());
-    if (flag.is_default || flag.current_value.empty()) continue;
+    if (flag.is_default || flag.current_value.empty() || IsOff(flag)) continue;
     const bool acts = std::any_of(rule.others.begin(), rule.others.end(), HasEffect);
     if (acts == (rule.kind == FlagRule::kNeeds)) continue;
     std::string sentence = rule.why;
@@ -160,6 +165,20 @@ MaybeError CheckRange(const char* flag, double value, double lowest, double high
   text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
        << highest;
   return Error{text.str()};
+}
+
+MaybeError TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
+                      std::optional<double>* length_scale) {
+  if (scale != 0.0 && !unit.empty()) {
+    return Error{"--length_scale is given together with --length_unit; give one of them"};
+  }
+  if (scale != 0.0) {
+    const std::string problem = LengthScaleProblem(scale);
+    if (!problem.empty()) return Error{"--length_scale " + problem};
+    *length_scale = scale;
+  }
+  if (unit.empty()) return std::nullopt;
+  return ParseName("--length_unit", unit, &length_unit->emplace());
 }
 
 std::map<std::string, std::string> EffectiveFlags() {

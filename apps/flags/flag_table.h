@@ -3,10 +3,12 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/units.h"
 #include "models/enum_names.h"
 
 // A string flag that takes one of an enum's names: shells complete them.
@@ -28,7 +30,7 @@ struct FlagRule {
   std::string why;
 };
 // Whether a flag that is given has what it needs, and nothing that it excludes. A flag of others
-// acts where its value is not its default.
+// acts where its value is not its default. A switch that is given as off asks for nothing.
 MaybeError CheckFlagRules(const std::vector<FlagRule>& rules);
 // Of many flags that need, or exclude, the same.
 MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
@@ -51,6 +53,11 @@ MaybeError TakeInRange(const char* flag, Value value, double lowest, double high
   *target = value;
   return CheckRange(flag, static_cast<double>(value), lowest, highest);
 }
+
+// --length_unit or --length_scale, whichever has a value, into its place. Errors: both; a unit or a
+// scale that is none.
+MaybeError TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
+                      std::optional<double>* length_scale);
 
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.

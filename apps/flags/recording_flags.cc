@@ -40,19 +40,9 @@ Result<LoadOptions> LoadOptionsOfFlags() {
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = SplitList(FLAGS_ids);
   options.leave_out = SplitList(FLAGS_leave_out);
-  if (MaybeError error =
-          CheckExcludes({"length_scale"}, "length_unit",
-                        "--length_scale is given together with --length_unit; give one of them")) {
+  if (MaybeError error = TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit,
+                                    &options.length_scale)) {
     return *error;
-  }
-  if (!FLAGS_length_unit.empty()) {
-    LengthUnit& unit = options.length_unit.emplace();
-    if (MaybeError error = ParseName("--length_unit", FLAGS_length_unit, &unit)) return *error;
-  }
-  if (FLAGS_length_scale != 0.0) {
-    const std::string problem = LengthScaleProblem(FLAGS_length_scale);
-    if (!problem.empty()) return Error{"--length_scale " + problem};
-    options.length_scale = FLAGS_length_scale;
   }
   if (MaybeError error = CheckPreparation(options.preparation)) return *error;
   return options;
@@ -78,10 +68,13 @@ std::vector<std::string> FittedIds(const FitResult& fit) {
 
 void LoadAs(const std::map<std::string, std::string>& configuration) {
   const bool unit_given = Given("length_unit") || Given("length_scale");
+  const std::map<std::string, std::string> now = EffectiveFlags();
   for (const char* flag : kLoadFlags) {
     const auto value = configuration.find(flag);
     const bool of_unit = std::string(flag).rfind("length_", 0) == 0;
     if (value == configuration.end() || (of_unit ? unit_given : Given(flag))) continue;
+    // A default that is set counts as given.
+    if (value->second == now.at(flag)) continue;
     gflags::SetCommandLineOption(flag, value->second.c_str());
   }
 }

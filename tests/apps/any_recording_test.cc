@@ -176,9 +176,9 @@ TEST_F(AnyRecordingTest, Inspect) {
 TEST_F(AnyRecordingTest, Manifest) {
   const std::string pattern = "--pattern=bvh/{subject}_{take}.bvh";
   const std::string push = "--push_pattern=push/{subject}_{take}.csv";
-  AppRun run =
-      RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push, "--mass_kg=80",
-                                 "--push_kind=net", "--out=" + Path("made.json")});
+  AppRun run = RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                          "--mass_kg=80", "--push_kind=net", "--length_unit=mm",
+                                          "--length_scale=0", "--out=" + Path("made.json")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = RunApp("pushid-fit", {"--recordings=" + Path("made.json")});

@@ -106,8 +106,9 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
-  const AppRun run = Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5",
-                               "--fps=120", "--bvh_out=" + Path("three")});
+  const AppRun run =
+      Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5", "--fps=120",
+                "--forces_own_scale=false", "--bvh_out=" + Path("three")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "no speed: there are several pushes"));
   const auto pushes = Json(Path("three/manifest.json"))["recordings"][0]["pushes"];
