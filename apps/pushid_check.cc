@@ -91,6 +91,7 @@ int Run() {
       CheckAgainst(checks.value(), model.fit.options, static_cast<int>(recordings.value().size()));
   if (!failed) failed = ResumeFit(recordings.value(), &model.fit);
   AddToProvenance(&model.provenance);
+  model.provenance.model_file = out;
   if (!failed) failed = AddFlaggedChecks(recordings.value(), checks.value(), &model);
   if (failed) return Fail(*failed);
   const Result<std::string> sections = CheckSections(recordings.value(), checks.value(), model.fit);

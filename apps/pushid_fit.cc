@@ -112,6 +112,7 @@ int Run() {
   }
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   model.provenance = ProvenanceOfRun();
+  model.provenance.model_file = FLAGS_model_out;
   if (MaybeError error = AddFlaggedChecks(pendulums, checks, &model)) return Fail(*error);
   const Result<std::string> sections = CheckSections(pendulums, checks, result);
   if (!sections.ok()) return Fail(sections.error());

@@ -12,6 +12,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
+#include "ident/report/fit_command.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/validation/crossvalidation.h"
@@ -225,7 +226,8 @@ void BindFits(py::module_* module) {
                              [](const Model& m) {
                                std::vector<std::pair<std::string, std::string>> advice;
                                for (const Advice& a : m.fitted->advice) {
-                                 advice.emplace_back(a.sentence, a.command);
+                                 advice.emplace_back(a.sentence,
+                                                     CommandFor(m.fitted->provenance, a.command));
                                }
                                return advice;
                              })

@@ -270,7 +270,9 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
 Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws) {
   Result<JsonDocument> document = ReadJsonDocument(path);
   if (!document.ok()) return document.error();
-  return FittedModelFromJson(document.value().content, path, laws);
+  Result<FittedModel> model = FittedModelFromJson(document.value().content, path, laws);
+  if (model.ok()) model.value().provenance.model_file = path;
+  return model;
 }
 
 }  // namespace pushid

@@ -12,6 +12,7 @@
 #include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/time_series.h"
+#include "ident/report/fit_command.h"
 
 namespace pushid {
 namespace {
@@ -91,10 +92,14 @@ std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
 std::string DiagnosticsText(const FittedModel& model) {
   const Diagnostics& d = model.fit.diagnostics;
   std::string text = StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
+  bool unkept = false;
   for (const Advice& advice : model.advice) {
     text += "advice: " + advice.sentence + "\n";
-    if (!advice.command.empty()) text += "  " + advice.command + "\n";
+    if (advice.command.empty()) continue;
+    text += "  " + CommandFor(model.provenance, advice.command) + "\n";
+    unkept = unkept || (model.provenance.model_file.empty() && NamesModel(advice.command));
   }
+  if (unkept) text += "FILE: keep the model first; fit again with --model_out=FILE\n";
   return text;
 }
 

@@ -2,14 +2,17 @@
 #include "ident/report/fit_command.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "datasets/files/number_text.h"
 
 namespace pushid {
 namespace {
 
-// Stand for the recordings and the model where the provenance does not know their place.
-constexpr char kSomeManifest[] = "M/manifest.json", kSomeModel[] = "model.json";
+// Stands for the recordings where the provenance does not know their place.
+constexpr char kSomeManifest[] = "M/manifest.json";
+// Stands for the model's file in every command: the same fit in another file has the same advice.
+constexpr char kModelFlag[] = "--model=FILE";
 
 std::string ManifestOf(const Provenance& provenance) {
   return provenance.manifest.empty() ? kSomeManifest : provenance.manifest;
@@ -43,8 +46,8 @@ const std::vector<std::string>& CheckFlagNames() {
 }
 
 FitCommand FitCommand::Check(const Provenance& provenance) {
-  FitCommand command("pushid-check");
-  return command.Set("model", kSomeModel).Set("recordings", ManifestOf(provenance));
+  FitCommand command(std::string("pushid-check ") + kModelFlag);
+  return command.Set("recordings", ManifestOf(provenance));
 }
 
 FitCommand::FitCommand(std::string program, const Provenance& provenance)
@@ -98,6 +101,17 @@ std::string FitCommand::ToString() const {
   std::string text = program_;
   for (const auto& [flag, value] : flags_) text += " --" + flag + "=" + ShellQuoted(value);
   return text;
+}
+
+bool NamesModel(const std::string& command) {
+  return command.find(kModelFlag) != std::string::npos;
+}
+
+std::string CommandFor(const Provenance& provenance, std::string command) {
+  const size_t at = command.find(kModelFlag);
+  if (at == std::string::npos || provenance.model_file.empty()) return command;
+  return command.replace(at, std::strlen(kModelFlag),
+                         "--model=" + ShellQuoted(provenance.model_file));
 }
 
 }  // namespace pushid

@@ -19,7 +19,7 @@ class FitCommand {
  public:
   // Every flag of the fit that was not at its default, but for those of CheckFlagNames.
   FitCommand(std::string program, const Provenance& provenance);
-  // pushid-check of the fitted model.
+  // pushid-check of the fitted model, with FILE for the model's file.
   static FitCommand Check(const Provenance& provenance);
 
   // In place of what the fit had.
@@ -38,5 +38,10 @@ class FitCommand {
   std::string program_;
   std::vector<std::pair<std::string, std::string>> flags_;  // in the order they are printed
 };
+
+// An advised command as it is printed: with the model's file instead of FILE, where one keeps it.
+std::string CommandFor(const Provenance& provenance, std::string command);
+// Whether it is one of pushid-check, and so needs the model's file.
+bool NamesModel(const std::string& command);
 
 }  // namespace pushid

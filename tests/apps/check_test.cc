@@ -76,6 +76,28 @@ TEST_F(CheckTest, FilesAreReadAsTheFitReadThem) {
   EXPECT_EQ(Check(model, {"--prior_check"}).exit_code, 0);
   EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--lowpass_hz=5"}),
                       {"recording " + id_, "is not what the model was fitted to"}));
+  const std::string in_mm = FitModel("mm.json", {"--length_unit=mm", "--length_scale=0"});
+  EXPECT_EQ(Check(in_mm, {"--prior_check"}).exit_code, 0) << "a scale was not given";
+  EXPECT_EQ(Check(in_mm, {"--prior_check", "--length_scale=0.001"}).exit_code, 0);
+}
+
+// A command that is copied must not meet another model.
+TEST_F(CheckTest, AdviceNamesTheFileOfTheModel) {
+  const std::string model = FitModel("my model.json"), moved = Path("moved.json");
+  const auto asks = [this](const std::string& file) {
+    return "pushid-check --model=" + file + " --recordings=" + manifest_ + " ";
+  };
+  EXPECT_TRUE(Contains(fit_.out, asks("'" + model + "'")));
+  EXPECT_EQ(fit_.out.find("FILE"), std::string::npos);
+  const AppRun run = Check(model, {"--prior_check", "--model_out=" + moved});
+  EXPECT_TRUE(Contains(run.out, asks(moved)));
+  std::filesystem::rename(moved, Path("again.json"));
+  EXPECT_TRUE(Contains(RunApp("pushid-report", {"--model=" + Path("again.json")}).out,
+                       asks(Path("again.json"))));
+  const AppRun unkept = RunApp("pushid-fit", {Recordings()});
+  EXPECT_TRUE(Contains(unkept.out, asks("FILE")));
+  EXPECT_TRUE(
+      Contains(unkept.out, "FILE: keep the model first; fit again with --model_out=FILE\n"));
 }
 
 TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {

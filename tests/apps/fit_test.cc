@@ -111,9 +111,10 @@ TEST_F(FitAppTest, ReportPrintsWhatTheFitPrinted) {
 TEST_F(FitAppTest, ReportStaysAsItWasAgreed) {
   FitModel("m.json", {"--preset_priors=false", "--settling_weight=0"});
   std::string report = fit_.out.substr(0, fit_.out.find("model written to"));
-  // Advice names the recordings where they are.
+  // Advice names the recordings and the model where they are.
   report =
       std::regex_replace(report, std::regex(R"(--recordings=\S+)"), "--recordings=M/manifest.json");
+  report = std::regex_replace(report, std::regex(R"(--model=\S+)"), "--model=model.json");
   const std::string golden = std::string(PUSHID_SOURCE_DIR) + "/tests/apps/golden/fit_report.txt";
   if (std::getenv("PUSHID_UPDATE_GOLDEN") != nullptr) {
     std::ofstream(golden, std::ios::binary) << report;

@@ -9,6 +9,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/report/fit_command.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
@@ -175,7 +176,8 @@ ReportSection SummarySection(const ReportSource& source) {
 ReportSection AdviceSection(const ReportSource& source) {
   ReportSection section;
   for (const Advice& advice : source.model.advice) {
-    section.advice.emplace_back(advice.sentence, advice.command);
+    section.advice.emplace_back(advice.sentence,
+                                CommandFor(source.model.provenance, advice.command));
   }
   return section;
 }
