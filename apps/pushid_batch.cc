@@ -13,7 +13,7 @@
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/error.h"
-#include "datasets/manifest/select_recordings.h"
+#include "datasets/manifest/manifest.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/document.h"
 

@@ -8,7 +8,7 @@
 
 #include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"
-#include "datasets/manifest/select_recordings.h"
+#include "datasets/manifest/manifest.h"
 #include "ident/validation/crossvalidation.h"
 
 namespace pushid {

@@ -23,7 +23,7 @@
 #include <set>
 
 #include "apps/support/overwrite_check.h"
-#include "datasets/manifest/select_recordings.h"
+#include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"
 #include "models/restoration/restoration_kind.h"
 

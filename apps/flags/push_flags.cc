@@ -11,8 +11,8 @@
 #include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/manifest/select_recordings.h"
 
 namespace {
 constexpr char kAuto[] = "auto";

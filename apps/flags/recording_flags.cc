@@ -8,7 +8,7 @@
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
 #include "datasets/inspection/plausibility.h"
-#include "datasets/manifest/select_recordings.h"
+#include "datasets/manifest/manifest.h"
 
 const std::string kUnitHelp = "length unit of the files, " + pushid::AnyName<pushid::LengthUnit>() +
                               "; overrides the files and the manifest";

@@ -10,7 +10,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/select_recordings.h"
+#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh_header.h"
 
 namespace pushid {
 

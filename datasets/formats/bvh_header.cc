@@ -1,11 +1,10 @@
 // datasets: the part of a BVH file before its rows of numbers.
-#include "datasets/formats/bvh_header.h"
-
 #include <algorithm>
 #include <limits>
 #include <unordered_set>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/bvh.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {

@@ -6,7 +6,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/bvh_header.h"
 
 namespace pushid {
 namespace {

@@ -1,6 +1,4 @@
 // datasets: forces, crowds and manifests, inspected.
-#include "datasets/inspection/inspect_contents.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -12,6 +10,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/inspection/inspection.h"
 #include "datasets/inspection/plausibility.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/sensors/force_platform.h"

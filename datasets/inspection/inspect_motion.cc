@@ -1,6 +1,4 @@
 // datasets: what can be seen of a motion before anything is fitted.
-#include "datasets/inspection/inspect_motion.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -8,6 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/inspection/facing_and_steps.h"
+#include "datasets/inspection/inspection.h"
 
 namespace pushid {
 namespace {

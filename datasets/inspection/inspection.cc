@@ -13,9 +13,7 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
-#include "datasets/inspection/inspect_contents.h"
-#include "datasets/inspection/inspect_motion.h"
-#include "datasets/manifest/role_choice.h"
+#include "datasets/manifest/joint_choice.h"
 #include "datasets/sensors/sensor_csv.h"
 
 namespace pushid {

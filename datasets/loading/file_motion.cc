@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/manifest/role_choice.h"
+#include "datasets/manifest/joint_choice.h"
 #include "models/enum_names.h"
 
 namespace pushid {

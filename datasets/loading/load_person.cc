@@ -1,6 +1,4 @@
 // datasets: one person of a recording from the file that holds their motion.
-#include "datasets/loading/load_person.h"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -9,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/file_motion.h"
+#include "datasets/loading/load_recordings.h"
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/loading/tracks.h"
 #include "datasets/manifest/column_mapping.h"

@@ -9,9 +9,7 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/push_csv.h"
-#include "datasets/loading/load_person.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/manifest/select_recordings.h"
 
 namespace pushid {
 namespace {

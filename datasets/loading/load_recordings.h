@@ -3,8 +3,7 @@
 //   std::vector<std::string> warnings;
 //   LoadOptions options;
 //   options.setting = "single";
-//   Result<std::vector<Recording>> recordings = LoadRecordings("M/manifest.json", options,
-//   &warnings);
+//   const auto recordings = LoadRecordings("M/manifest.json", options, &warnings);
 #pragma once
 
 #include <optional>
@@ -66,5 +65,19 @@ std::string RecordingWarning(const std::string& id, const std::string& what);
 // recordings (a, b, c, ...): the file has ...". Equal ones become one with how often. In the order
 // of their first.
 std::vector<std::string> GroupedWarnings(const std::vector<std::string>& warnings);
+
+// One person of a recording from the file that holds their motion.
+
+struct LoadedPerson {
+  RecordedPerson person;
+  double fps = 0.0;       // the manifest's, otherwise the file's
+  std::string file_hash;  // of the file (and of the mapping, where there is one)
+};
+
+// Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
+// project's units and axes and checks that it can be a person.
+Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
+                                std::size_t index, const LoadOptions& options,
+                                std::vector<std::string>* warnings);
 
 }  // namespace pushid

@@ -1,8 +1,8 @@
 // datasets: the names that joints and markers have in the field, and whose roles they are.
-#include "datasets/manifest/role_choice.h"
-
 #include <algorithm>
 #include <string_view>
+
+#include "datasets/manifest/joint_choice.h"
 
 namespace pushid {
 namespace {

@@ -1,6 +1,4 @@
 // datasets: manifests merged, and recordings selected.
-#include "datasets/manifest/select_recordings.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -10,6 +8,7 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 namespace {

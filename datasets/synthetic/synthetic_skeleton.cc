@@ -1,9 +1,9 @@
 // datasets: proportions and posing of the synthetic skeleton.
-#include "datasets/synthetic/synthetic_skeleton.h"
-
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
+
+#include "datasets/synthetic/synthetic_recordings.h"
 
 namespace pushid {
 namespace {

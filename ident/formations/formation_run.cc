@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/synthetic/synthetic_skeleton.h"
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/generators/push_particles.h"
 #include "ident/parameters/option_names.h"

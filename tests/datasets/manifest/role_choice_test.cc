@@ -1,8 +1,7 @@
 // Who plays which role, in the skeletons and marker sets of the field.
-#include "datasets/manifest/role_choice.h"
-
 #include <gtest/gtest.h>
 
+#include "datasets/manifest/joint_choice.h"
 #include "tests/datasets/named_skeletons.h"
 #include "tests/test_support.h"
 
